@@ -33,12 +33,12 @@ SUBJECTS = tuple(_IN_ORDER.split())
 
 def main(arguments: Sequence[str]) -> int:
     """Run the subjects named, or every one; the status tells whether all targets were met."""
-    asked = set(arguments) - {"--publish"}
-    if unknown := sorted(asked - set(SUBJECTS)):
+    requested = set(arguments) - {"--publish"}
+    if unknown := sorted(requested - set(SUBJECTS)):
         sys.stderr.write(f"{__doc__}\nno subject {', '.join(unknown)}; one of {', '.join(SUBJECTS)}\n")
         return 2
     machine, record = describe(), {}
-    for name in [name for name in SUBJECTS if name in asked or not asked]:
+    for name in [name for name in SUBJECTS if name in requested or not requested]:
         sys.stderr.write(f"{name} ...\n")
         figures = tuple(_module(name).figures())
         record[name] = Measured(date.today().isoformat(), machine, figures)

@@ -111,10 +111,10 @@ def table_against_peer(found: Sequence[Assessed], loads: Sequence[Sequence[float
 
 def error_cell(one: Assessed, quantity: int, load: int) -> str:
     """Return true and, in brackets, stated error in per cent of the value; bold where it is not covered."""
-    off, told = (
+    true, stated = (
         100.0 * error[quantity, load] / one.value[quantity, load] for error in (one.true, one.stated)
     )
-    text = f"{off:.2g} ({told:.2g})"
+    text = f"{true:.2g} ({stated:.2g})"
     return text if one.covered[quantity, load] else f"**{text}**"
 
 

@@ -88,10 +88,10 @@ class InfluenceStudy:
         """Return how often each quantity is wrong where it can be seen, and what "auto" neglects."""
         rows = []
         for k, name in enumerate(self.quantities):
-            seen = [one for one in found if max(abs(one.estimated[k]), abs(one.measured[k])) >= FLOOR]
-            changes = f"{len(seen)} changes above {100 * FLOOR:g} %"
+            visible = [one for one in found if max(abs(one.estimated[k]), abs(one.measured[k])) >= FLOOR]
+            changes = f"{len(visible)} changes above {100 * FLOOR:g} %"
             what = f"{name}: beyond a factor {FACTOR:g}, of the {changes}"
-            rows.append(Figure(self.subject, what, 100.0 - per_cent_right(seen, k), "%", 100.0 - SHARE))
+            rows.append(Figure(self.subject, what, 100.0 - per_cent_right(visible, k), "%", 100.0 - SHARE))
         return rows + [self._left_off(found, tolerance) for tolerance in self.tolerances]
 
     def _left_off(self, found: Sequence[AssessedEffect], tolerance: float) -> Figure:

@@ -114,9 +114,9 @@ def _started(*words: str) -> Iterator[subprocess.Popen[bytes]]:
 
 def _wait_for(ready: Callable[[], bool], process: subprocess.Popen[bytes]) -> None:
     """Wait until a process has made something ready; it may end or take too long."""
-    begun = time.monotonic()
+    started = time.monotonic()
     while not ready():
-        if process.poll() is not None or time.monotonic() - begun > _PATIENCE_S:
+        if process.poll() is not None or time.monotonic() - started > _PATIENCE_S:
             raise RuntimeError(
                 f"the cluster did not start within {_PATIENCE_S:g} s, or a process of it ended"
             )

@@ -53,11 +53,11 @@ def _ratios(name: str, scene: Scene) -> list[Figure]:
     for run in (*runs.values(), *runs.values()):  # compiles, and makes the code of the structure
         run()
     turns = [{label: _seconds(run) for label, run in runs.items()} for _ in range(TURNS)]
-    taken = {label: min(turn[label] for turn in turns) for label in runs}
+    seconds = {label: min(turn[label] for turn in turns) for label in runs}
     return [
-        Figure(name, "bare", taken["bare"], "CPU s"),
-        Figure(name, "default over bare", taken["default"] / taken["bare"], "-", LIMIT[name]),
-        Figure(name, "default over bare, sizes of effects new", taken["first"] / taken["bare"], "-"),
+        Figure(name, "bare", seconds["bare"], "CPU s"),
+        Figure(name, "default over bare", seconds["default"] / seconds["bare"], "-", LIMIT[name]),
+        Figure(name, "default over bare, sizes of effects new", seconds["first"] / seconds["bare"], "-"),
     ]
 
 

@@ -50,9 +50,9 @@ SHORT = {"flexible_shafts_scene": 1.0}
 @cache
 def table(pair: GearPair, axes: bool, folder: Path) -> MeshTable:
     """Return the mesh force of a pair by draft finite elements, with both axes or none."""
-    how = {"level": "draft", "positions": 64, "receipt": "minimal", "cache": folder}
+    options = {"level": "draft", "positions": 64, "receipt": "minimal", "cache": folder}
     axes_request = AXES if axes else {}
-    return analyze(pair, torques=list(TORQUES), **how, **axes_request).force_table()  # type: ignore[arg-type]
+    return analyze(pair, torques=list(TORQUES), **options, **axes_request).force_table()  # type: ignore[arg-type]
 
 
 def example_scenes() -> dict[str, Scene]:

@@ -170,12 +170,13 @@ def markdown(found: Sequence[AssessedLevel]) -> str:
         f"within a factor {FACTOR:g} and in sign (target {SHARE:g} %);\n"
         f"changes below {100 * FLOOR:g} % count as zero.\n\n"
     )
-    seen, quantities = _seen(found), {one.where: one.quantity for one in found}
+    visible, quantities = _seen(found), {one.where: one.quantity for one in found}
     sounding = sum(name == "sound power" for name in quantities.values())
     head += (
         f"**{100.0 * _levels_right(found):.0f} %** have the level of what the scene is computed for right\n"
         f"within a factor {FACTOR:g} and in sign (target {LEVEL_SHARE:g} %), "
-        f"{100.0 * _levels_right(seen):.0f} % of the {len(seen)} that change it by {LEVEL_FLOOR:g} dB:\n"
+        f"{100.0 * _levels_right(visible):.0f} % of the {len(visible)} that change it by "
+        f"{LEVEL_FLOOR:g} dB:\n"
         f"sound power in {sounding} scenes, all bearing forces in {len(quantities) - sounding}.\n\n"
     )
     head += "\n".join(f"- {figure.what}: {figure.value:.2g} %" for figure in STUDY.by_quantity(found))

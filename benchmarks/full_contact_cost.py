@@ -37,16 +37,22 @@ def figures() -> list[Figure]:
     checked = Frontier.request(pair, TableAxes(torques=list(TORQUES)), AnalysisOptions())
     records = [record_full_contact(checked, POSITIONS, unreported)]
     found = frontier(checked, fidelities=FIDELITIES, full_contact=POSITIONS, records=records)
-    other, here = found.full_contact, found.reference.cpu_seconds
+    other, own_seconds = found.full_contact, found.reference.cpu_seconds
     assert other is not None
-    there = other.seconds(found.solves)
+    other_seconds = other.seconds(found.solves)
     return [
-        Figure(SUBJECT, "condensed peer, a position, all loads, with its error", there / 64.0, "CPU s", 5.0),
-        Figure(SUBJECT, f"condensed peer, the table: from {POSITIONS} positions", there, "CPU s"),
-        Figure(SUBJECT, "here, the table with its error estimate, nothing cached", here, "CPU s"),
+        Figure(
+            SUBJECT,
+            "condensed peer, a position, all loads, with its error",
+            other_seconds / 64.0,
+            "CPU s",
+            5.0,
+        ),
+        Figure(SUBJECT, f"condensed peer, the table: from {POSITIONS} positions", other_seconds, "CPU s"),
+        Figure(SUBJECT, "here, the table with its error estimate, nothing cached", own_seconds, "CPU s"),
         Figure(SUBJECT, "mean of these positions, apart", 100.0 * other.mean_error, "%", 0.3),
         Figure(SUBJECT, "peak-to-peak of these positions, apart", 100.0 * other.peak_to_peak_error, "%", 1.0),
-        *_calculix(pair, other, found.solves, here),
+        *_calculix(pair, other, found.solves, own_seconds),
     ]
 
 

@@ -65,8 +65,12 @@ def heard_levels(pair: DrawnPair) -> tuple[float, float, float]:
     case = scene["meshes"][0]["case"]
     own = {"variables": FREE, "search": SEARCH, "limits": LIMITS}
     ripple = loa.optimize(case, own | {"torque_n_m": [pair.torque_n_m]})
-    heard = loa.optimize(scene, own | {"heard": HEARD})
-    return heard.optimum.objective.value, heard.optimum.objective.error, _level(scene, ripple.optimum.values)
+    by_level = loa.optimize(scene, own | {"heard": HEARD})
+    return (
+        by_level.optimum.objective.value,
+        by_level.optimum.objective.error,
+        _level(scene, ripple.optimum.values),
+    )
 
 
 def _level(scene: dict[str, Any], values: dict[str, float]) -> float:

@@ -63,7 +63,7 @@ def _further(named: dict[str, PairCase]) -> list[PairCase]:
         "spur 18/18, crowning of 0.1 um": (_with(small, modification=flat), even),
         "spur 20/20, pitch errors of 0.02 um": (_with(spur, pitch_deviation=exact), {}),
     }
-    return [PairCase(name, pair, options=how) for name, (pair, how) in made.items()]
+    return [PairCase(name, pair, options=options) for name, (pair, options) in made.items()]
 
 
 def _with(pair: ParallelAxes, **more: object) -> GearPair:

@@ -85,8 +85,8 @@ def study(cases: Sequence[PairCase], folder: Path) -> list[LoadedInfluence]:
 
 def is_neglected(decision: Mapping[str, str], name: str) -> bool:
     """Whether an effect is off; three dimensions hold the finite width by themselves."""
-    held = name == FiniteWidth.name and decision[FaceLoadDistribution.name] == "on"
-    return decision[name] == "off" and not held
+    included = name == FiniteWidth.name and decision[FaceLoadDistribution.name] == "on"
+    return decision[name] == "off" and not included
 
 
 def _assessed(
@@ -133,8 +133,8 @@ def _table_of_effects(found: Sequence[LoadedInfluence]) -> str:
     for effect, group in by_effect(found).items():
         cells = []
         for k in range(2):
-            seen = [one.estimated[k] / one.measured[k] for one in group if abs(one.measured[k]) >= FLOOR]
-            median = f"{np.median(seen):.2f}" if seen else ""
+            ratios = [one.estimated[k] / one.measured[k] for one in group if abs(one.measured[k]) >= FLOOR]
+            median = f"{np.median(ratios):.2f}" if ratios else ""
             cells.append(f"{per_cent_right(group, k):.0f} % | {median}")
         lines.append(f"| {effect} | {len(group)} | " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"

@@ -67,17 +67,18 @@ def _assessed(case: PairCase, cache: Path) -> Iterator[Held]:
     fine = _evaluator(case, "fine", PLANE_POSITIONS if in_plane(case) else FACE_POSITIONS, cache)
     made = fine.contact.plan.discretization
     if isinstance(made, FaceDiscretization):
-        fine = replace(fine, contact=fine.contact.in_slices(made.most_slices))
+        fine = replace(fine, contact=fine.contact.in_slices(made.max_slices))
     finer = fine.evaluate({})
     for level in LEVELS:
         own = _evaluator(case, level, POSITIONS, cache)
         if in_plane(case):  # handovers are steep: a table has positions beside them
             table = analyze(case.pair, normal_forces=case.forces, cache=cache, level=level, **case.options)
             own = own.at(table.position)
-        told = confirmed_figures(own, {}, cache)
-        for name, held in NAMES.items():
+        stated = confirmed_figures(own, {}, cache)
+        for name, limited in NAMES.items():
             value, error, true = (
-                getattr(of, each)[0] for of, each in ((told, held), (told, f"{held}_error"), (finer, held))
+                getattr(of, each)[0]
+                for of, each in ((stated, limited), (stated, f"{limited}_error"), (finer, limited))
             )
             yield Held(name, error / value, np.abs(true / value - 1.0))
 

@@ -45,12 +45,12 @@ class HeldQuantiles(NamedTuple):
 
 def figures() -> list[Figure]:
     """Return how many quantiles lie outside their band, and what a pair costs."""
-    held = [assessed(case) for case in quiet_pairs() if case.name in PAIRS]
-    outside = np.array([each.outside for each in held])
-    widths = np.array([(each.high - each.low) / each.model for each in held])
-    missed = np.concatenate([each.missed for each in held])
-    by_model = sum(each.seconds for each in held) / len(held)
-    one_by_one = sum(each.solved_seconds for each in held) / len(held)
+    assessments = [assessed(case) for case in quiet_pairs() if case.name in PAIRS]
+    outside = np.array([each.outside for each in assessments])
+    widths = np.array([(each.high - each.low) / each.model for each in assessments])
+    missed = np.concatenate([each.missed for each in assessments])
+    by_model = sum(each.seconds for each in assessments) / len(assessments)
+    one_by_one = sum(each.solved_seconds for each in assessments) / len(assessments)
     within = 100.0 * (1.0 - CONFIDENCE)
     beyond, width = 100.0 * float(outside.mean()), 100.0 * float(np.median(widths))
     return [

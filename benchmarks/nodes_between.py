@@ -85,8 +85,8 @@ def between_nodes(
         truth = _solved(case, table, float(point[0]), alignment, options)
         rows.append(_row(table, truth, {"force": float(point[0])} | alignment))
     mean, ripple, outside = (np.array(each) for each in zip(*rows, strict=True))
-    held = table.metadata.receipt["held_out"]
-    inserted = sum(len(axis["inserted"]) for axis in held.values())
+    held_out = table.metadata.receipt["held_out"]
+    inserted = sum(len(axis["inserted"]) for axis in held_out.values())
     return BetweenNodes(
         case.name, table.metadata.receipt["tolerance"]["met"], inserted, mean, ripple, outside
     )

@@ -101,11 +101,11 @@ def figures() -> list[Figure]:
         ]
     best = min((found[method] for method in METHODS), key=lambda own: float(own["seconds"]))
     for solver, text in SOLVERS.items():
-        theirs = found[solver]
-        alone, whole = (100.0 * spent / theirs["seconds"] for spent in (best["seconds"], best["whole"][0]))
+        other = found[solver]
+        alone, whole = (100.0 * spent / other["seconds"] for spent in (best["seconds"], best["whole"][0]))
         rows += [
-            Figure(SUBJECT, f"{text} ({solver}): time integration", theirs["seconds"], "CPU s"),
-            Figure(SUBJECT, f"{solver}: step error", 1e9 * theirs["error"], "nm", 1.0),
+            Figure(SUBJECT, f"{text} ({solver}): time integration", other["seconds"], "CPU s"),
+            Figure(SUBJECT, f"{solver}: step error", 1e9 * other["error"], "nm", 1.0),
             Figure(SUBJECT, f"time integration here over {solver}", alone, "%", TARGET),
             Figure(SUBJECT, f"all of simulate over {solver}'s time integration", whole, "%"),
         ]

@@ -31,11 +31,13 @@ def page(record: Mapping[str, Measured]) -> str:
 
 def with_figures(readme: str, record: Mapping[str, Measured]) -> str:
     """Return the README with the targets of the main job between the marks."""
-    shown = [(record[name], name) for name in IN_README if name in record]
-    figures = [figure for measured, _ in shown for figure in measured.figures if figure.limit is not None]
+    measured_targets = [(record[name], name) for name in IN_README if name in record]
+    figures = [
+        figure for measured, _ in measured_targets for figure in measured.figures if figure.limit is not None
+    ]
     before, _, rest = readme.partition(MARKS[0])
     _, _, after = rest.partition(MARKS[1])
-    machine = shown[0][0].machine if shown else {}
+    machine = measured_targets[0][0].machine if measured_targets else {}
     where = f"Measured on {machine.get('processor', '?')}, one thread, Python {machine.get('python', '?')}:"
     return f"{before}{MARKS[0]}\n{where}\n\n{markdown(figures)}{MARKS[1]}{after}"
 

@@ -100,4 +100,6 @@ def face_cases() -> list[PairCase]:
         "spur 18/18, lead crowning": (with_pinion(spur, lead), even),
         "helical 18/23, crowned and misaligned": (with_pinion(small, lead), skew),
     }
-    return [PairCase(name, pair, loads=loads, options=how) for name, (pair, how) in made.items()]
+    return [
+        PairCase(name, pair, loads=loads, options=load_options) for name, (pair, load_options) in made.items()
+    ]

@@ -123,8 +123,8 @@ def quarter_space_excess(
     ).solve(load[free])
     weights = _strip_weights(disc, len(points))[0]
     at_planes = np.zeros(layers + 1)
-    there = np.flatnonzero((body.component == Y) & (body.function <= layers))
-    np.add.at(at_planes, body.function[there], 2.0 * weights[body.node[there]] * moved[there])
+    on_surface = np.flatnonzero((body.component == Y) & (body.function <= layers))
+    np.add.at(at_planes, body.function[on_surface], 2.0 * weights[body.node[on_surface]] * moved[on_surface])
     soft = 2.0 * (1.0 - poissons_ratio**2) / (math.pi * MODULUS)
     return over.planes[-1] - over.planes, -(at_planes - at_planes[0]) / soft
 

@@ -92,11 +92,11 @@ def assessed_pair(quiet: QuietPair, folder: Path) -> list[AssessedInfluence]:
             on_violation="report",
         ),
     )
-    held = [entry.name for entry in checked.ledger if entry.on and entry.name in EFFECTS]
-    estimates = estimated_influences(checked, held)
+    assessed_names = [entry.name for entry in checked.ledger if entry.on and entry.name in EFFECTS]
+    estimates = estimated_influences(checked, assessed_names)
     whole = _curve(checked, folder)
     found = []
-    for name in held:
+    for name in assessed_names:
         other, estimate = _curve(toggled(checked, name, "off"), folder), estimates[name]
         assert estimate is not None
         computed = Influence(
@@ -116,13 +116,13 @@ def _curve(checked: Checked, folder: Path) -> tuple[float, float]:
 
 def markdown(found: Sequence[AssessedInfluence]) -> str:
     """Return the section of influence.md."""
-    said = ", ".join(
+    shares = ", ".join(
         f"{share_right(group):.0f} % of {len(group)} on pairs {title} when the estimates were made"
         for title, group in groups(found).items()
     )
     lines = [
         f"Modified helical pairs at their nominal load, draft finite elements in {SLICES} slices.",
-        f"Right within a factor {FACTOR:g} and in sign in both figures: **{said}** (target {SHARE:g} %);",
+        f"Right within a factor {FACTOR:g} and in sign in both figures: **{shares}** (target {SHARE:g} %);",
         f"changes below 1 % and {1e9 * RIPPLE_FLOOR:g} nm count as zero. Estimated / computed in um,",
         "**bold** beyond a factor 2, *pairs* unseen.",
         "",

@@ -64,9 +64,9 @@ def _batch_figures(address: str) -> Iterator[Figure]:
     for name, body, kind, limit in (("raw float64", raw, RAW, 0.5), ("JSON", text, JSON, 2.0)):
         ask = lambda body=body, kind=kind: _ask(connection, body, kind)  # noqa: E731
         ask()
-        taken = [1e6 * _seconds(ask) / POINTS for _ in range(BATCHES)]
-        yield Figure("force queries", f"a point of {POINTS}, {name}, best", min(taken), "us", limit)
-        yield Figure("force queries", f"a point of {POINTS}, {name}, median", median(taken), "us")
+        times = [1e6 * _seconds(ask) / POINTS for _ in range(BATCHES)]
+        yield Figure("force queries", f"a point of {POINTS}, {name}, best", min(times), "us", limit)
+        yield Figure("force queries", f"a point of {POINTS}, {name}, median", median(times), "us")
     connection.close()
 
 

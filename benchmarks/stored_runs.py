@@ -70,7 +70,7 @@ def _run(case: PairCase, folder: Path, accuracy: Json) -> Json:
     warm_up(across_face=True)
     table = analyze(case.pair, normal_forces=case.forces, cache=folder, **accuracy, **case.options)
     receipt = table.metadata.receipt
-    shown = {
+    excerpt = {
         name: receipt[name]
         for name in ("cpu_seconds", "prediction", "passes", "tolerance")
         if name in receipt
@@ -78,7 +78,7 @@ def _run(case: PairCase, folder: Path, accuracy: Json) -> Json:
     return {
         "value": quantities(table).tolist(),
         "sources": errors_by_source(table).tolist(),
-        "receipt": shown,
+        "receipt": excerpt,
     }
 
 
@@ -97,8 +97,8 @@ def quantities(table: SteDatabase) -> FloatArray:
 
 def _stored(case: PairCase, run: str, measure: Callable[[Path], Json]) -> Json:
     """Read a run, or make and store it."""
-    asked = {"pair": asdict(case.pair), "forces": case.forces, "options": dict(case.options), "run": run}
-    key = content_hash(asked, str(VERSION), 0)[:24]
+    request = {"pair": asdict(case.pair), "forces": case.forces, "options": dict(case.options), "run": run}
+    key = content_hash(request, str(VERSION), 0)[:24]
     lines = FILE.read_text(encoding="utf-8").splitlines() if FILE.exists() else []
     for line in map(json.loads, lines):
         if line["key"] == key:

@@ -125,8 +125,10 @@ def _request_figures(client: LineOfActionClient, pid: int) -> Iterator[Figure]:
         before = cpu_seconds(pid)
         for _ in range(_REQUESTS):
             ask()
-        taken = (cpu_seconds(pid) - before) / _REQUESTS
-        yield Figure("requests to the service", f"{title}: CPU time of the service", 1e3 * taken, "ms")
+        cpu_per_request = (cpu_seconds(pid) - before) / _REQUESTS
+        yield Figure(
+            "requests to the service", f"{title}: CPU time of the service", 1e3 * cpu_per_request, "ms"
+        )
 
 
 def _growth(file: Path) -> Figure:

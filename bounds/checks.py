@@ -43,9 +43,10 @@ class RefusedValue(Exception):
 
     def worded(self, reader: Reader) -> str:
         """Return field, value, bound and suggestion as one text for a reader."""
-        there = reader.at(self.field)
-        text = f"{there.name} = {there.field_value(self.value)!r}: must be {self.bound.worded(there)}"
-        suggestion = self.suggestion.worded(there).strip()
+        field_reader = reader.at(self.field)
+        value, bound = field_reader.field_value(self.value), self.bound.worded(field_reader)
+        text = f"{field_reader.name} = {value!r}: must be {bound}"
+        suggestion = self.suggestion.worded(field_reader).strip()
         return f"{text}. {suggestion}" if suggestion else text
 
     def __reduce__(self) -> tuple[Any, ...]:

@@ -156,8 +156,8 @@ class TimeIntegration:
             return "the scene has a fixed step"
         if self.additions is None:
             return None
-        decision, there = _decision(scene), _decision(self.as_run(scene))
-        return "the scene has no more effects than these" if decision == there else None
+        decision, own_decision = _decision(scene), _decision(self.as_run(scene))
+        return "the scene has no more effects than these" if decision == own_decision else None
 
     def as_run(self, scene: Scene) -> Scene:
         """Return the scene as this fidelity runs it."""

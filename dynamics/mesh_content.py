@@ -49,8 +49,8 @@ def _of_nastran(content: bytes) -> Fault:
     if any(line.lstrip().upper().startswith("INCLUDE") for line in mesh_text(content)):
         return "without INCLUDE: other files are not read", _ALONE
     lines = iter(mesh_text(content))
-    begun = any(line.strip().startswith("BEGIN BULK") for line in lines)
-    if begun and any(line.startswith("ENDDATA") for line in lines):
+    has_begin = any(line.strip().startswith("BEGIN BULK") for line in lines)
+    if has_begin and any(line.startswith("ENDDATA") for line in lines):
         return None
     return "bulk data from BEGIN BULK to ENDDATA", "Export the whole model."
 

@@ -16,7 +16,8 @@ from dynamics.scene import Scene
 from dynamics.shafts import Inertia, Shaft
 from dynamics.types import FloatArray
 
-_STEEL = "from foamed plastics to tungsten"
+_DENSITIES = "from foamed plastics to tungsten"
+# name of the check, quantity, low and high bound, their unit, source of the bounds
 _CHECKS = (
     Check("duration", "duration of the run", 1e-4, 300.0, "s", "run-ups take 1 to 120 s"),
     Check(
@@ -92,7 +93,7 @@ _CHECKS = (
         "1",
         "shafts of gearboxes: 0.5 to 30",
     ),
-    Check("shaft_density", "density of a shaft", 500.0, 20e3, "kg/m^3", _STEEL),
+    Check("shaft_density", "density of a shaft", 500.0, 20e3, "kg/m^3", _DENSITIES),
     Check(
         "shaft_modulus",
         "Young's modulus of a shaft",
@@ -154,10 +155,18 @@ CHECKS: dict[str, Check] = {check.name: check for check in _CHECKS}
 """All checks by name."""
 
 assessed = Checklist(CHECKS).assessed
-
+"""Function that yields a `Finding` where a value is beyond the bounds of a check, else nothing."""
 
 ROLLING = (1e7, 1e10)
 """Usual stiffness of rolling bearings, N/m."""
+USUAL_MISALIGNMENT = 0.002
+"""Largest usual misalignment of a mesh over its face width, ISO 6336-1."""
+NEGLIGIBLE_PUSH = 1e-6
+"""Resultant of mesh forces over the sum of their amounts below which they cancel but for rounding."""
+PRESSURE_ANGLE = math.radians(20.0)
+"""Normal pressure angle of most gears, rad: a mesh does not state it, and its module follows from it."""
+USUAL_LOAD = (20.0, 0.5)
+"""Usual loads of teeth over the bounds of the checks "mesh_load" (1 MPa) and "mesh_overload" (500 MPa)."""
 
 
 def scene_findings(scene: Scene) -> tuple[Finding, ...]:
@@ -179,17 +188,18 @@ def scene_findings(scene: Scene) -> tuple[Finding, ...]:
 
 def _speeds(mechanism: Mechanism) -> Iterator[Finding]:
     """Check the fastest base circle that each drive or free rotation moves."""
-    scene, ratio = mechanism.scene, np.abs(mechanism.kinematics.float_ratio)
+    scene = mechanism.scene
+    ratio = np.abs(mechanism.kinematics.float_ratio)  # (shafts, laws): speed of a shaft over that of a law
     radius = [
         max((g.base_radius for g in scene.gears if g.shaft == s.name), default=0.0) for s in scene.shafts
     ]
     for law, part in enumerate(scene.references):
         fastest = abs(part.speed.extreme)
         lever = float(np.max(ratio[:, law] * radius, initial=0.0))
-        kind, index = (
-            ("drives", law) if law < len(scene.drives) else ("free_rotations", law - len(scene.drives))
-        )
-        field = f"{kind}[{index}]." + ("speed" if kind == "drives" else "initial_speed")
+        if law < len(scene.drives):  # laws are those of the drives, then those of the free rotations
+            field = f"drives[{law}].speed"
+        else:
+            field = f"free_rotations[{law - len(scene.drives)}].initial_speed"
         reason = f"a gear turns at {fastest * lever:.3g} m/s"
         for finding in assessed("pitch_line_speed", field, fastest * lever, "rad/s", reason=reason):
             yield replace(finding, value=fastest, high=finding.high / lever)
@@ -222,15 +232,14 @@ def _meshes(scene: Scene) -> Iterator[Finding]:
         if mesh.friction is not None:
             yield from assessed("friction", f"{path}.friction", mesh.friction, "1")
         face = scene.gear(mesh.driver).face_width
-        skew, text = (
-            mesh.misalignment,
-            (f"a misalignment of {engineering(1e3 * abs(mesh.misalignment) / face, 2)} mrad"),
-        )
+        skew = mesh.misalignment
+        text = f"a misalignment of {engineering(1e3 * abs(skew) / face, 2)} mrad"
         for check, scale in (("mesh_misalignment", 1.0), ("mesh_misalignment_over_face", face)):
             for finding in assessed(
                 check, f"{path}.misalignment", skew, "m", scale=scale, reason=text, skip_zero=True
             ):
-                yield replace(finding, low=CHECKS["mesh_misalignment"].low or 0.0, high=0.002 * face)
+                low = CHECKS["mesh_misalignment"].low or 0.0
+                yield replace(finding, low=low, high=USUAL_MISALIGNMENT * face)
 
 
 def _bodies(mechanism: Mechanism) -> Iterator[Finding]:
@@ -275,11 +284,14 @@ def _gyration(check: str, path: str, inertia: Inertia, size: float) -> Iterator[
 def _supports(mechanism: Mechanism) -> Iterator[Finding]:
     """Check that something carries the shafts that mesh forces push aside, where there are bearings."""
     rotors = mechanism.rotors
-    if "x" not in mechanism.additions.possible or not any(rotor.radial_stiffness for rotor in rotors):
+    if "x" not in mechanism.additions.possible:  # no effect moves shafts sideways
+        return
+    if not any(rotor.radial_stiffness for rotor in rotors):
         return
     for index, rotor in enumerate(rotors):
         push, total = _push(mechanism, index)
-        if mechanism.kinematics.sense[index] and not rotor.radial_stiffness and push > 1e-6 * total:
+        turns = mechanism.kinematics.sense[index] != 0
+        if turns and not rotor.radial_stiffness and push > NEGLIGIBLE_PUSH * total:
             reason = (
                 f'nothing carries "{rotor.shaft.name}" under {push:.4g} N of its meshes: it is held rigidly'
             )
@@ -301,25 +313,29 @@ def _push(mechanism: Mechanism, index: int) -> tuple[float, float]:
 
 
 def _loads(mechanism: Mechanism) -> Iterator[Finding]:
-    """Check the nominal force of every mesh by face width and module, in the field of the largest load."""
+    """Check the nominal force of the meshes over face width and module; yield the first finding alone.
+
+    The finding names the field of the largest load, since all forces scale with it.
+    """
     scene = mechanism.scene
     if not scene.loads:
         return
-    at, torque = max(
-        ((i, float(load.torque(0.0))) for i, load in enumerate(scene.loads)), key=lambda pair: abs(pair[1])
-    )
+    torques = [float(load.torque(0.0)) for load in scene.loads]  # at standstill
+    largest = max(range(len(torques)), key=lambda index: abs(torques[index]))
+    torque = torques[largest]
     for mesh, force in zip(scene.meshes, mechanism.nominal_force, strict=True):
         driver, driven = scene.gear(mesh.driver), scene.gear(mesh.driven)
-        module = driver.base_pitch / (math.pi * math.cos(math.radians(20.0)))
+        module = driver.base_pitch / (math.pi * math.cos(PRESSURE_ANGLE))
         intensity = float(force) / (min(driver.face_width, driven.face_width) * module)
         text = f'"{mesh.name}" carries {intensity / 1e6:.3g} N/mm^2 of load over face width and module'
         light = () if mesh.coast is not None else assessed("mesh_load", "", intensity, "Pa", skip_zero=True)
         for finding in (*light, *assessed("mesh_overload", "", intensity, "Pa")):
-            low, high = 20.0 * (CHECKS["mesh_load"].low or 0.0), 0.5 * (CHECKS["mesh_overload"].high or 0.0)
-            part = abs(torque) / intensity
+            low = USUAL_LOAD[0] * (CHECKS["mesh_load"].low or 0.0)
+            high = USUAL_LOAD[1] * (CHECKS["mesh_overload"].high or 0.0)
+            part = abs(torque) / intensity  # torque of the load per Pa
             yield replace(
                 finding,
-                field=f"loads[{at}].torque",
+                field=f"loads[{largest}].torque",
                 value=torque,
                 unit="N m",
                 reason=text,

@@ -37,18 +37,19 @@ class WorkCost:
     """Predicted and measured cost of work that was done."""
 
     predicted_seconds: float
-    """`predicted_seconds`, `seconds`: CPU seconds, predicted for this host and measured."""
+    """Predicted CPU seconds on this host."""
     predicted_bytes: float
     """Predicted bytes of the largest working set."""
     seconds: float
+    """Measured CPU seconds."""
     bytes: float | None = None
-    """Growth of the process above its largest memory before; None where it had been as large before, so that
-    the growth is unknown.
+    """Largest resident memory during the work less the memory at its start, bytes. None: the process had been
+    larger before, or the system does not state its memory, so that the growth is unknown.
     """
 
 
 def on_this_host(kind: str, cost: Cost, cache: Path | None) -> Cost:
-    """Return a predicted cost with the speed of this host, and with the cost of earlier work of a kind.
+    """Return a predicted cost scaled by the speed of this host and by the cost of earlier work of its kind.
 
     Parameters
     ----------
@@ -57,7 +58,8 @@ def on_this_host(kind: str, cost: Cost, cache: Path | None) -> Cost:
     cost : Cost
         Cost on the reference host of `host_speed`.
     cache : Path, optional
-        Directory of what is known of the host; None: its speed is measured once per process.
+        Directory with the measured speed of the host and the log of its work; None: the speed is measured
+        once per process.
     """
     from model_studies.host_speed import host_slowness  # noqa: PLC0415 (start-up time)
     from model_studies.run_log import corrections  # noqa: PLC0415
@@ -72,17 +74,17 @@ class WorkMeter:
 
     kind: str
     reference: Cost
-    """Predicted, on the reference host."""
+    """Predicted cost on the reference host."""
     cache: Path | None
     workers: Workers
     predicted: Cost
     """Predicted cost on this host."""
     began: float
-    """CPU seconds that were spent before."""
+    """CPU seconds of this process and of the workers before the work."""
     memory: int | None
-    """Resident before, bytes; None: the system does not tell."""
+    """Resident memory before the work, bytes; None: the system does not state it."""
     peak: int
-    """Largest resident memory before, bytes."""
+    """Largest resident memory of the process before the work, bytes."""
 
     @classmethod
     def at_start(
@@ -99,28 +101,29 @@ class WorkMeter:
         kind, reference, cache
             Arguments kind, cost and cache of `on_this_host`.
         workers : Workers
-            Who does some of it: their time counts.
+            Workers that do parts of the work: their CPU time counts.
         """
         predicted = on_this_host(kind, reference, cache)
         memory, peak = memory_figure("VmRSS"), peak_memory()
         return cls(kind, reference, cache, workers, predicted, spent(workers), memory, peak)
 
     def finish(self) -> WorkCost:
-        """Return what the work cost beside what was predicted, which the log keeps too."""
+        """Return the predicted and the measured cost of the work, and record both in the log of the host."""
         from model_studies.host_speed import host_slowness  # noqa: PLC0415 (start-up time)
         from model_studies.run_log import record  # noqa: PLC0415
 
         seconds, highest = spent(self.workers) - self.began, peak_memory()
         expected = self.reference.seconds * host_slowness(self.cache)
         record(self.cache, {self.kind: expected}, {self.kind: seconds})
-        grown = float(highest - self.memory) if self.memory is not None and highest > self.peak else None
-        return WorkCost(self.predicted.seconds, self.predicted.bytes, seconds, grown)
+        growth = float(highest - self.memory) if self.memory is not None and highest > self.peak else None
+        return WorkCost(self.predicted.seconds, self.predicted.bytes, seconds, growth)
 
 
 def announce(progress: Progress, stage: str, subject: str, cost: Cost) -> None:
-    """Report the cost of a stage before it begins, after its name, if that is more than a moment.
+    """Report the cost of a stage before it begins, if it exceeds `ANNOUNCED` CPU seconds.
 
-    `progress`: called as progress("stage; subject: about 25 CPU s, 1.2 GB", 0.0).
+    `progress`: called as progress("stage; subject: about 25 CPU s, 1.2 GB", 0.0), where 0.0 is the fraction
+    of the work that is done.
     """
     if cost.seconds > ANNOUNCED:
         progress(f"{stage}; {subject}: {cost.text}", 0.0)

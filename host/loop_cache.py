@@ -145,6 +145,7 @@ def _name_runtime_functions() -> None:
 
 
 def _folder(folder: Path, function: Callable[..., Any]) -> Path:
+    """Return the folder of a function's package below `folder`."""
     return folder / function.__module__.rpartition(".")[0].replace(".", "/")
 
 

@@ -32,9 +32,9 @@ class TimeTaken:
         """Return the time of both."""
         return TimeTaken(self.cpu_seconds + other.cpu_seconds, self.wall_seconds + other.wall_seconds)
 
-    def since(self, begun: TimeTaken) -> TimeTaken:
+    def since(self, earlier: TimeTaken) -> TimeTaken:
         """Return the time from one reading to this one."""
-        return TimeTaken(self.cpu_seconds - begun.cpu_seconds, self.wall_seconds - begun.wall_seconds)
+        return TimeTaken(self.cpu_seconds - earlier.cpu_seconds, self.wall_seconds - earlier.wall_seconds)
 
 
 class StageClock:
@@ -57,39 +57,39 @@ class StageClock:
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
         """Time the block as a stage; a context manager."""
-        begun = TimeTaken.now(self._remote)
+        start = TimeTaken.now(self._remote)
         try:
             yield
         finally:
-            self._end(name, begun)
+            self._end(name, start)
 
     def finish(self, name: str) -> None:
         """Book the time since the last stage ended, or since the clock was made."""
         self._end(name, self._last)
 
-    def book(self, name: str, taken: TimeTaken) -> None:
+    def book(self, name: str, duration: TimeTaken) -> None:
         """Add the time of a stage that was taken apart."""
-        self.stages[name] = self.stages.get(name, TimeTaken()).plus(taken)
+        self.stages[name] = self.stages.get(name, TimeTaken()).plus(duration)
 
     @property
     def seconds(self) -> dict[str, float]:
         """CPU seconds by stage."""
-        return {name: taken.cpu_seconds for name, taken in self.stages.items()}
+        return {name: duration.cpu_seconds for name, duration in self.stages.items()}
 
     @property
     def wall_seconds(self) -> dict[str, float]:
         """Wall seconds by stage."""
-        return {name: taken.wall_seconds for name, taken in self.stages.items()}
+        return {name: duration.wall_seconds for name, duration in self.stages.items()}
 
     def to_json(self) -> Json:
         """Return times by stage, their sum, and the peak memory in bytes."""
         return {
-            "stages": {name: asdict(taken) for name, taken in self.stages.items()},
+            "stages": {name: asdict(duration) for name, duration in self.stages.items()},
             "cpu_seconds": sum(self.seconds.values()),
             "wall_seconds": sum(self.wall_seconds.values()),
             "peak_memory_bytes": max(peak_memory(), children_peak_memory()),
         }
 
-    def _end(self, name: str, begun: TimeTaken) -> None:
+    def _end(self, name: str, start: TimeTaken) -> None:
         self._last = TimeTaken.now(self._remote)
-        self.book(name, self._last.since(begun))
+        self.book(name, self._last.since(start))

@@ -60,11 +60,13 @@ def askers() -> dict[str, str]:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     extras = project["optional-dependencies"]
     groups = {"service": [*project["dependencies"], *extras["analysis"], *extras["service"]]}
-    groups |= {f"extra `{name}`": wanted for name, wanted in extras.items() if name not in ("all", "dev")}
+    groups |= {
+        f"extra `{name}`": requirements for name, requirements in extras.items() if name not in ("all", "dev")
+    }
     groups["tests"] = extras["dev"]
     found: dict[str, str] = {}
-    for group, wanted in groups.items():
-        for requirement in wanted:
+    for group, requirements in groups.items():
+        for requirement in requirements:
             if not requirement.startswith("lineofaction["):  # another group
                 _follow(requirement, group, found)
     return found
@@ -74,8 +76,8 @@ def _follow(requirement: str, group: str, found: dict[str, str]) -> None:
     """Add a requirement and its requirements."""
     match = re.match(r"([A-Za-z0-9._-]+)(?:\[([^\]]*)\])?", requirement)
     assert match is not None
-    name, wanted = _plain(match[1]), (match[2] or "").split(",")
-    if name in found and wanted == [""]:
+    name, extras = _plain(match[1]), (match[2] or "").split(",")
+    if name in found and extras == [""]:
         return
     found.setdefault(name, group)
     try:
@@ -84,7 +86,7 @@ def _follow(requirement: str, group: str, found: dict[str, str]) -> None:
         return
     for line in further:
         extra = re.search(r"extra *== *['\"]([^'\"]+)['\"]", line)
-        if extra is None or extra[1] in wanted:
+        if extra is None or extra[1] in extras:
             _follow(line, group, found)
 
 

@@ -30,8 +30,8 @@ def changes_since(revision: str) -> Iterator[tuple[str, int, int]]:
     """Yield subject, lines that came and lines that went, of each file that changed."""
     folders = [house.replace(".", "/") for house in structure.HOUSES]
     command = ["git", "diff", "--numstat", "--no-renames", revision, "--", *folders]
-    told = subprocess.run(command, cwd=structure.ROOT, check=True, capture_output=True, text=True).stdout
-    for line in told.splitlines():
+    numstat = subprocess.run(command, cwd=structure.ROOT, check=True, capture_output=True, text=True).stdout
+    for line in numstat.splitlines():
         came, went, name = line.split("\t")
         if name.endswith(".py"):
             yield subject_of(Path(name)), int(came), int(went)

@@ -84,9 +84,9 @@ def velocities(ripple: FloatArray) -> FloatArray:
 def sound(ripples: Sequence[FloatArray], durations_ms: Sequence[int]) -> Recording:
     """Return the sound of each curve while it is shown, all at one scale."""
     counts = [round(1e-3 * duration * SAMPLE_RATE) for duration in durations_ms]
-    shown = np.repeat([velocities(ripple) for ripple in ripples], counts, axis=0)
+    velocity = np.repeat([velocities(ripple) for ripple in ripples], counts, axis=0)
     fade = np.hanning(round(FADE_S * SAMPLE_RATE) + 2)[1:-1]
-    level = np.column_stack([np.convolve(each, fade / fade.sum(), "same") for each in shown.T])
+    level = np.column_stack([np.convolve(each, fade / fade.sum(), "same") for each in velocity.T])
     phase = 2.0 * np.pi * MESH_HZ * np.arange(len(level)) / SAMPLE_RATE
     samples = (level * np.sin(phase[:, None] * np.arange(1, level.shape[1] + 1))).sum(axis=1)
     return Recording(samples, SAMPLE_RATE, "velocity of the transmission error; no sound pressure", "um/s")
@@ -144,9 +144,9 @@ def there_and_back(count: int) -> list[tuple[int, int]]:
 
 def moving(frames: Sequence[Image.Image], output: Path) -> None:
     """Write frames there and back as a GIF that repeats."""
-    shown = there_and_back(len(frames))
-    first, *others = (frames[index] for index, _ in shown)
-    durations = [duration for _, duration in shown]
+    sequence = there_and_back(len(frames))
+    first, *others = (frames[index] for index, _ in sequence)
+    durations = [duration for _, duration in sequence]
     first.save(output, save_all=True, append_images=others, duration=durations, loop=0, optimize=True)
 
 
@@ -155,10 +155,10 @@ def main(output: Path) -> None:
     case = tomllib.loads(CASE)
     found = [loa.flank(relieved(case, relief), torque_n_m=TORQUE) for relief in RELIEFS]
     moving([frame(panels(found, index)) for index in range(len(found))], output)
-    shown = there_and_back(len(found))
-    curves = [1e6 * found[index].deflection for index, _ in shown]
-    heard = sound(curves, [duration for _, duration in shown])
-    write_wav(output.with_suffix(".wav"), heard, heard.peak)
+    frames = there_and_back(len(found))
+    curves = [1e6 * found[index].deflection for index, _ in frames]
+    recording = sound(curves, [duration for _, duration in frames])
+    write_wav(output.with_suffix(".wav"), recording, recording.peak)
 
 
 if __name__ == "__main__":

@@ -61,9 +61,9 @@ def interpreter() -> Json:
 def bill() -> Json:
     """Return the bill of materials; the same packages give the same text."""
     packages = {str(one["bom-ref"]): one for one in (*python_packages(), *debian_packages())}
-    mine = next((one for one in packages.values() if one["name"] == _NAME), None)
-    parts = [interpreter(), *(one for _, one in sorted(packages.items()) if one is not mine)]
-    subject = {"component": {**mine, "type": "container"}} if mine is not None else {}
+    package = next((one for one in packages.values() if one["name"] == _NAME), None)
+    parts = [interpreter(), *(one for _, one in sorted(packages.items()) if one is not package)]
+    subject = {"component": {**package, "type": "container"}} if package is not None else {}
     serial = uuid.uuid5(uuid.NAMESPACE_URL, json.dumps([subject, parts]))
     return {
         "bomFormat": "CycloneDX",

@@ -36,11 +36,14 @@ def table(titles: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> str:
 
 def verbs(text: str) -> str:
     """Return a table of the verbs; those with a section of the page link to it."""
-    told = dict(commands(get_command(app), "loa"))
+    descriptions = dict(commands(get_command(app), "loa"))
     for name, study in STUDIES.items():
-        told.setdefault(f"loa {name}", study.description)
+        descriptions.setdefault(f"loa {name}", study.description)
     linked = {verb: f"[`{verb}`](#{verb.replace(' ', '-')})" for verb in re.findall(r"\n## `(.+)`\n", text)}
-    return table(("verb", "what it does"), ((linked.get(verb, f"`{verb}`"), told[verb]) for verb in told))
+    return table(
+        ("verb", "what it does"),
+        ((linked.get(verb, f"`{verb}`"), descriptions[verb]) for verb in descriptions),
+    )
 
 
 def commands(group: Any, name: str) -> Iterator[tuple[str, str]]:
@@ -76,9 +79,9 @@ def processes(api: dict[str, Any]) -> str:
     return table(("process", "of a", "further inputs, with their defaults"), rows)
 
 
-def default(told: dict[str, Any]) -> str:
+def default(schema: dict[str, Any]) -> str:
     """Return the default of a field if it is one value."""
-    value = told.get("default")
+    value = schema.get("default")
     return f" ({str(value).lower()})" if isinstance(value, bool | int | float | str) else ""
 
 

@@ -1,7 +1,12 @@
-"""Layer operators of the Helmholtz equation on a hull by NGSolve: the one file that loads it."""
+"""Layer operators of the Helmholtz equation on a hull by NGSolve: the one file that loads it.
+
+A hull is a closed surface of T triangles (panels) and N nodes. Entries are Galerkin products: an operator of
+a basis function, integrated over a panel.
+"""
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 from typing import Any
 
@@ -15,14 +20,16 @@ from model_studies.progress import Report, unreported
 from model_studies.workers import InProcess, Workers, divided
 
 BLOCK = 512
-"""Most panels whose rows of the operators make one task."""
+"""Largest number of panels in a block; the rows of a block are one task."""
 TESTED = "tested"
-"""Name of the panels of a block in the library's mesh."""
+"""Name, in the mesh of NGSolve, of the panels of a block: their rows are computed."""
+OTHER = "other"
+"""Name of all other panels in the mesh of NGSolve."""
 SECONDS, GROWTH = 1.40e-6, 2.24
-"""CPU seconds of one panel, and the power of their number by which they grow.
+"""Coefficient c, s, and exponent g of the CPU seconds of both operators, c T^g.
 
-Fitted to spheres of 500 to 2880 panels, within 1.2; 7040 panels of a box took 615 CPU s, this says 585. That
-is more than the square of assembly: larger operators miss the cache more often.
+Fitted to spheres of 500 to 2880 panels, within a factor of 1.2; a box of 7040 panels took 615 CPU s, where
+the law gives 585. The number of entries grows by T^2 alone; larger operators miss the cache more often.
 """
 BYTES, LIBRARY = 110.0, 1e8
 """Memory of the operators over the square of the number of panels, bytes (5.9 GB measured with 7040 panels),
@@ -41,7 +48,7 @@ def layer_operators(
     done: Report = unreported,
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> tuple[ComplexArray, ComplexArray]:
-    """Return the dense single layer (T, T) and double layer (T, N), tested with the panels, m^3 and m^2.
+    """Return the dense single layer (T, T), m^3, and double layer (T, N), m^2, each tested with the panels.
 
     Kernel e^{+ikr}/(4 pi r); the single layer acts on constants of the panels, the double layer on hats of
     the nodes. Singular pairs are integrated by the library's own transformations. `done` is called with the
@@ -50,7 +57,8 @@ def layer_operators(
     panels = len(hull.triangles)
     single = np.empty((panels, panels), dtype=complex)
     double = np.empty((panels, len(hull.nodes)), dtype=complex)
-    ends = np.linspace(0, panels, -(-panels // BLOCK) + 1).astype(int).tolist()
+    block_count = math.ceil(panels / BLOCK)
+    ends = np.linspace(0, panels, block_count + 1).astype(int).tolist()
     blocks = list(pairwise(ends))
     seconds = operators_cost(panels).seconds
     rows = divided(workers, _layer_rows, (hull, wavenumber), blocks, seconds)
@@ -61,7 +69,7 @@ def layer_operators(
 
 
 def _layer_rows(shared: tuple[Hull, float], block: tuple[int, int]) -> tuple[ComplexArray, ComplexArray]:
-    """Return the rows of both operators that are tested with the panels of a block: one task."""
+    """Return the rows of the single and the double layer tested with the panels first to end of a block."""
     try:
         import ngsolve  # noqa: PLC0415 (an extra)
         from ngsolve.bem import HelmholtzDL, HelmholtzSL  # noqa: PLC0415
@@ -85,7 +93,7 @@ def _mesh(hull: Hull, block: tuple[int, int]) -> Any:
     from netgen.meshing import Element2D, FaceDescriptor, Mesh, MeshPoint, Pnt  # noqa: PLC0415
 
     mesh = Mesh(dim=3)
-    for number, name in ((1, TESTED), (2, "other")):
+    for number, name in ((1, TESTED), (2, OTHER)):
         mesh.Add(FaceDescriptor(surfnr=number, domin=1, bc=number))
         mesh.SetBCName(number - 1, name)
     points = [mesh.Add(MeshPoint(Pnt(*(float(value) for value in node)))) for node in hull.nodes]
@@ -96,7 +104,7 @@ def _mesh(hull: Hull, block: tuple[int, int]) -> Any:
 
 
 def _dense(matrix: Any, block: tuple[int, int]) -> ComplexArray:
-    """Return the rows of a block, which are all that there are."""
+    """Return the rows of a block as a dense array; the sparse `matrix` has entries in these rows only."""
     rows, columns, values = (np.asarray(part) for part in matrix.COO())
     entries = np.zeros((block[1] - block[0], matrix.width), dtype=complex)
     entries[rows - block[0], columns] = values

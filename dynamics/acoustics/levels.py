@@ -27,7 +27,7 @@ POLES = (20.598997, 107.65265, 737.86223, 12194.217)  # Hz, of [1]_: twofold, si
 ENDS = (0.05, 0.95)
 """Quantiles at which a band ends: nine of ten cases lie between."""
 CASES = 64
-"""Joint cases of all parameters; each end leaves out 5 % of further cases, give or take 2 %."""
+"""Joint cases of all parameters. A quantile of so many cases leaves out 5 % of the population within 2 %."""
 JOINTLY = "jointly"
 """Contribution of parameters that act on each other, and of extremes inside a range."""
 SEED = 22
@@ -53,7 +53,7 @@ def mean_square_level(square: FloatArray) -> FloatArray:
 
 
 def a_weighting(frequency: ArrayLike) -> FloatArray:
-    """Return the A-weighting in dB, 0 at 1 kHz; `FLOOR` at most below at 0 Hz.
+    """Return the A-weighting in dB, 0 at 1 kHz and never below `FLOOR`, which it reaches at 0 Hz.
 
     `frequency`: Hz, any shape, at least 0.
     """
@@ -175,7 +175,7 @@ def level_bands(ranges: Mapping[str, Range], levels: FloatArray) -> tuple[LevelB
         In dB, of each of the `band_cases` of the ranges.
     """
     middle, deviation = levels[0], levels - levels[0]
-    first = len(levels) - len(ENDS) * len(ranges)  # of the parameters alone
+    first = len(levels) - len(ENDS) * len(ranges)  # row of the first case in which one parameter varies alone
     low, high = quantiles(deviation[1:first] if ranges else deviation, ENDS)
     ends = deviation[first:].reshape(len(ranges), len(ENDS), middle.size)
     alone = dict(zip(ranges, ends, strict=True))
@@ -199,7 +199,7 @@ def _parts(reached: FloatArray, alone: Mapping[str, FloatArray]) -> dict[str, Fl
     square = np.maximum(reached, 0.0) ** 2
     squares = {name: np.maximum(value, 0.0) ** 2 for name, value in alone.items()}
     sum_of_squares = np.sum([0.0 * square, *squares.values()], axis=0)
-    share = np.minimum(square / np.maximum(sum_of_squares, 1e-300), 1.0)
+    share = np.minimum(square / np.maximum(sum_of_squares, 1e-300), 1.0)  # 1e-300: no division by zero
     squares = {name: share * value for name, value in squares.items()}
     return {
         name: np.sqrt(value)

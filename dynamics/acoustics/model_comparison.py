@@ -1,7 +1,7 @@
 """The radiation models side by side for one vibration: level, error, cost predicted and measured.
 
 Models differ in what they neglect. `ka` is the wavenumber times the radius of the sphere with the hull's
-volume.
+volume. Shapes: T panels, M shapes of vibration.
 """
 
 from __future__ import annotations
@@ -34,15 +34,25 @@ from model_studies.workers import InProcess
 
 BLOCK = 512  # panels whose mutual resistances are held at a time
 PAIR, PAIR_SHAPE = 48e-9, 0.1e-9
-"""CPU seconds of a pair of panels: its resistance, and for each shape."""
+"""CPU seconds for a pair of panels: for its resistance, and in addition for each shape; measured."""
 WAVE, WAVE_SHAPE = 11e-9, 0.065e-9
-"""CPU seconds of a panel and a plane wave: its phase, and for each shape; 720 to 13 520 panels."""
-OFF_AT, OFF = (1.5, 2.5), ((-7.0, -9.0), (2.0, 1.0))
-"""Values of ka, and least and largest error of monopoles at each, dB, on spheres, a box and modes of five
-gear cases.
+"""CPU seconds for a panel and a plane wave: for its phase, and in addition for each shape.
+
+Measured on hulls of 720 to 13 520 panels.
 """
+ERROR_KA, MONOPOLE_ERRORS = (1.5, 2.5), ((-7.0, -9.0), (2.0, 1.0))
+"""Values of ka, and the least and the largest error of monopoles at them, dB.
+
+Measured on spheres, a box and modes of five gear cases.
+"""
+BAFFLE_GAIN = 3.0
+"""Level of the Rayleigh integral above that of monopoles, dB: half the solid angle has twice the power."""
 WAVES_IN_MEMORY = 4
-"""Arrays of phases."""
+"""Arrays of the phases of a block of plane waves that are in memory at once."""
+ARRAYS_OF_PAIRS = 6.0
+"""Arrays of a block of pairs in memory at once: three components of the distances, and their squares."""
+ARRAYS_OF_SHAPES = 3.0
+"""Arrays of all shapes on all panels that are in memory at once."""
 
 WORK = "radiation by {}"
 """Name of a model at one frequency in the log of runs."""
@@ -54,8 +64,8 @@ class ElementalRadiators:
 
     baffled: bool = False
     """True: every panel lies in the same rigid plane (Rayleigh integral, exact for it). False: every panel is
-    a monopole in free space; the hull neither scatters nor shadows. It is right for what breathes below ka =
-    0.5, and 3.5 dB low for what oscillates as a whole there; see `multipoles`.
+    a monopole in free space; the hull neither scatters nor shadows. Below ka = 0.5 the power of a vibration
+    that changes the volume is right, that of a rigid-body oscillation 3.5 dB low; see `multipoles`.
     """
 
     @property
@@ -85,32 +95,34 @@ class ElementalRadiators:
         """Predict the cost: by plane waves or pairs of panels, whichever `resistance` takes."""
         waves = 2 * order_of(ka) ** 2
         if self.baffled or waves >= panels:
-            return Cost((PAIR + PAIR_SHAPE * shapes) * panels**2, 8.0 * panels * (6.0 * BLOCK + 3.0 * shapes))
+            seconds = (PAIR + PAIR_SHAPE * shapes) * panels**2
+            return Cost(seconds, 8.0 * panels * (ARRAYS_OF_PAIRS * BLOCK + ARRAYS_OF_SHAPES * shapes))
         seconds = (WAVE + WAVE_SHAPE * shapes) * waves * panels
-        return Cost(seconds, 8.0 * (WAVES_IN_MEMORY * WAVES + 3.0 * panels * shapes))
+        return Cost(seconds, 8.0 * (WAVES_IN_MEMORY * WAVES + ARRAYS_OF_SHAPES * panels * shapes))
 
     def error_band(self, ka: float) -> tuple[float, float]:
-        """Return what monopoles were off on spheres, boxes and gear cases, but for interior resonances.
+        """Return the least and largest error, dB, that monopoles had on spheres, boxes and gear cases.
 
-        They fall silent there, as a pulsating sphere near ka = pi. The Rayleigh integral is 3 dB above them.
+        The band does not hold at interior resonances, where monopoles have no power: a pulsating sphere has
+        one near ka = pi.
         """
-        low, high = (float(np.interp(ka, OFF_AT, values)) for values in OFF)
-        return (low + 3.0, high + 3.0) if self.baffled else (low, high)
+        low, high = (float(np.interp(ka, ERROR_KA, values)) for values in MONOPOLE_ERRORS)
+        return (low + BAFFLE_GAIN, high + BAFFLE_GAIN) if self.baffled else (low, high)
 
     def panel_power(
         self, hull: Hull, frequency: float, normal_velocity: ComplexArray, air: Air
     ) -> FloatArray:
-        """Return the power that each panel gives to the sound of all, (T,), W.
+        """Return the power (T,), W, that each panel radiates in the pressure of all panels.
 
         Raises `InputError`: the panels are too large for the wavelength.
         """
         wavenumber = self._resolved(hull, frequency, air)
         flow = (hull.areas * normal_velocity)[:, None]
         if self._by_waves(hull, wavenumber):
-            felt = mutual_pressure(hull.centers, flow, wavenumber)
+            pressure = mutual_pressure(hull.centers, flow, wavenumber)
         else:
-            felt = _by_pairs(hull, flow, wavenumber)
-        return np.asarray(0.5 * self._factor(wavenumber, air) * (flow.conj() * felt)[:, 0].real)
+            pressure = _by_pairs(hull, flow, wavenumber)
+        return np.asarray(0.5 * self._factor(wavenumber, air) * (flow.conj() * pressure)[:, 0].real)
 
     def _resolved(self, hull: Hull, frequency: float, air: Air) -> float:
         """Return the wavenumber, 1/m, whose waves the panels resolve."""
@@ -194,7 +206,7 @@ def compare_models(
     """Compute the sound power of a vibration (T,) in m/s at a frequency in Hz by several models.
 
     A model that refuses the hull or the frequency, or whose extra is not installed, is left out. Raises
-    `InputError`: nothing moves.
+    `InputError`: the velocity is 0 everywhere.
 
     Parameters
     ----------
@@ -203,12 +215,14 @@ def compare_models(
     offered : sequence of RadiationModel, optional
         Further models whose cost and error are stated; they are not computed.
     cache : Path, optional
-        Directory of what is known of the host, see `work_cost.on_this_host`.
+        Directory of the host's measured speeds, see `work_cost.on_this_host`.
     """
     moving = positive("normal_velocity", mean_square_velocity(hull, normal_velocity), "Nothing moves.")
+    # the power of as large a plane wave with the same mean square velocity: efficiency 1
     plane, wavenumber = air.impedance * hull.area * moving, 2.0 * np.pi * frequency / air.sound_speed
     by_name = {model.model_name: model for model in models}
     listed = {model.model_name: model for model in (*offered, *models)}
+    # the number of plane waves, and with it the cost, follows from the outermost panel
     panels, outer = len(hull.triangles), wavenumber * hull.outer_radius
     reference = {name: model.cost(panels, outer, 1) for name, model in listed.items()}
     predicted = {name: on_this_host(WORK.format(name), cost, cache) for name, cost in reference.items()}

@@ -55,13 +55,13 @@ def _free_sky(corners: FloatArray) -> FloatArray:
     middle = 0.5 * (middle.min(axis=0) + middle.max(axis=0))
     radius = float(np.linalg.norm(corners - middle, axis=2).max())
     scaled = (corners - middle) * (PIXELS / 2.0 / radius)
-    seen, total = np.zeros(len(corners)), np.zeros(len(corners))
+    visible, total = np.zeros(len(corners)), np.zeros(len(corners))
     for view, weight in zip(*directions(ORDER), strict=True):
         cosine = normal @ view
         share = np.where(cosine > STEEP, weight * cosine, 0.0)
         total += share
-        seen += share * _visible(scaled, view)
-    return np.asarray(seen / np.maximum(total, 1e-300))
+        visible += share * _visible(scaled, view)
+    return np.asarray(visible / np.maximum(total, 1e-300))
 
 
 def _visible(corners: FloatArray, view: FloatArray) -> FloatArray:

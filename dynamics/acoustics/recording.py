@@ -32,7 +32,8 @@ LOWEST = 20.0
 """
 SLOPE = 4  # order of the high-pass filter, which is run forwards and backwards
 FADE = 0.01  # s at both ends
-COMMENT = ("quantity", "unit", "full_scale")
+COMMENT = ("quantity", "unit", "full_scale")  # fields of the comment in a WAV file
+MAX_SAMPLE_RATE = 10_000_000  # Hz
 
 
 @brief
@@ -58,7 +59,7 @@ class Recording:
         samples = np.asarray(self.samples, dtype=float)
         if samples.ndim != 1 or samples.size < 2 or not np.all(np.isfinite(samples)):
             raise InputError("samples", samples.shape, "at least two finite samples, (N,)")
-        integer("sample_rate", self.sample_rate, 1, 10_000_000)
+        integer("sample_rate", self.sample_rate, 1, MAX_SAMPLE_RATE)
         object.__setattr__(self, "samples", samples)
 
     @property
@@ -77,15 +78,15 @@ class Recording:
         Up to 0.45 of the lower rate contents keep their level within 0.001 dB; above 0.55 of it they lose at
         least 70 dB.
         """
-        integer("sample_rate", sample_rate, 1, 10_000_000)
+        integer("sample_rate", sample_rate, 1, MAX_SAMPLE_RATE)
         samples = _at_rate(self.samples, self.sample_rate, sample_rate)
-        return Recording(samples, sample_rate, self.quantity, self.unit)
+        return Recording(samples=samples, sample_rate=sample_rate, quantity=self.quantity, unit=self.unit)
 
 
 def _at_rate(values: FloatArray, sample_rate: float, to_rate: int) -> FloatArray:
     """Return a series (T,) at another rate as `Recording.resampled` does; both rates above 0 Hz.
 
-    Their ratio is taken as one of integers, within 3e-9: the lower rate has at most 20 000 steps.
+    Their ratio is replaced by a fraction whose denominator is at most `LARGEST_STEP`, within 3e-9.
     """
     lower = min(sample_rate, to_rate)
     ratio = Fraction(max(sample_rate, to_rate) / lower).limit_denominator(LARGEST_STEP)
@@ -126,7 +127,7 @@ def order_recording(
     for tone, peaks in zip(frequency, amplitude, strict=True):
         phase = _turned(time, tone, at) + np.interp(at, time, np.unwrap(np.angle(peaks)))
         samples += np.interp(at, time, np.abs(peaks)) * np.cos(phase)
-    return Recording(samples, sample_rate, quantity, unit)
+    return Recording(samples=samples, sample_rate=sample_rate, quantity=quantity, unit=unit)
 
 
 def _turned(time: FloatArray, frequency: FloatArray, at: FloatArray) -> FloatArray:
@@ -189,7 +190,7 @@ def series_recording(
     rise = 0.5 - 0.5 * np.cos(np.pi * np.arange(fade) / fade)
     samples[:fade] *= rise
     samples[samples.size - fade :] *= rise[::-1]
-    return Recording(samples, to_rate, quantity, unit)
+    return Recording(samples=samples, sample_rate=to_rate, quantity=quantity, unit=unit)
 
 
 def force_recording(
@@ -252,6 +253,7 @@ def wav_file(recording: Recording, full_scale: float) -> bytes:
     entries = (recording.quantity, recording.unit, full_scale)
     comment = json.dumps(dict(zip(COMMENT, entries, strict=True))).encode("ascii")
     information = b"INFO" + _chunk(b"ICMT", comment + b"\0")
+    # without the head of the file, RIFF and its length, which is written anew
     body = sound.getvalue()[8:] + _chunk(b"LIST", information)
     return _chunk(b"RIFF", body)
 

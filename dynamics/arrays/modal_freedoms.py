@@ -93,10 +93,10 @@ def add_modal_motion(modal: ModalFreedoms, q: FloatArray, coordinate: FloatArray
 @inner_sums
 def modal_loss(modal: ModalFreedoms, velocity: FloatArray) -> float:
     """Return the power lost in the modes' own dampers at `velocity` (n,), W."""
-    lost, first = 0.0, np.uint64(modal.first)
+    power, first = 0.0, np.uint64(modal.first)
     for i in range(np.uint64(modal.damping.size)):
-        lost += modal.damping[i] * velocity[first + i] * velocity[first + i]
-    return lost
+        power += modal.damping[i] * velocity[first + i] * velocity[first + i]
+    return power
 
 
 @inner

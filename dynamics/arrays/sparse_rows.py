@@ -1,7 +1,7 @@
 """Matrices by the entries that are not 0, and their compiled products.
 
-Their indices are unsigned where they are used: a signed one could count from the end, and asking takes as
-long as the product.
+The products use unsigned indices: a negative index counts from the end of an array, and testing the sign of
+each would take as long as the product.
 """
 
 from __future__ import annotations
@@ -51,10 +51,10 @@ def _row_runs(rows: _SparseRows) -> RowRuns:
     length = np.diff(np.append(starts, entry.size))
     first = np.searchsorted(row[begins], np.arange(rows.first.size))
     return RowRuns(
-        first.astype(np.int64),
-        starts.astype(np.int64),
-        rows.column[starts].astype(np.int64),
-        length.astype(np.int64),
+        first=first.astype(np.int64),
+        entry=starts.astype(np.int64),
+        column=rows.column[starts].astype(np.int64),
+        length=length.astype(np.int64),
     )
 
 
@@ -101,7 +101,7 @@ def sparse_matrices(
 ) -> SparseMatrices:
     """Lay out the matrices of a system: (n, n), `direction` (R, n) and `position_gradient` (m, n).
 
-    `others` (..., n) are all further rows that act on its freedoms, or that these act on.
+    `others` (..., n) are all further rows over the freedoms by which forces act on them or read them.
     """
     coupling = joined_by_chains((mass != 0.0) | (damping != 0.0) | (stiffness != 0.0))
     mobility = np.where(joined_by_chains(mass != 0.0), np.linalg.inv(mass), 0.0)

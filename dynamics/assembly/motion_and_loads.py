@@ -1,7 +1,8 @@
 """The arrays of the kinematic motion, the load torques and the drives' torques.
 
-Axis letters: k laws of the kinematic motion (drives, then free rotations), l loads, m meshes and f turns of
-frames, cages and loads, n freedoms, N columns for the six freedoms of every rotor.
+Axis letters: k laws of the kinematic motion (drives, then free rotations), l loads, m meshes and f rotations
+of frames, cages and loads, n freedoms that are solved for, N freedoms of all bodies (`columns`), R local
+coordinates of the force elements.
 """
 
 from __future__ import annotations
@@ -27,10 +28,10 @@ from dynamics.types import FloatArray
 
 
 def kinematic_motion(mechanism: Mechanism, freedoms: Freedoms) -> KinematicMotion:
-    """Return the kinematic motion. Behind the positions of the meshes come the turns of `phases`."""
+    """Return the kinematic motion of the positions of the meshes, then of the rotations by `phases`."""
     scene, kinematics, vectors = mechanism.scene, mechanism.kinematics, mechanism.vectors
     laws = [part.speed for part in scene.references]
-    turned = [revolutions(law) for law in laws]
+    starts = [revolutions(law) for law in laws]  # revolutions at the start of each piece: whole, remainder
     # a drive imposes its rotation: no freedom, -1
     free = [-1] * len(scene.drives) + [
         freedoms.find(shaft, ROTATION) for shaft in kinematics.law_shaft[len(scene.drives) :]
@@ -40,8 +41,8 @@ def kinematic_motion(mechanism: Mechanism, freedoms: Freedoms) -> KinematicMotio
     shape = (len(rates), len(laws))
     return KinematicMotion(
         speed=Cubics.packed([law.polynomials() for law in laws]),
-        full_turns=np.concatenate([full_turns for full_turns, _ in turned]),
-        fraction=np.concatenate([fraction for _, fraction in turned]),
+        full_turns=np.concatenate([full_turns for full_turns, _ in starts]),
+        fraction=np.concatenate([fraction for _, fraction in starts]),
         numerator=np.array([[rate.numerator for rate in row] for row in rates], dtype=np.int64).reshape(
             shape
         ),
@@ -68,6 +69,7 @@ def load_torques(mechanism: Mechanism, freedoms: Freedoms) -> Loads:
         shaft = scene.shaft_index(load.shaft)
         direction[row] -= kinematics.sense[shaft] * turn_row(rotors, shaft, load.position)
     rotation = direction[:, 6 * np.arange(len(rotors)) + ROTATION]
+    # work of a unit torque as the shaft of a law turns; 0 for laws whose drive is not rigid
     on_drive = direction @ _shaft_motions(mechanism).T * np.array(kinematics.rigid)
     return Loads(
         torque=Cubics.packed([load.torque.polynomials() for load in scene.loads]),
@@ -95,10 +97,10 @@ def drive_torques(
     damping = supports.matrix(supports.damping, strained, moves)
     preloaded = np.zeros(turned.shape[0])
     if seats.name:  # planet bearings, which a carrier's rotation strains
-        seated = turned @ seats.motion.T
-        stiffness += seated @ seats.stiffness @ freedoms.keep(seats.motion)
-        damping += seated @ seats.damping @ freedoms.keep(seats.motion)
-        preloaded = seated @ seats.preload
+        seat_strain = turned @ seats.motion.T
+        stiffness += seat_strain @ seats.stiffness @ freedoms.keep(seats.motion)
+        damping += seat_strain @ seats.damping @ freedoms.keep(seats.motion)
+        preloaded = seat_strain @ seats.preload
     if couplings.name:
         twisted = np.einsum("cki,ai->cka", couplings.motion, turned)  # c couplings, k strains
         strains = freedoms.keep(couplings.motion)

@@ -11,9 +11,9 @@ Matrix = tuple[tuple[float, ...], ...]
 
 
 PRECISION = 1e-9
-"""Relative precision to which entries count."""
+"""Relative precision of stated entries: smaller deviations from a valid matrix are rounding."""
 OPERATIONS = 10.0
-"""Roundings per term of a row: turning, adding and condensing each leave some."""
+"""Roundings per term of a row of a computed matrix: rotation, summation and condensation each leave some."""
 
 
 def matrix_rows(matrix: FloatArray) -> Matrix:
@@ -35,8 +35,8 @@ def check_matrix(
     sizes : tuple of int
         Allowed numbers of rows.
     precision : float
-        Relative precision of the entries. In units in which every diagonal entry is 1 that many times the
-        number of rows is how far below zero an eigenvalue of n such rows may be (Weyl).
+        Relative precision of the entries. In units in which every diagonal entry is 1, an eigenvalue may be
+        below zero by the precision times the number of rows (Weyl's bound).
     """
     allowed = " or ".join(f"{size} by {size}" for size in sizes)
     if len({len(row) for row in rows}) > 1:
@@ -57,9 +57,9 @@ def check_matrix(
 def _least_eigenvalue(matrix: FloatArray, precision: float) -> float:
     """Return the least eigenvalue in units in which the diagonal is 1.
 
-    The program that computed the entries left an error of n eps of the largest entry, with 1 m as lever
-    between forces and moments. A diagonal entry so small that this is more than `precision` of it is measured
-    by that instead.
+    The program that computed the n rows left an error in every entry, of `OPERATIONS` n eps times the largest
+    entry; forces and moments are compared by a lever of 1 m. A diagonal entry of which this error is more
+    than `precision` says little. It is replaced by the error over `precision` in the units.
     """
     rounding = OPERATIONS * len(matrix) * float(np.finfo(float).eps) * float(np.max(np.abs(matrix)))
     if rounding == 0.0:
@@ -69,7 +69,10 @@ def _least_eigenvalue(matrix: FloatArray, precision: float) -> float:
 
 
 def least_share(matrix: FloatArray) -> float:
-    """Return the least eigenvalue of a symmetric matrix in units in which its diagonal is 1; 0 at a zero."""
+    """Return the least eigenvalue of a symmetric matrix in units in which its diagonal is 1.
+
+    0 if a diagonal entry is 0 or negative.
+    """
     diagonal = np.diag(matrix)
     if float(np.min(diagonal)) <= 0.0:
         return 0.0
@@ -83,13 +86,14 @@ def congruent(matrix: FloatArray, motion: FloatArray) -> FloatArray:
     Parameters
     ----------
     matrix : (p, p) array
-        Positive semidefinite to rounding; what is not is projected away.
+        Positive semidefinite within rounding; negative eigenvalues are set to 0.
     motion : (p, n) array
 
     Returns
     -------
     (n, n) array
-        Entries are good to eps of the root of the product of their diagonal entries.
+        The error of entry (i, j) is about eps times the square root of the product of the diagonal entries i
+        and j.
     """
     eigenvalue, vector = np.linalg.eigh(0.5 * (matrix + matrix.T))
     factor = np.sqrt(np.maximum(eigenvalue, 0.0))[:, None] * (vector.T @ motion)

@@ -55,11 +55,13 @@ class RollerElements(NamedTuple):
     def packed(cls, rows: Sequence[tuple[RollerBearing, RowPlacement]]) -> RollerElements:
         """Lay out `rows` with their placements."""
         figures = [_figures(bearing, at) for bearing, at in rows]
-        places = [bearing.lamina_places for bearing, _ in rows]
+        coordinates = [bearing.lamina_places for bearing, _ in rows]
         drops = [
-            2.0 * bearing.drop(coordinate) for (bearing, _), coordinate in zip(rows, places, strict=True)
+            2.0 * bearing.drop(coordinate) for (bearing, _), coordinate in zip(rows, coordinates, strict=True)
         ]
-        places_over_lever = [coordinate / at.lever for (_, at), coordinate in zip(rows, places, strict=True)]
+        places_over_lever = [
+            coordinate / at.lever for (_, at), coordinate in zip(rows, coordinates, strict=True)
+        ]
         return cls(
             rollers=np.array([bearing.count * at.copies for bearing, at in rows], dtype=np.int64),
             first=np.cumsum([0, *(bearing.laminae for bearing, _ in rows)], dtype=np.int64),

@@ -29,7 +29,7 @@ of an element.
 PASSING_ANGLES = 8
 """Angles of the cage within one element pitch at which the motion of the shaft is computed."""
 MIN_PRESS = 1e-6
-"""Approach, m, of one element whose force is the least typical load, as a bearing may be unloaded."""
+"""Approach, m, of one element whose force is the least typical load; an unloaded bearing has no stiffness."""
 BALL_EXPONENT = 1.5
 """Exponent of the approach in the force of a ball (Hertzian point contact)."""
 

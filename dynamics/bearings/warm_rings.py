@@ -88,8 +88,8 @@ def warm_rings(
     """
     across, interference = row.pitch_diameter * (strain[1] - strain[0]), None
     if fits is not None:
-        grown, interference = _by_fits(row.raceways, fits, strain, shaft, housing)
-        across += grown
+        growth, interference = _by_fits(row.raceways, fits, strain, shaft, housing)
+        across += growth
     angle = abs(row.contact_angle)
     return WarmRings(across / (2.0 * math.tan(angle)) if angle else across, interference)
 
@@ -112,5 +112,5 @@ def _by_fits(
 
     at_shaft = pressed(shaft, inner, fits.shaft_interference, on_shaft)
     at_bore = pressed(outer, housing, fits.housing_interference, in_bore)
-    grown = outer.far_side(outer.outer) * at_bore - inner.far_side(inner.bore) * at_shaft
-    return grown, (on_shaft, in_bore)
+    growth = outer.far_side(outer.outer) * at_bore - inner.far_side(inner.bore) * at_shaft
+    return growth, (on_shaft, in_bore)

@@ -91,12 +91,12 @@ class BearingLoad:
 
 def bearing_loads(system: System, rest: Rest, strain: BearingStrain) -> tuple[BearingLoad, ...]:
     """Return the load of every bearing, mean over the rest positions."""
-    places, force = supports_by_name(system.rotors), rest.bearing_force
+    supports, force = supports_by_name(system.rotors), rest.bearing_force
     speed = system.kinematics.float_ratio @ [drive.speed.extreme for drive in system.scene.drives]
     rows = {bearing.name: bearing for bearing in system.scene.rolling_bearings}
     loads = []
     for k, name in enumerate(system.supports.name):
-        index, part = places[name]
+        index, part = supports[name]
         carrier = system.rotors[index].carrier if isinstance(part, PlanetBearing) else None
         carrier_speed = 0.0 if carrier is None else speed[carrier]
         loads.append(

@@ -20,27 +20,27 @@ from dynamics.types import FloatArray
 
 HALVINGS = 50  # bisections that find the clearance
 FREE = 1e-12
-"""Part of the force up to which an element does not press."""
+"""Force over that at the whole displacement, up to which an element exerts no force."""
 
 
 def _free_fraction(arrays: SystemArrays, element: int, coordinate: FloatArray) -> float:
     """Return the largest fraction of `coordinate` (p,) at which an element exerts no force; bisection."""
     local = make_local(arrays.elements, arrays.position_gradient.shape[0])
     rows = slice(arrays.elements.first[element], arrays.elements.first[element + 1])
-    system, at = by_address(arrays), by_address(local)
+    system, state = by_address(arrays), by_address(local)
 
-    def pressed(fraction: float) -> float:
+    def force(fraction: float) -> float:
         local.coordinate[rows] = fraction * coordinate
-        _evaluate(system, at, element)
+        _evaluate(system, state, element)
         return float(np.linalg.norm(local.force[rows]))
 
-    limit = FREE * pressed(1.0)
-    if pressed(0.0) > limit:
+    limit = FREE * force(1.0)
+    if force(0.0) > limit:  # preloaded: there is no clearance
         return 0.0
     low, high = 0.0, 1.0
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if pressed(middle) <= limit else (low, middle)
+        low, high = (middle, high) if force(middle) <= limit else (low, middle)
     return low
 
 
@@ -70,48 +70,53 @@ class BearingStrain:
 
 
 def bearing_strain(system: System, motion: FloatArray, coordinate: FloatArray) -> BearingStrain:
-    """Split the displacements at the bearings.
+    """Split the displacements at the bearings into elasticity and clearance of the bearing, and its seat.
 
-    Clearance is the largest fraction of an element's displacement, in its own directions and in the sense in
-    which it is displaced, at which it does not press yet. Where springs hold the bearing in these directions
-    as well, there is none.
+    Clearance is the largest fraction of an element's displacement, in the directions of the element and in
+    the sense of the displacement, at which it does not press yet. If springs hold the bearing in these
+    directions as well, the clearance is 0.
 
     Parameters
     ----------
     motion : (N,) array
-        All freedoms of all rotors.
+        Displacements of all freedoms of all rotors.
     coordinate : (R,) array
-        Local coordinates of the force elements there.
+        Local coordinates of the force elements at these displacements.
     """
-    places = supports_by_name(system.rotors)
+    supports = supports_by_name(system.rotors)  # index of the rotor, and bearing
     names, rotors = system.supports.name, system.rotors
-    strain = np.array([seat_motion(rotors, *places[name]) @ motion for name in names]).reshape(-1, SEAT)
+    strain = np.array([seat_motion(rotors, *supports[name]) @ motion for name in names]).reshape(-1, SEAT)
     carried = np.array([carried_seat(rotors, name) @ motion for name in names]).reshape(-1, SEAT)
     total = strain + carried
     seat = carried + _condensed_seats(system, total)
-    yielded, clearance, elements = total - seat, np.zeros_like(total), system.arrays.elements
-    for e, at in enumerate(system.bearings, start=len(system.elements) - len(system.bearings)):
-        along = np.linalg.pinv(at.directions) @ at.directions
-        if np.any(np.abs(places[names[at.support]][1].seat_stiffness @ along) > 0.0):
+    in_bearing, clearance, elements = total - seat, np.zeros_like(total), system.arrays.elements
+    # the elements of bearings that are not linear are the last ones
+    for e, bearing in enumerate(system.bearings, start=len(system.elements) - len(system.bearings)):
+        projector = np.linalg.pinv(bearing.directions) @ bearing.directions  # onto the element's directions
+        _, support = supports[names[bearing.support]]
+        if np.any(np.abs(support.seat_stiffness @ projector) > 0.0):
             continue
         rows = slice(elements.first[e], elements.first[e + 1])
         free = _free_fraction(system.arrays, e, coordinate[rows])
-        clearance[at.support] += free * along @ yielded[at.support]
-    return BearingStrain(yielded - clearance, clearance, seat)
+        clearance[bearing.support] += free * projector @ in_bearing[bearing.support]
+    return BearingStrain(elastic=in_bearing - clearance, clearance=clearance, seat=seat)
 
 
 def _condensed_seats(system: System, total: FloatArray) -> FloatArray:
-    """Return the motions (b, 5) of seats in massless housings by those of the shafts in them (b, 5)."""
-    places, names = supports_by_name(system.rotors), list(system.supports.name)
+    """Return the motions (b, 5) of seats in massless housings, by the displacements `total` (b, 5).
+
+    A massless housing rests in balance with the forces of its bearings at each moment.
+    """
+    supports, names = supports_by_name(system.rotors), list(system.supports.name)
     displacement = np.zeros_like(total)
     for housing in condensed_housings(system.scene, system.rotors):
-        parts = [places[name][1] for name in housing.bushings]
-        at = [names.index(name) for name in housing.bushings]
-        stiffness = np.zeros((SEAT * len(at), SEAT * len(at)))
+        parts = [supports[name][1] for name in housing.bushings]
+        indices = [names.index(name) for name in housing.bushings]
+        stiffness = np.zeros((SEAT * len(indices), SEAT * len(indices)))
         for k, part in enumerate(parts):
             block = slice(SEAT * k, SEAT * k + SEAT)
             stiffness[block, block] = part.seat_stiffness
         preload = np.concatenate([part.preload or np.zeros(SEAT) for part in parts])
-        pushed = stiffness @ total[at].ravel() - preload
-        displacement[at] = (seat_compliance(housing, stiffness) @ pushed).reshape(-1, SEAT)
+        force = stiffness @ total[indices].ravel() - preload
+        displacement[indices] = (seat_compliance(housing, stiffness) @ force).reshape(-1, SEAT)
     return displacement

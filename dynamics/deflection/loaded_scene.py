@@ -199,8 +199,8 @@ def _toward(kinematics: Kinematics, shaft: int, leader: _Leader) -> float:
 def _factor(scene: Scene, speed: float, torque: float) -> float:
     """Return the factor on the loads with which the leading shaft carries `torque`, N m."""
     loads, further = leading_torque(scene, leader_of(scene), speed)
-    by_loads = torque - further
-    if loads == 0.0 or by_loads / loads <= 0.0:
+    from_loads = torque - further
+    if loads == 0.0 or from_loads / loads <= 0.0:
         bound = above(further, "N m", "what torques by speed and of forces take,") if loads else "left out"
         raise InputError("torque", torque, bound, "The scene's loads at t = 0 must resist the leading shaft.")
-    return by_loads / loads
+    return from_loads / loads

@@ -41,21 +41,21 @@ def rest_over(system: System, times: FloatArray) -> Rest:
     solutions = [static_equilibrium(system, float(time)) for time in times]
     q = np.array([solution.displacement for solution in solutions])
     v = np.zeros_like(q)
-    seen = observe(system.arrays, times, q, v)
-    on_bearings = system.bearing_force(seen.force, q, v)
+    observed = observe(system.arrays, times, q, v)
+    on_bearings = system.bearing_force(observed.force, q, v)
     force = np.zeros((times.size, len(system.supports.name), 5))
     rows = min(on_bearings.shape[1], 5)
     force[:, :, :rows] = np.moveaxis(on_bearings, 2, 0)[:, :, :rows]
-    mesh_force = seen.force[system.driving_rows].T
+    mesh_force = observed.force[system.driving_rows].T
     largest = float(np.max(np.abs(mesh_force), initial=0.0))
     residual = float(np.max([solution.residual for solution in solutions]))
     return Rest(
         status=max(solution.status for solution in solutions),
         residual=residual / largest if largest > 0.0 else float("inf"),
         motion=q @ system.freedoms.motion.T,
-        element=seen.coordinate.T,
+        element=observed.coordinate.T,
         mesh_force=mesh_force,
-        load_arm=_load_arms(system, seen.force).T,
+        load_arm=_load_arms(system, observed.force).T,
         bearing_force=force,
     )
 

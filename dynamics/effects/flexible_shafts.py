@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -27,9 +28,12 @@ from dynamics.types import FloatArray
 SHARE = 0.05
 """Least displacement at a mesh, over the deflection of the mesh, at which a scene calls for the effect."""
 ROUNDING = 1e-9  # misalignment over displacement, below which it is rounding
+SINGULAR = 1e-13
+"""Singular value of a stiffness over the largest one, below which nothing holds its motion."""
 NOTHING_BENDS = (
     "forces act at one position of the shaft alone, or it is not held there: nothing bends or twists it"
 )
+"""Reason why a shaft without elastic coordinates is rigid."""
 
 
 def _why_rigid(mechanism: Mechanism, index: int) -> str:
@@ -43,7 +47,7 @@ def _why_rigid(mechanism: Mechanism, index: int) -> str:
     bent = [mesh for mesh in _meshes(mechanism, index) if scene.meshes[mesh].bent_shafts]
     if bent:
         return f'the table of "{scene.meshes[bent[0]].name}" has the bending of its shafts in it'
-    # torsional couplings act at its nearer end
+    # couplings are no parts of this check: a torsional one acts at the nearer end of the shaft
     parts: list[OnShaft] = [*scene.gears, *scene.discs, *scene.ground_bearings, *scene.drives, *scene.loads]
     parts += [*scene.speed_torques, *scene.forces, *scene.unbalances]
     for part in parts:
@@ -53,10 +57,11 @@ def _why_rigid(mechanism: Mechanism, index: int) -> str:
 
 
 def _elastic_of(mechanism: Mechanism, index: int) -> ElasticShaft:
-    """Return the elastic coordinates of the shaft `index`, reduced to where forces act on it.
+    """Return the elastic coordinates of the shaft `index`, reduced to the points where forces act on it.
 
-    It bends where bearings hold it across and in tilt, and neither is switched off; it stretches where it may
-    move along its axis. It is resolved to the scene's highest frequency, else to `shaft_resolution`.
+    A shaft bends if bearings hold it across the axis and in tilt, and the scene has these freedoms. It
+    stretches if it may move along its axis. Its elements resolve motion up to the scene's highest frequency,
+    by default up to `shaft_resolution`.
     """
     scene, rotor = mechanism.scene, mechanism.rotors[index]
     shaft = rotor.shaft
@@ -75,52 +80,74 @@ def _elastic_of(mechanism: Mechanism, index: int) -> ElasticShaft:
 
 
 def _stretches(mechanism: Mechanism, rotor: Rotor) -> bool:
-    """Whether the shaft has the freedom along its axis: requested, or possible and called for."""
+    """Return whether the shaft moves along its axis: a bearing holds it there, and the scene has the freedom.
+
+    The scene has it on request, or for a helical gear if it is not switched off.
+    """
     scene, additions = mechanism.scene, mechanism.additions
     gears = {gear.name: gear for gear in scene.gears if gear.shaft == rotor.shaft.name}
     meshing = [name for mesh in scene.meshes for name in (mesh.driver, mesh.driven) if name in gears]
     helical = any(gears[name].base_helix_angle != 0.0 for name in meshing)
-    wanted = helical or "z" in additions.requested
-    return rotor.axial_stiffness > 0.0 and "z" in additions.possible and wanted
+    called_for = helical or "z" in additions.requested
+    return rotor.axial_stiffness > 0.0 and "z" in additions.possible and called_for
 
 
 def _points_of_application(
     mechanism: Mechanism, rotor: Rotor, bends: bool, stretches: bool
 ) -> tuple[PointOfApplication, ...]:
+    """Return the points of a shaft where gears, bearings, couplings, drives and loads act.
+
+    A shaft that does not bend or stretch takes no forces across or along its axis at any of them.
+    """
     scene, name = mechanism.scene, rotor.shaft.name
     laws = mechanism.bearings
-    tilting = seated(scene, mechanism.rotors) | {at.name for at in laws if at.tilts}
-    holding = {at.name for at in laws if at.holds_axis}
-    points = [
-        PointOfApplication(rotor.on_shaft(gear.position), bends, bends, stretches, True)
-        for gear in scene.gears
-        if gear.shaft == name
-    ]
+    tilting = seated(scene, mechanism.rotors) | {law.name for law in laws if law.tilts}
+    holding = {law.name for law in laws if law.holds_axis}
+
+    def all_forces(position: float) -> PointOfApplication:
+        return PointOfApplication(
+            rotor.on_shaft(position), across=bends, tilt=bends, along=stretches, turn=True
+        )
+
+    points = [all_forces(gear.position) for gear in scene.gears if gear.shaft == name]
     for bushing in rotor.bushings:
         along = stretches and (bushing.axial_stiffness > 0.0 or bushing.full or bushing.name in holding)
-        tilts = bends and bushing.name in tilting
-        points.append(PointOfApplication(rotor.on_shaft(bushing.position), bends, tilts, along))
-    for position, full in _couplings(scene, rotor):
-        bent = bends and full
-        points.append(PointOfApplication(rotor.on_shaft(position), bent, bent, stretches and full, True))
+        tilt = bends and bushing.name in tilting
+        position = rotor.on_shaft(bushing.position)
+        points.append(PointOfApplication(position, across=bends, tilt=tilt, along=along))
+    for coupling in _couplings(scene, rotor):
+        if coupling.joins_all:
+            points.append(all_forces(coupling.position))
+        else:
+            points.append(PointOfApplication(rotor.on_shaft(coupling.position), turn=True))
     torques: list[OnShaft] = [*scene.drives, *scene.loads, *scene.speed_torques]
     points += [
         PointOfApplication(rotor.on_shaft(part.position), turn=True) for part in torques if part.shaft == name
     ]
     applied: list[OnShaft] = [*scene.forces, *scene.unbalances]
-    points += [
-        PointOfApplication(rotor.on_shaft(part.position), bends, bends, stretches, True)
-        for part in applied
-        if part.shaft == name
-    ]
+    points += [all_forces(part.position) for part in applied if part.shaft == name]
     return tuple(points)
 
 
-def _couplings(scene: Scene, rotor: Rotor) -> list[tuple[float, bool]]:
-    """Positions of the couplings along the shaft, m, and whether they join more than rotations."""
+class _CouplingOnShaft(NamedTuple):
+    """An end of a coupling on a shaft."""
+
+    position: float
+    """Position along the shaft, m from its left end."""
+    joins_all: bool
+    """Whether the coupling joins all displacements and rotations, by a stiffness matrix; else the rotation
+    about the axis alone.
+    """
+
+
+def _couplings(scene: Scene, rotor: Rotor) -> list[_CouplingOnShaft]:
+    """Return the ends of couplings on the shaft of a rotor."""
     z = {shaft.name: shaft.origin[2] for shaft in scene.shafts}
     return [
-        (z[coupling.first] + coupling.position - rotor.shaft.origin[2], coupling.stiffness is not None)
+        _CouplingOnShaft(
+            position=z[coupling.first] + coupling.position - rotor.shaft.origin[2],
+            joins_all=coupling.stiffness is not None,
+        )
         for coupling in scene.couplings
         if rotor.shaft.name in (coupling.first, coupling.second)
     ]
@@ -128,9 +155,10 @@ def _couplings(scene: Scene, rotor: Rotor) -> list[tuple[float, bool]]:
 
 @dataclass(frozen=True)
 class _Bending(Verdict):
-    """A decision with the elastic coordinates that it is made by; None: the shaft is rigid."""
+    """A verdict on a shaft with its elastic coordinates."""
 
     elastic: ElasticShaft | None = None
+    """Elastic coordinates by which the influence is assessed; None: the shaft is rigid."""
 
 
 class FlexibleShafts(RotorEffect):
@@ -153,14 +181,14 @@ class FlexibleShafts(RotorEffect):
             _support_stiffness(flexible) if any(part is not None for part in elastic) else np.empty((0, 0))
         )
         return [
-            _Bending(False, False, refusal, 0.0)
+            _Bending(on=False, possible=False, reason=refusal, influence=0.0)
             if part is None
             else _influence(flexible, flanks, index, stiffness, part)
             for index, (refusal, part) in enumerate(zip(refusals, elastic, strict=True))
         ]
 
     def extend(self, mechanism: Mechanism, decision: Sequence[Verdict | None]) -> Mechanism:
-        """Give the shafts on which it is on their elastic coordinates."""
+        """Return the mechanism with the elastic coordinates of the shafts that the effect is on for."""
         elastic = [verdict.elastic if isinstance(verdict, _Bending) else None for verdict in decision]
         return mechanism if all(part is None for part in elastic) else _with_elastic(mechanism, elastic)
 
@@ -174,51 +202,59 @@ def _with_elastic(mechanism: Mechanism, elastic: Sequence[ElasticShaft | None]) 
 def _influence(
     mechanism: Mechanism, flanks: Flanks, index: int, stiffness: FloatArray, elastic: ElasticShaft
 ) -> _Bending:
-    """Assess the bending of the shaft `index` by the nominal forces, its neighbors at rest."""
+    """Assess the bending of the shaft `index` by the nominal forces, its neighbors at rest.
+
+    The influence is the displacement of the flexible shaft less that of the rigid one on the same bearings.
+    """
     scene, rotors = mechanism.scene, mechanism.rotors
-    across = [0, 1, 3, 4] if rotors[index].rigid_kinds else []
-    along = [2] if elastic.extension.mass.size else []
+    across = [0, 1, 3, 4] if rotors[index].rigid_kinds else []  # x, y, tilt_x, tilt_y
+    along = [2] if elastic.extension.mass.size else []  # z
     rigid = [6 * index + kind for kind in (*across, *along)]  # freedoms that bearings hold; it does not turn
     coordinates = elastic_columns(rotors, index)
     axes = np.array([*rigid, *range(coordinates.start, coordinates.stop)])
     rows = {
         mesh: approach(scene, rotors, mesh, mechanism.lines[mesh])[axes] for mesh in _meshes(mechanism, index)
     }
-    force = _torques(mechanism, index)[axes] - sum(
+    force = _loads(mechanism, index)[axes] - sum(
         (mechanism.nominal_force[mesh] * row for mesh, row in rows.items()), start=np.zeros(axes.size)
     )
-    displacement = np.linalg.lstsq(stiffness[np.ix_(axes, axes)], force, rcond=1e-13)[0]
+    displacement = np.linalg.lstsq(stiffness[np.ix_(axes, axes)], force, rcond=SINGULAR)[0]
     displacement[: len(rigid)] -= np.linalg.lstsq(
-        stiffness[np.ix_(rigid, rigid)], force[: len(rigid)], rcond=1e-13
+        stiffness[np.ix_(rigid, rigid)], force[: len(rigid)], rcond=SINGULAR
     )[0]
     loads: list[OnShaft] = [*scene.forces, *scene.unbalances]
     if not rows and scene.shafts[index].name in [part.shaft for part in loads]:
-        return _Bending(True, True, "loads act on the shaft, which no mesh measures", 0.0, elastic)
-    away, share, tilted = 0.0, 0.0, 0.0
+        reason = "loads act on the shaft, which no mesh measures"
+        return _Bending(on=True, possible=True, reason=reason, influence=0.0, elastic=elastic)
+    approach_change, share, misalignment = 0.0, 0.0, 0.0
     for mesh, row in rows.items():
-        influence = abs(float(row @ displacement))
-        pressed = float(mechanism.nominal_force[mesh] / flanks.mean_stiffness[mesh])
+        change = abs(float(row @ displacement))
+        deflection = float(mechanism.nominal_force[mesh] / flanks.mean_stiffness[mesh])
         sense = mechanism.kinematics.mesh_sense[mesh]
-        turn = misalignment_gradient(scene, rotors, mesh, mechanism.lines[mesh], sense)[axes]
-        away, tilted = max(away, influence), max(tilted, abs(float(turn @ displacement)))
-        share = max(share, influence / pressed if pressed > 0.0 else 0.0)
-    tilted = tilted if tilted > ROUNDING * away else 0.0
+        gradient = misalignment_gradient(scene, rotors, mesh, mechanism.lines[mesh], sense)[axes]
+        approach_change = max(approach_change, change)
+        misalignment = max(misalignment, abs(float(gradient @ displacement)))
+        share = max(share, change / deflection if deflection > 0.0 else 0.0)
+    misalignment = misalignment if misalignment > ROUNDING * approach_change else 0.0
     reason = (
-        f"the nominal force bends and twists the shaft by {engineering(1e6 * away)} µm along the line of "
-        f"action, {engineering(100.0 * share)} % of the mesh deflection, and misaligns the gear by "
-        f"{engineering(1e6 * tilted)} µm over the face"
+        f"the nominal force bends and twists the shaft by {engineering(1e6 * approach_change)} µm along the "
+        f"line of action, {engineering(100.0 * share)} % of the mesh deflection, and misaligns the gear by "
+        f"{engineering(1e6 * misalignment)} µm over the face"
     )
-    return _Bending(share > SHARE, True, reason, away, elastic)
+    return _Bending(
+        on=share > SHARE, possible=True, reason=reason, influence=approach_change, elastic=elastic
+    )
 
 
 def _meshes(mechanism: Mechanism, index: int) -> list[int]:
+    """Return the indices of the meshes with a gear on the shaft `index`."""
     scene, name = mechanism.scene, mechanism.scene.shafts[index].name
     pairs = [(scene.gear(mesh.driver).shaft, scene.gear(mesh.driven).shaft) for mesh in scene.meshes]
     return [mesh for mesh, pair in enumerate(pairs) if name in pair]
 
 
-def _torques(mechanism: Mechanism, index: int) -> FloatArray:
-    """Return the loads at t = 0 on all freedoms, (N,)."""
+def _loads(mechanism: Mechanism, index: int) -> FloatArray:
+    """Return torques and standing forces on the shaft `index` at t = 0 as forces on all freedoms, (N,)."""
     scene, rotors = mechanism.scene, mechanism.rotors
     force = np.zeros(column_count(rotors))
     for load in scene.loads:
@@ -235,7 +271,7 @@ def _torques(mechanism: Mechanism, index: int) -> FloatArray:
 
 
 def _support_stiffness(mechanism: Mechanism) -> FloatArray:
-    """Stiffness of bearings, at their typical load, and of shafts, on all freedoms, (N, N)."""
+    """Return the stiffness of bearings, at their typical load, and of shafts over all freedoms, (N, N)."""
     rotors = mechanism.rotors
     joined = gather_connections(mechanism.scene, rotors)
     supports, seats = joined.supports, joined.seats

@@ -21,6 +21,8 @@ from dynamics.types import FloatArray
 
 ASSUMED_CLASS = 6
 """Tolerance class (ISO 1328) assumed for gears whose table states no tooth deviations."""
+_TO_MM, _FROM_UM = 1e3, 1e-6
+"""The formula of the tolerance takes lengths in mm and returns um."""
 SAMPLES = 256  # positions of a base pitch at which mesh order 1 is computed
 
 
@@ -42,32 +44,45 @@ class ToothDeviations(MeshEffect):
     def called_for(self, mesh: LoadedMesh) -> Verdict:
         """Call for the effect where the table covers more than one base pitch.
 
-        Its influence is how far a base pitch differs from their mean. For a table of one pitch the influence
-        is the run-out of both gears of an assumed class, which nothing can switch on.
+        Its influence is the largest difference of a base pitch from the mean of all. A table of one base
+        pitch has no deviations that could be switched on; its influence is the run-out of both gears, of an
+        assumed tolerance class.
         """
         made = table_as_made(mesh.mesh.table)
         if made.period == 1:
             return _of_assumed_class(mesh)
         nominal, text = nominal_table(made), f"the table repeats after {made.period} base pitches"
         if nominal is made:
-            return Verdict(True, False, f"{text}, whose positions differ: it has no mean of one", 0.0)
+            return Verdict(
+                on=True,
+                possible=False,
+                reason=f"{text}, whose positions differ: it has no mean of one",
+                influence=0.0,
+            )
         mean = _static_error(nominal, mesh.force)
         size = float(np.max(np.abs(_static_error(made, mesh.force).reshape(-1, mean.size) - mean)))
-        return Verdict(True, True, f"{text}, which differ from their mean by up to {_um(size)}", size)
+        return Verdict(
+            on=True,
+            possible=True,
+            reason=f"{text}, which differ from their mean by up to {_um(size)}",
+            influence=size,
+        )
 
 
 def _of_assumed_class(mesh: LoadedMesh) -> Verdict:
-    """Neglect run-out, sized in closed form: an eccentricity is as large along the line of action.
+    """Return the verdict that neglects run-out, with its influence in closed form.
 
-    Once per revolution of its shaft, whatever the load; twice the eccentricity is the run-out.
+    An eccentricity moves the flanks by its own size along the line of action, once per revolution of the
+    shaft and whatever the load. The run-out is twice the eccentricity.
     """
     order = _mesh_order(mesh.mesh.table, mesh.force)
-    first, second = sizes = [_eccentricity(mesh, name) for name in (mesh.mesh.driver, mesh.mesh.driven)]
+    first = _eccentricity(mesh, mesh.mesh.driver)
+    second = _eccentricity(mesh, mesh.mesh.driven)
     reason = (
         f"all teeth are alike, deviations neglected: run-out of class {ASSUMED_CLASS} (assumed) makes order "
         f"1 of the shafts {_um(first)} (driver) and {_um(second)} (driven) beside mesh order 1, {_um(order)}"
     )
-    return Verdict(False, False, reason, sum(sizes))
+    return Verdict(on=False, possible=False, reason=reason, influence=first + second)
 
 
 @identity_cached
@@ -82,21 +97,23 @@ def _eccentricity(mesh: LoadedMesh, name: str) -> float:
     """Return half the run-out tolerance of a gear by its operating pitch circle, m."""
     mechanism = mesh.train.mechanism
     gear, angle = mechanism.scene.gear(name), mechanism.lines[mesh.index].working_pressure_angle
-    diameter = 2e3 * gear.base_radius / math.cos(angle)
+    diameter = _TO_MM * 2.0 * gear.base_radius / math.cos(angle)
     helix = math.atan(math.tan(abs(gear.base_helix_angle)) / math.cos(angle))
     module = diameter / gear.teeth * math.cos(helix)
-    return 0.5e-6 * RUN_OUT_SHARE * cumulative_pitch_of_class(module, diameter, ASSUMED_CLASS)
+    cumulative_pitch = cumulative_pitch_of_class(module, diameter, ASSUMED_CLASS)
+    return 0.5 * _FROM_UM * RUN_OUT_SHARE * cumulative_pitch
 
 
 def _static_error(table: MeshTable, force: float) -> FloatArray:
     """Return the transmission error at a force, mean over the table's alignments, (P,) m."""
     level = np.asarray(table.level)
+    # weights of the levels in linear interpolation
     share = np.array([np.interp(force, level, unit) for unit in np.eye(level.size)])
     return np.asarray(np.mean(np.asarray(table.deflection), axis=(0, 1)) @ share)
 
 
 def _with_tables(scene: Scene, chosen: Callable[[MeshTable], MeshTable]) -> Scene:
-    """Return `scene` with the table of every flank as `chosen`; itself where none is another."""
+    """Return `scene` with the tables that `chosen` makes of its tables; itself if all are the same."""
     meshes = list(scene.meshes)
     for index, mesh in enumerate(meshes):
         coast = mesh.coast

@@ -78,12 +78,12 @@ def frame_coupling(laws: FrameCouplingLaws, entry: int, local: LocalState, row: 
         for j in range(n):
             other = j + 1 if j % 2 == 0 else j - 1
             sign = 1.0 if j % 2 == 0 else -1.0
-            # d d'/d b = -psi' J R adds C psi' J to the stiffness that b sees
-            seen = k[entry, i, j] + turn * sign * damping[entry, i, other]
+            # d d'/d b = -psi' J R adds C psi' J to the stiffness against b
+            effective = k[entry, i, j] + turn * sign * damping[entry, i, other]
             cross = k[entry, i, other] - turn * sign * damping[entry, i, j]
             tangent[row + i, j] = k[entry, i, j]
-            tangent[row + i, n + j] = -(c * seen + sign * s * cross)
-            tangent[row + n + i, n + j] = seen
+            tangent[row + i, n + j] = -(c * effective + sign * s * cross)
+            tangent[row + n + i, n + j] = effective
             # R^T K = K R^T
             tangent[row + n + i, j] = -(c * k[entry, i, j] - sign * s * k[entry, i, other])
             viscous[row + i, j] = damping[entry, i, j]

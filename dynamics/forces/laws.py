@@ -74,16 +74,16 @@ class ElementLaws(NamedTuple):
 class Compiled(NamedTuple):
     """The compiled functions of a kind of law.
 
-    Their parameters say what they read: `laws`, `entry`, `local`, `row` the arrays of the kind, the place in
-    them, the state and the first row; `e` the element; `mesh` the mesh, or `turned` the frame or cage, whose
-    position it reads.
+    The names of their parameters say what they read: `laws` the arrays of the kind, `entry` the index in
+    them, `local` the state, `row` the first row, `e` the element, `mesh` the mesh whose position it reads,
+    `turned` the frame or cage whose position it reads.
     """
 
     force: Any
     """Writes forces and derivatives."""
     energy: Any = None
-    """Returns the energy stored, J, then any derivatives, that in the position first, J per base pitch or
-    revolution. None: no energy.
+    """Returns the energy stored, J, then derivatives, if any; the first one is by the position, J per base
+    pitch or revolution. None: no energy.
     """
     inside: tuple[Routine, ...] = ()
     """Compiled routines that `force` and `energy` both call."""
@@ -114,7 +114,7 @@ COMPILED = {
 class BearingLawParts:
     """The nonlinear laws of bearings that are parts of a scene, by kind.
 
-    Each names its bushing or planet bearing, which sits in no housing without mass.
+    Each names its bushing or planet bearing. A bearing in a housing without mass cannot have one.
     """
 
     rolling_contacts: tuple[RollingContact, ...] = ()
@@ -133,7 +133,7 @@ LAW_BY_ARRAYS: dict[Any, Law] = {
 }
 """Kinds of a `BearingLaw`, by their arrays."""
 BEARING_LAW_KINDS = (*LAW_BY_ARRAYS.values(), Law.LINEAR_BEARING)
-"""Laws of bearings; each is the gradient of a convex energy, so that bodies rest at one place alone."""
+"""Laws of bearings; each is the gradient of a convex energy, so that the static equilibrium is unique."""
 
 
 def among(law: IntArray, laws: tuple[Law, ...]) -> BoolArray:

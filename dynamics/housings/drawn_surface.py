@@ -60,9 +60,9 @@ class DrawnSurface:
                 break
             points, facets = simplify(self.points, self.facets, target_count=maximum, agg=aggressiveness)
             weight = _OF_NORMALS * float(np.linalg.norm(_across(points[facets]), axis=1).mean() ** 0.5)
-            there = np.hstack([points, weight * node_normals(points, facets)])
+            simplified = np.hstack([points, weight * node_normals(points, facets)])
             descriptors = np.hstack([self.points, weight * node_normals(self.points, self.facets)])
-            corners = np.asarray(cKDTree(descriptors).query(there)[1])[facets]
+            corners = np.asarray(cKDTree(descriptors).query(simplified)[1])[facets]
         area = np.linalg.norm(_across(self.points[corners]), axis=1)
         retained, facets = np.unique(corners[area > _MIN_AREA * area.mean()], return_inverse=True)
         return DrawnSurface(self.points[retained], facets.reshape(-1, 3)), retained

@@ -1,4 +1,7 @@
-"""Faces of a meshed housing, chosen from its surface: bores, planes, boxes, named groups."""
+"""Faces of a meshed housing, chosen from its surface: bores, planes, boxes, named groups.
+
+The surface consists of t six-node triangles; whether one is on a face depends on its three corners alone.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,11 @@ from dynamics.solid_housing import BORE_DIAMETER, BORE_LENGTH
 from dynamics.types import BoolArray, FloatArray, IntArray
 
 NEAR = 5e-3
-"""Distance at which corners are on a face, relative to its size."""
+"""Largest distance of a corner from a face that it is on, over the face's size.
+
+The size is the diameter of a bore, or the side of a triangle in a plane. For planes also the difference of
+the cosine of the normals from 1.
+"""
 INWARD = 0.7
 """Least cosine between the normal of a bore's wall and the direction to its axis."""
 COVERED = 0.5
@@ -76,34 +83,41 @@ class Bore:
         radius = np.linalg.norm(radial, axis=2)
         level = np.all(np.abs(along) <= self.length / 2.0 + near, axis=1)
         normal, area = _normals(mesh, surface)
+        # cosine between the outward normal and the direction to the axis; 1e-300: no division by zero
         toward = -np.einsum("ti,ti->t", normal, radial.mean(axis=1)) / np.maximum(radius.mean(axis=1), 1e-300)
         facing = toward >= INWARD
         wall = facing & np.all(np.abs(radius - self.diameter / 2.0) <= near, axis=1)
         chosen = wall & level
         if area[chosen].sum() < COVERED * np.pi * self.diameter * self.length:
+            # triangles of which at least a part is within the length
             across = (along.min(axis=1) < self.length / 2.0) & (along.max(axis=1) > -self.length / 2.0)
             self._check_length(float(area[wall & across].sum()), along[wall & across])
             self._refuse(float(area[chosen].sum()), radius[facing & level])
         return np.asarray(surface[chosen])
 
     def _check_length(self, area: float, along: FloatArray) -> None:
-        """Refuse a bore whose wall is there, of elements that reach beyond its stated length."""
+        """Refuse a bore whose wall exists, but in elements that reach beyond the bore's stated length.
+
+        `area`: that of triangles with at least a part within the length, m^2; `along`: positions of their
+        corners along the axis, m.
+        """
         if area < COVERED * np.pi * self.diameter * self.length:
             return
         element = Quantity(float(np.ptp(along, axis=1).max()), "m", digits=3)
         bound = "one between whose ends elements of the wall lie"
-        there = Text.of("The wall of this diameter is there, of elements up to ", element, " along the axis ")
+        wall = Text.of("The wall of this diameter is there, of elements up to ", element, " along the axis ")
         remedy = "that reach beyond this length. State the whole length of the wall, or mesh it finer."
-        raise InputError("length", self.length, bound, Text.of(there, remedy))
+        raise InputError("length", self.length, bound, Text.of(wall, remedy))
 
     def _refuse(self, area: float, radii: FloatArray) -> NoReturn:
+        """Refuse a bore of whose wall too small an area, m^2, exists; `radii`, m: those of other walls."""
         share = area / (np.pi * self.diameter * self.length)
         others = Text.of("no wall faces the axis there")
         if radii.size:
             nearest = Quantity(2.0 * float(radii.min()), "m", digits=3)
             others = Text.of("the nearest wall that faces the axis has a diameter of ", nearest)
-        there = f" ({share:.0%} is)" if share > 0.0 else ""
-        bound = f"that of a bore of the mesh, of which at least {COVERED:.0%} is there{there}"
+        present_share = f" ({share:.0%} is)" if share > 0.0 else ""
+        bound = f"that of a bore of the mesh, of which at least {COVERED:.0%} is there{present_share}"
         x, y, z = (Quantity(value, "m", digits=6) for value in self.position)
         location = Text.of("Its middle is expected at ", x, ", ", y, ", ", z, ". Check ")
         remedy = Text.of(location, "position, axis, length and the unit of the mesh: ", others, ".")
@@ -160,6 +174,7 @@ class BoundedPlane:
     def triangles(self, mesh: TetrahedralMesh) -> IntArray:
         """Return the triangles that are in both."""
         flat, inside = self.plane.triangles(mesh), self.box.triangles(mesh)
+        # two corners identify a triangle of the surface in its order of corners; one number for the two
         both = np.isin(
             flat[:, 0] * len(mesh.points) + flat[:, 1], inside[:, 0] * len(mesh.points) + inside[:, 1]
         )
@@ -191,6 +206,7 @@ def _normals(mesh: TetrahedralMesh, triangles: IntArray) -> tuple[FloatArray, Fl
 
 
 def _require_facets(field: str, value: object, mesh: TetrahedralMesh, chosen: BoolArray) -> IntArray:
+    """Return the chosen (t,) triangles of the surface; raises `InputError` for `field`: there are none."""
     if not chosen.any():
         extent = np.stack([mesh.points.min(axis=0), mesh.points.max(axis=0)], axis=1).ravel()
         ends = (Quantity(float(end), "m", digits=6) for end in extent)

@@ -16,19 +16,21 @@ from dynamics.housings.tetrahedral_mesh import TetrahedralMesh
 from dynamics.solid_housing import LOSS_FACTOR, MODES, Material
 from dynamics.types import FloatArray, IntArray
 
-HIGHEST_RATIO = 1.0  # largest damping ratio of a mode
+HIGHEST_RATIO = 1.0  # largest damping ratio of a mode: critical damping
+CORNERS = 4  # corners of a tetrahedron, its first nodes; middles of edges follow
+RIGID_MODES = 6  # rigid-body modes of a housing without feet
 
 
 class _Damping(Protocol):
-    """Gives the damping ratio of every mode."""
+    """A law of the damping ratios of modes."""
 
     def ratios(self, elastic_share: FloatArray) -> FloatArray:
-        """Return damping ratios of modes by the share of the housing in their strain energy."""
+        """Return the damping ratios of modes by the housing's share of their strain energy."""
 
 
 @dataclass(frozen=True)
 class ModalDamping:
-    """A damping ratio for each mode in rising order; the last one holds for all that follow."""
+    """A damping ratio for each mode by rising frequency; the last one holds for all further modes."""
 
     ratio: tuple[float, ...]
 
@@ -39,7 +41,7 @@ class ModalDamping:
             within(f"ratio[{index}]", value, 0.0, HIGHEST_RATIO)
 
     def ratios(self, elastic_share: FloatArray) -> FloatArray:
-        """Return the ratios; modes without strain have none."""
+        """Return the ratios; that of a mode without strain energy is 0."""
         number = np.minimum(np.arange(len(elastic_share)), len(self.ratio) - 1)
         return np.where(elastic_share > 0.0, np.array(self.ratio)[number], 0.0)
 
@@ -49,7 +51,8 @@ class ModalDamping:
 class MaterialDamping:
     """Half the loss factor is the damping ratio of a mode whose strain energy is all in the housing.
 
-    The equivalent viscous damping: at a mode's natural frequency it loses as much energy as the material.
+    This is the equivalent viscous damping: at the natural frequency of a mode it loses as much energy as the
+    material.
     """
 
     loss_factor: float = required(LOSS_FACTOR)
@@ -74,9 +77,9 @@ class MeshedHousing:
     material: Material
     seats: tuple[SeatBore, ...]
     feet: tuple[Foot, ...] = ()
-    """Without any the housing is free, and six rigid-body modes are kept besides `modes`."""
+    """Feet; a housing without feet is free, and its reduction has six rigid-body modes besides `modes`."""
     points: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
-    """Points at which motion is recovered, m: that of the nearest node."""
+    """Points, m, by name, whose motion is computed: that of the nearest node."""
     modes: int = declared(80, MODES)
     damping: _Damping = USUAL_DAMPING
     """Default: `USUAL_DAMPING`."""
@@ -88,17 +91,19 @@ class MeshedHousing:
             raise InputError("seats", self.seats, "at least one seat", remedy)
         distinct("seats", [seat.name for seat in self.seats])
         distinct("feet", [foot.name for foot in self.feet])
-        columns = 6 + sum(seat.motions for seat in self.seats)
+        # columns of the reduced matrices; their number must be well below that of the mesh
+        columns = RIGID_MODES + sum(seat.motions for seat in self.seats)
         if self.modes + columns >= self.mesh.freedoms // 2:
             bound = "below half the freedoms of the mesh"
             raise InputError("modes", self.modes, bound, f"It has {self.mesh.freedoms}: refine it.")
 
     def nodes_of_points(self) -> IntArray:
-        """Return the nodes next to the points.
+        """Return the indices of the nodes nearest to the points.
 
         Raises `InputError`: a point is farther from all nodes than the longest edge of an element.
         """
-        corner = self.mesh.points[self.mesh.tetrahedra[:, :4]]
+        corner = self.mesh.points[self.mesh.tetrahedra[:, :CORNERS]]
+        # four of the six edges of each element, which are enough for the longest one of a mesh
         reach = float(np.max(np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2)))
         nodes = []
         for name, point in self.points.items():

@@ -83,9 +83,9 @@ def _require_converged(modes: FreeModes, count: int) -> None:
         raise SolveError(f"{len(modes.frequency)} of {count} modes of the housing converged. {remedy}")
     if modes.status is ModeStatus.ILL_CONDITIONED:
         remedy = "Check the quality of the mesh and the stiffness of the mounts."
-        lost = f"{modes.solve_residual:.1e}, above {ACCEPTED:g}"
+        share = f"{modes.solve_residual:.1e}, above {ACCEPTED:g}"
         raise SolveError(
-            f"Of the work of forces on the housing's seats {lost}, is lost to rounding. {remedy}"
+            f"Of the work of forces on the housing's seats {share}, is lost to rounding. {remedy}"
         )
 
 

@@ -25,7 +25,10 @@ from host import ChildFailed, ChildOutOfMemory, ask_child
 STEP_WORKER = Path(__file__).with_name("step_worker.py")
 STEP_SECONDS = 600.0  # usual limit of the time that gmsh takes for a STEP file, s
 WALL_ELEMENTS = 0.7
-"""Elements over the mean wall thickness, 2 V/S of the body, unless a size is given: quadratic ones bend."""
+"""Elements over the mean wall thickness 2 V/S of the body, unless a size is given.
+
+Fewer than one suffices for the bending of a wall, since the elements are quadratic.
+"""
 Made = TypeVar("Made")
 
 
@@ -77,7 +80,7 @@ class StepSolid:
     surface: float
     """`volume`, `surface`: Volume, m^3, and surface area, m^2."""
     bores: tuple[Bore, ...]
-    """Round holes of which at least half is there; halves of a split one are one."""
+    """Round holes of which at least half of the wall is there; the halves of a split bore are one bore."""
     planes: tuple[FlatFace, ...]
     """Flat faces, the largest first."""
 
@@ -94,6 +97,7 @@ def step_solid(path: str | Path, seconds: float = STEP_SECONDS) -> StepSolid:
             FlatFace(Plane(tuple(point), tuple(normal)), area) for point, normal, area in answer["planes"]
         ]
         planes.sort(key=lambda face: -face.area)
+        # `rest`: radius, area, low and high end
         walls = [BoreWall(np.array(point), np.array(axis), *rest) for point, axis, *rest in answer["walls"]]
         return StepSolid(answer["volume"], answer["surface"], tuple(bores_of_walls(walls)), tuple(planes))
 
@@ -113,7 +117,7 @@ def _by_gmsh(
         raise InputError("step_file", file.name, "a file that exists")
     with TemporaryDirectory() as folder:
         copy = shutil.copyfile(file, Path(folder) / f"housing{file.suffix.lower()}")
-        run = command or (sys.executable, "-P", str(STEP_WORKER))
+        run = command or (sys.executable, "-P", str(STEP_WORKER))  # -P: no import from the worker's folder
         try:
             maximum = limits(seconds)
             answer = ask_child(request | {"step": copy.name}, seconds, run, copy.parent, maximum)

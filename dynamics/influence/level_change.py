@@ -19,14 +19,14 @@ from dynamics.types import FloatArray
 Lines = Mapping[float, float]
 """Largest power or mean square over the speeds, weighted, by order."""
 MAX = 60.0
-"""Largest change of level that is stated, dB: a larger one is all of the quantity."""
+"""Largest change of level that is stated, dB: a larger one means that one of the two levels is negligible."""
 ROUNDING = 1e-8
 """Relative change of amplitude below which an estimate is rounding."""
 
 
 @dataclass(frozen=True)
 class BearingForces:
-    """Forces on all bearings, root of the sum of squares: the quantity that sizes effects by default."""
+    """Root of the sum of squares of the forces on all bearings: the default quantity of a scene's level."""
 
     name: str = "bearing forces"
     unit: str = "dB"
@@ -63,7 +63,7 @@ class LevelChange:
 
 
 def loudest_lines(order: FloatArray, squares: FloatArray, known: Lines) -> dict[float, float]:
-    """Return the largest square of each order (H,) over the speeds of (S, H), or that `known` if larger."""
+    """Return the largest of `squares` (S, H) over the speeds, by `order` (H,), or `known` if larger."""
     lines = dict(known)
     for value, maximum in zip(np.round(order, 9).tolist(), np.max(squares, axis=0).tolist(), strict=True):
         lines[value] = max(maximum, lines.get(value, 0.0))
@@ -71,7 +71,7 @@ def loudest_lines(order: FloatArray, squares: FloatArray, known: Lines) -> dict[
 
 
 def level_change(with_effect: Lines, without: Lines, quantity: str, unit: str = "dB") -> LevelChange:
-    """Return the change by leaving an effect out: `with_effect` are the lines with it."""
+    """Return the change of a level from the lines with an effect to those without."""
     both = {
         k: (math.sqrt(with_effect.get(k, 0.0)), math.sqrt(without.get(k, 0.0)))
         for k in {**with_effect, **without}
@@ -79,13 +79,13 @@ def level_change(with_effect: Lines, without: Lines, quantity: str, unit: str = 
     if not any(map(any, both.values())):
         return LevelChange(quantity, unit)
     order = max(both, key=lambda k: abs(both[k][1] - both[k][0]))
-    size, left = both[order]
-    largest = max(size for size, _ in both.values()) or left
-    return LevelChange(quantity, unit, order, decibels(size, left), abs(left - size) / largest)
+    before, after = both[order]  # amplitudes with and without the effect
+    largest = max(size for size, _ in both.values()) or after
+    return LevelChange(quantity, unit, order, decibels(before, after), abs(after - before) / largest)
 
 
 def decibels(size: float, left: float) -> float:
-    """Return the level of an amplitude `left` over `size`, dB, at most `MAX` in size; 0 of silence."""
+    """Return the level of an amplitude `left` over `size`, dB, at most `MAX` in size; 0 if both are 0."""
     minimum = 10.0 ** (-MAX / 20.0) * max(size, left)
     return 20.0 * math.log10(max(left, minimum) / max(size, minimum)) if minimum else 0.0
 

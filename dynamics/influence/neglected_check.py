@@ -360,11 +360,11 @@ def _beyond(system: System, linear: bool, parts: bool) -> str:
 
 
 def _by_order(change: FloatArray, value: FloatArray) -> FloatArray:
-    """Return the largest change of each order over its largest amplitude, (5,); 0 of orders not there."""
+    """Return the largest change of each order over its largest amplitude, (5,); 0 where there is none."""
     size = np.max(value, axis=0, initial=0.0)
     maximum = np.max(np.abs(change), axis=0, initial=0.0)
-    there = size > ROUNDING * np.max(size, initial=0.0)
-    return np.asarray(np.divide(maximum, size, out=np.zeros(maximum.shape), where=there))
+    is_present = size > ROUNDING * np.max(size, initial=0.0)
+    return np.asarray(np.divide(maximum, size, out=np.zeros(maximum.shape), where=is_present))
 
 
 def _largest(change: FloatArray, value: FloatArray | float) -> float:

@@ -226,9 +226,9 @@ def _move_on(work: Workspace, implicit: bool, step: float, end: float) -> None:
         for i in range(mean.size):
             mean[i] += weights[stage] * work.stage_a[stage, i]
     for i in range(work.q.size):
-        gained = step * mean[i] + work.v_rest[i]
-        rate = work.v[i] + gained
-        work.v_rest[i] = gained - (rate - work.v[i])
+        increment = step * mean[i] + work.v_rest[i]
+        rate = work.v[i] + increment
+        work.v_rest[i] = increment - (rate - work.v[i])
         work.q[i], work.v[i], work.a[i] = work.q_new[i], rate, work.a_new[i]
         if abs(work.q[i]) < AT_REST and abs(rate) < AT_REST and abs(work.a[i]) < AT_REST:
             work.q[i] = work.v[i] = work.a[i] = work.v_rest[i] = 0.0

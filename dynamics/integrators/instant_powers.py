@@ -94,7 +94,7 @@ def _in_elements(
     elements, force, elastic = system.elements, work.force, work.local.elastic
     rate, drift = work.local.rate, work.local.drift
     for e in range(elements.law.size):
-        law, first, end, lost = elements.law[e], elements.first[e], elements.first[e + 1], 0.0
+        law, first, end, element_loss = elements.law[e], elements.first[e], elements.first[e + 1], 0.0
         if law == FLANK:
             mesh += (force[first] - elastic[first]) * rate[first]
             position -= elastic[first] * rate[first]
@@ -114,14 +114,14 @@ def _in_elements(
             elif law == SPATIAL_FLANK and slides(elements, e, r):
                 friction += force[r] * (rate[r] + drift[r])
             else:
-                lost += (force[r] - elastic[r]) * rate[r]
+                element_loss += (force[r] - elastic[r]) * rate[r]
         if law == SPATIAL_FLANK:
-            mesh += lost
+            mesh += element_loss
             power, stored = power_along_axes(elements, work.local, e)
             axes += stored - power
             position -= elastic[first] * rate[first] + stored
         else:
-            bearing += lost
+            bearing += element_loss
     return bearing, mesh, friction, supplied, frames, position, axes
 
 
@@ -152,13 +152,13 @@ def _drive_torque(
 def add_drive_work(system: SystemArrays, work: Workspace) -> None:
     """Add the work of drives on the inertia of their shafts over the step that ends in ``work.motion``.
 
-    It is the kinetic energy gained, W I W/2: where a law has a kink, no stages' weights integrate its power.
-    The end becomes the start of the next step.
+    The work is the change of the kinetic energy W I W/2. The weights of the stages do not integrate the power
+    of a law that has a kink in the step. The end becomes the start of the next step.
     """
     inertia, speed = system.drive.inertia, work.speed
     for k in range(speed.size):
         for j in range(speed.size):
-            gained = work.motion[k, SPEED] * work.motion[j, SPEED] - speed[k] * speed[j]
-            work.work[Power.DRIVE] += 0.25 * (inertia[k, j] + inertia[j, k]) * gained
+            change = work.motion[k, SPEED] * work.motion[j, SPEED] - speed[k] * speed[j]
+            work.work[Power.DRIVE] += 0.25 * (inertia[k, j] + inertia[j, k]) * change
     for k in range(speed.size):
         speed[k] = work.motion[k, SPEED]

@@ -89,9 +89,9 @@ class Sampler(NamedTuple):
         channels = np.concatenate([np.arange(rows), rows + body, q, rows + bodies + body, v])
         signals = system.bearing_map if outputs.bearing_forces else NO_SIGNALS
         bearings = signals._replace(column=channels[signals.column])
-        wanted = outputs.displacements or outputs.accelerations
-        filtered = rows + 2 * (n if wanted else bodies) + nominal.size
-        displacements = n if wanted or not _dispensable(system) else bodies
+        all_coordinates = outputs.displacements or outputs.accelerations
+        filtered = rows + 2 * (n if all_coordinates else bodies) + nominal.size
+        displacements = n if all_coordinates or not _dispensable(system) else bodies
         level = [level_below(by_address(static), m, float(force)) for m, force in enumerate(nominal)]
         rest = (np.array(level, dtype=np.int64), bearings, bodies, displacements, filtered, modal_samples)
         taps, rate = sampling.filter_taps(), sampling.inner_rate

@@ -152,9 +152,9 @@ def added_rows(before: System, after: System) -> IntArray | None:
     if before.freedoms.name != after.freedoms.name or before.sampling != after.sampling:
         return None
     rows_of, start = [], 0
-    there = _rows(after)
+    rows_after = _rows(after)
     for row in _rows(before):
-        index = next((k for k in range(start, len(there)) if there[k] == row), None)
+        index = next((k for k in range(start, len(rows_after)) if rows_after[k] == row), None)
         if index is None:
             return None
         rows_of.append(index)

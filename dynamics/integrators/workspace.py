@@ -105,19 +105,20 @@ class Workspace(NamedTuple):
     free_position: FloatArray
     """Positions without the elements' forces. Shape (m,)."""
     linear: IntArray
-    """Rows of linear elements, and the first and the end among these p of the element of each. Shape (p, 3).
+    """The p rows of linear elements. Columns: the row; then first and end, in this list, of the rows of its
+    element. Shape (p, 3).
     """
     resting: FloatArray
-    """Scratch: coordinates and rates of these rows without any local force. Shape (2 p,)."""
+    """Scratch: coordinates, then rates, of the rows `linear` without any local force. Shape (2 p,)."""
     response: FloatArray
     """Accelerations of coordinates and positions by the local forces in `force`. Shape (R + m,)."""
     motion: FloatArray
     """Motion of the laws at the current stage. Shape (k, 4)."""
     speed: FloatArray
-    """Speeds of the laws at the start of the step, rad/s, for the audit. Shape (k,)."""
+    """Speeds of the laws at the start of the step, rad/s, for the energy balance. Shape (k,)."""
     quanta: IntArray
-    """Quanta of a revolution by which each free train's own rotation was moved into the reference. Shape
-    (k,).
+    """Rotation of each free train that was moved from `q` into the reference motion, in quanta of a
+    revolution. Shape (k,).
     """
     update: FloatArray
     correction: FloatArray
@@ -125,26 +126,28 @@ class Workspace(NamedTuple):
     solved: IntArray
     """Rows that Newton's method solves for in the current step, ended by -1. Shape (R + 1,)."""
     jacobian: FloatArray
-    """Newton's equations in the rows `solved`, transposed, and their inverse. Shape (R, 2 R)."""
+    """Newton's matrix in the rows `solved`, transposed, and beside it the inverse. Shape (R, 2 R)."""
     power: FloatArray
     """Powers at each stage, W; columns `Power`. Shape (STAGES, 7)."""
     work: FloatArray
     """Works so far, J, in the order of `Power`. Shape (7,)."""
     highest: FloatArray
     fallen: FloatArray
-    """`highest`, `fallen`: Highest value of each of `LOSSES` so far, and its largest fall below the highest
-    value before, J. Shape (3,) each.
+    """`highest`, `fallen`: Highest work of each of `LOSSES` so far, and its largest fall below the highest
+    one before, J: an error, since dissipated energy does not come back. Shape (3,) each.
     """
     counts: IntArray
     """Counts of steps and samples, in the order of `Count`."""
     step_sizes: FloatArray
-    """Step sizes, falling, s; then the one that lands on a law's knot. Shape (r,)."""
+    """Step sizes, falling, s; the last entry is for a step that ends at a knot of a law. Shape (r,)."""
     matrix: FloatArray
     """Scratch: the matrix to invert, of the freedoms that are not modal. Shape (a, a)."""
     ready: BoolArray
-    """Whether the matrices of a level are there. Shape (r,)."""
+    """Whether the matrices of a level are computed. Shape (r,)."""
     inverse: FloatArray
-    """Entries of the inverse of M + h g C + (h g)^2 K. Shape (r, L)."""
+    """Entries of the inverse of M + h g C + (h g)^2 K, with the step h and the method's diagonal coefficient
+    g. Shape (r, L).
+    """
     approach: FloatArray
     """Accelerations of local coordinates, then of positions, per local force; linear elements follow, so that
     their own rows are 0. Shape (r, R, R + m).

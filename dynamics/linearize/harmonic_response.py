@@ -2,7 +2,9 @@
 
 Harmonics are multiples of the frequency of the common period, after which all meshes and loads are in phase
 again. An order is a multiple of the frequency of the first mesh that turns. The floor is the sum of the lines
-of a long period that are not solved.
+of a long period that are not solved. In functions, `at` is the excited system at its static equilibrium.
+
+Shapes: S speeds, H harmonics, m meshes, b bearings, n freedoms.
 """
 
 from __future__ import annotations
@@ -39,7 +41,12 @@ from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
 
 GRID = ("speed", "order")
 MAX_SAMPLES, MAX_PER_LINE, MAX_PARTED = 16_384, 1_000, 300
-"""Most samples of a period, in all and per order, and most orders, up to which `extremes` is exact."""
+"""Bounds up to which `extremes` samples the sum of all harmonics over the whole period, and is exact.
+
+They are samples of a period in all, samples per order (the larger of the two bounds counts), and orders.
+"""
+_SAMPLES_PER_CYCLE = 8
+"""Samples per cycle of the highest harmonic in `extremes`: a peak is at most 8 % too low."""
 
 
 def _none() -> ComplexArray:
@@ -70,8 +77,8 @@ class HarmonicResponse:
     )
     """`static_transmission_error`, `load_moment`, `friction_force`: Excitations at the static mesh forces.
     The moment is that of the load as it travels along the face, about the axis of a misalignment. The
-    friction acts along the sliding at the pitch point. Flanks without such rows have 0. Empty in older files.
-    Shape (m, H) each.
+    friction acts along the sliding at the pitch point. Meshes without a moment or friction have 0. Empty in
+    older files. Shape (m, H) each.
     """
     dynamic_transmission_error: ComplexArray = field(metadata=stored("m", "complex amplitude", "mesh", *GRID))
     mesh_force: ComplexArray = field(metadata=stored("N", "complex amplitude, transverse", "mesh", *GRID))
@@ -91,8 +98,8 @@ class HarmonicResponse:
     least_mesh_force: FloatArray = field(
         metadata=stored("N", "least of mean and harmonics together", "mesh", "speed")
     )
-    """Least mesh force by mean and harmonics together, N. Where it is negative flanks part, and no linear
-    answer holds. Shape (m, S).
+    """Least mesh force over the period, mean and harmonics together, N. Where it is negative the flanks part,
+    and the linear response does not hold. Shape (m, S).
     """
     residual: float = 0.0
     """Largest force left by the linear solves, over the largest exciting force."""
@@ -103,8 +110,8 @@ class HarmonicResponse:
         default_factory=_none, metadata=stored("N", "complex amplitude of the excitation", "mesh", "order")
     )
     floor: LineFloor | None = None
-    """Floor of the lines of a long period that are left out, in sum; None where none is left out, and in a
-    response from a file.
+    """Sum of the lines of a long period that are left out; None where none is left out, and in a response
+    that was read from a file.
     """
 
     @property
@@ -135,7 +142,7 @@ def harmonic_response(
     orders : int
         Harmonics of the mesh frequency of the first mesh that turns.
     time : float
-        When loads are taken, s.
+        Time at which loads that vary are taken, s.
     excitation : str
         ``"static_error"``: k times the STE's harmonics. ``"blocked_force"``: the force's harmonics while the
         transmission error is held at the mean of the STE; the same to first order in the STE's variation.
@@ -174,14 +181,16 @@ def excited_lines(system: System, orders: int, time: float, speed: FloatArray) -
 
 
 def floor_of(at: Excited, speed: FloatArray, lines: Lines) -> LineFloor | None:
-    """Return the floor of the lines left out at `speed` (S,); None without any, or if a frame turns."""
+    """Return the floor of the lines left out at `speed` (S,); None without any, or with a rotating frame."""
     if not lines.omitted.size or at.turning:
         return None
+    # frequency of the common period, Hz, by speed
     pace = np.array([1.0 / at.period.duration(float(value)) for value in speed])
     inputs, force = floor_inputs(at, lines.omitted), []
     hertz = floor_frequencies(at, lines.omitted[0] * np.min(pace), lines.omitted[-1] * np.max(pace))
     for part in speed_blocks((hertz.size, 1), inputs.row.size):
         omega = 2.0 * math.pi * hertz[part]
+        # motions by each input; the inputs take the place of the harmonics (G, e, n)
         by_input = np.moveaxis(receptances(at, omega, inputs.row)[:, 0], 2, 1)
         force.append(bearing_forces(at, np.repeat(omega[:, None], len(inputs.row), axis=1), by_input))
     return LineFloor(
@@ -198,10 +207,12 @@ def floor_of(at: Excited, speed: FloatArray, lines: Lines) -> LineFloor | None:
 def varied_floor(
     at: Excited, speed: FloatArray, lines: Lines, response: HarmonicResponse
 ) -> LineFloor | None:
-    """Return `floor_of`, with its change by a varying stiffness, by bearing and speed.
+    """Return `floor_of`, with its relative change by a varying stiffness, by bearing and speed.
 
-    The lines left out take no part in what it makes of those kept. Where it changes forces by a part r, that
-    of those kept, powers P of those left out and Q of those kept change by 2 r (P + sqrt(P Q)) + r^2 P.
+    The change is an estimate. A varying stiffness couples lines, but in `response` only the solved ones. Let
+    r be the relative change (rms) of the solved bearing forces by it, P the power of the lines left out and Q
+    that of the solved ones. If the lines left out change by r too, and add r times their force to the solved
+    lines, the power changes by 2 r (P + sqrt(P Q)) + r^2 P.
     """
     floor = floor_of(at, speed, lines)
     if floor is None:
@@ -210,10 +221,10 @@ def varied_floor(
     mean = steady_vibration(at, speed, harmonics)
     shared = response.bearing_force[..., np.isin(harmonics, mean.harmonics)]
     changed = shared - bearing_forces(at, mean.omega, mean.displacement)
-    squares = floor.of_bearings()[0]
-    listed = 0.5 * np.sum(np.abs(shared[:, :3]) ** 2, axis=(1, 3))
+    squares = floor.of_bearings()[0]  # P
+    listed = 0.5 * np.sum(np.abs(shared[:, :3]) ** 2, axis=(1, 3))  # Q: forces, without moments
     change = 0.5 * np.sum(np.abs(changed[:, :3]) ** 2, axis=(1, 3))
-    part = np.sqrt(change / np.maximum(listed, 1e-300))
+    part = np.sqrt(change / np.maximum(listed, 1e-300))  # r; 1e-300: no division by zero
     factor = 1.0 + np.sqrt(listed / np.maximum(squares, 1e-300))
     return replace(floor, changed=2.0 * part * factor + part**2)
 
@@ -255,16 +266,21 @@ def _static_loads(at: Excited, harmonics: IntArray) -> ComplexArray:
             continue
         entry = elements.entry[mesh]
         tilting, _, sliding = (int(row) for row in laws.row[entry])
-        if laws.per_face[entry] > 0.0:
+        if (
+            laws.per_face[entry] > 0.0
+        ):  # the load moves along the face; the row's force is moment times per_face
             moment = -cycle.force[:, tilting] / laws.per_face[entry]
             loads[0, mesh] = harmonics_of(at, mesh, moment, harmonics)
-        if sliding > 0:
+        if sliding > 0:  # 0: the flank has no row of friction
             loads[1, mesh] = harmonics_of(at, mesh, cycle.force[:, sliding], harmonics)
     return loads
 
 
 def _mesh_force(at: Excited, steady: Steady) -> ComplexArray:
-    """Transverse mesh forces, (m, S, H): mean tangent and damping on the coordinates, less the excitation."""
+    """Return the transverse mesh forces, (m, S, H), N.
+
+    They are mean tangent and damping on the coordinates of a mesh's p rows, less the exciting force.
+    """
     system, u, omega, viscous = at.system, steady.displacement, steady.omega, at.at_rest.viscous
     force = np.empty((len(at.cycles), *omega.shape), dtype=complex)
     for f, cycle in enumerate(at.cycles):
@@ -284,21 +300,22 @@ def along_rows(u: ComplexArray, rows: FloatArray) -> ComplexArray:
 def bearing_forces(at: Excited, omega: FloatArray, u: ComplexArray) -> ComplexArray:
     """Return the bearing forces (b, 3 or 6, S, H) by motions (S, H, n) at omega (S, H).
 
-    The forces are those with the motion less those without, for real and imaginary part one after the other.
+    `System.bearing_force` takes real motions, and includes the static force. So it is called for the real and
+    for the imaginary part, and its force without motion is subtracted.
     """
     system, rest = at.system, np.zeros((1, u.shape[2]))
     elements, rows = system.arrays.elements, system.arrays.direction.T
     tangent, viscous = (block_diagonal(elements, part).T for part in (at.at_rest.tangent, at.at_rest.viscous))
-    none = system.bearing_force(np.zeros((rows.shape[1], 1)), rest, rest)
-    force = np.empty((*none.shape[:2], *u.shape[:2]), dtype=complex)
+    static = system.bearing_force(np.zeros((rows.shape[1], 1)), rest, rest)
+    force = np.empty((*static.shape[:2], *u.shape[:2]), dtype=complex)
     for part in speed_blocks(omega.shape, 4 * rows.shape[1]):
         q = u[part].reshape(omega[part].size, u.shape[2])
         rate = 1j * omega[part].reshape(-1, 1) * q
         local = (q @ rows) @ tangent
         local = local + (rate @ rows) @ viscous
         real, imaginary = (
-            system.bearing_force(np.ascontiguousarray(of(local.T)), of(q), of(rate)) - none
-            for of in (np.real, np.imag)
+            system.bearing_force(np.ascontiguousarray(part_of(local.T)), part_of(q), part_of(rate)) - static
+            for part_of in (np.real, np.imag)
         )
         force[:, :, part] = (real + 1j * imaginary).reshape(force[:, :, part].shape)
     return force
@@ -307,12 +324,13 @@ def bearing_forces(at: Excited, omega: FloatArray, u: ComplexArray) -> ComplexAr
 def extremes(amplitude: ComplexArray, order: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the least and the largest sum of all harmonics (m, S, H) over the period, (m, S) each.
 
-    Over a period of more samples than `MAX_SAMPLES`, and than `MAX_PER_LINE` for each order, orders in no
-    proportion of small integers meet in all their phases: the extremes of their sums are the sums of their
-    extremes; of more than `MAX_PARTED`, of their amplitudes.
+    A period of more samples than `MAX_SAMPLES`, and than `MAX_PER_LINE` an order, is not sampled. Orders
+    whose ratio is no ratio of small integers meet in all phases over such a period. So the multiples of the
+    first order and the other orders are sampled by themselves, and their extremes added. With more than
+    `MAX_PARTED` orders the sum of all amplitudes is returned as a bound.
     """
     harmonic = _harmonics(tuple(order.tolist()))
-    samples = 8 * int(harmonic[-1] + 1) if order.size else 1
+    samples = _SAMPLES_PER_CYCLE * int(harmonic[-1] + 1) if order.size else 1
     is_multiple = harmonic % harmonic[:1] == 0
     if samples > max(MAX_SAMPLES, MAX_PER_LINE * order.size) and not np.all(is_multiple):
         if order.size > MAX_PARTED:
@@ -329,7 +347,7 @@ def extremes(amplitude: ComplexArray, order: FloatArray) -> tuple[FloatArray, Fl
     for part in speed_blocks((amplitude.shape[1], samples), amplitude.shape[0]):
         few = amplitude[:, part]
         lines = np.zeros((*few.shape[:2], samples // 2 + 1), dtype=complex)
-        lines[..., harmonic] = few * (samples / 2.0)
+        lines[..., harmonic] = few * (samples / 2.0)  # peak amplitudes as `irfft` counts them
         wave = np.fft.irfft(lines, samples, axis=-1)
         minimum[:, part], maximum[:, part] = np.min(wave, axis=-1), np.max(wave, axis=-1)
     return minimum, maximum
@@ -337,7 +355,7 @@ def extremes(amplitude: ComplexArray, order: FloatArray) -> tuple[FloatArray, Fl
 
 @lru_cache(maxsize=64)
 def _harmonics(order: tuple[float, ...]) -> IntArray:
-    """Return the orders (H,) as multiples of the frequency of their sum."""
+    """Return the orders (H,) as integer multiples of their greatest common divisor."""
     parts = [Fraction(value).limit_denominator(LARGEST_DENOMINATOR) for value in order]
     scale = math.lcm(*(part.denominator for part in parts))
     multiples = [int(part * scale) for part in parts]

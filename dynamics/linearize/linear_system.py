@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,6 +19,7 @@ from dynamics.motion.observation import local_state
 from dynamics.types import FloatArray
 
 SPRING_KINDS = ("mesh", "bearing", "coupling", "drive", "shaft", "housing")
+"""Kinds of springs, whose shares of the strain energy of a mode are stated."""
 
 
 @dataclass(frozen=True)
@@ -57,8 +60,8 @@ def require_freedoms(system: System) -> None:
 def about_running(system: System) -> System:
     """Return `system` for small motions about gears that run in the sense of the scene.
 
-    Friction then has the direction of running, also at a time of rest, and no slope in the speed. Loads that
-    change with an angle are at their means.
+    Friction then has the direction in which the gears run, even at a time at which they rest, and does not
+    change with the speed. Loads that change with an angle are at their means.
     """
     arrays = at_mean_loads(system.arrays)
     elements = arrays.elements
@@ -81,10 +84,11 @@ def linearize(system: System, time: float = 0.0) -> LinearSystem:
     if not start.status.usable:
         raise SolveError(f"no static equilibrium: {start.status.name.lower()}, {start.residual:.3g} N left")
     arrays = system.arrays
-    rest = np.zeros(start.displacement.size)
-    balance = force_balance(arrays, time, start.displacement, rest, rest, gyroscopic=False)
-    free = arrays.reference.freedom >= 0
-    names, strain, coefficient = _springs(system, time, balance.local.tangent)
+    zero = np.zeros(start.displacement.size)  # rates and external forces, which leave the derivatives alone
+    balance = force_balance(arrays, time, start.displacement, zero, zero, gyroscopic=False)
+    free = arrays.reference.freedom >= 0  # laws of trains without a drive; others have no freedom (-1)
+    springs = _springs(system, time, balance.local.tangent)
+    strain = np.array([spring.strain for spring in springs])
     return LinearSystem(
         freedom=system.freedoms.name,
         scale=arrays.scale,
@@ -92,60 +96,83 @@ def linearize(system: System, time: float = 0.0) -> LinearSystem:
         damping=balance.damping,
         stiffness=balance.stiffness,
         rigid=arrays.reference.vector[free],
-        spring=names,
-        strain=strain,
-        spring_stiffness=coefficient,
+        spring=tuple(spring.name for spring in springs),
+        strain=strain.reshape(len(springs), start.displacement.size),  # the shape of an empty list, too
+        spring_stiffness=np.array([spring.stiffness for spring in springs], dtype=float),
         equilibrium=start,
     )
 
 
-def _matrices(system: System, time: float, tangent: FloatArray) -> list[tuple[str, FloatArray, FloatArray]]:
-    """Names, strains per freedom, and stiffness matrices of bearings and couplings at `time`.
+class _Joint(NamedTuple):
+    """A bearing or a coupling with s strains that a matrix couples."""
 
-    Bearings that are not linear have their `tangent` (R, P) at the equilibrium.
+    name: str
+    motion: FloatArray
+    """Strains per freedom, m or rad. Shape (s, n)."""
+    stiffness: FloatArray
+    """Stiffness matrix over the strains. Shape (s, s)."""
+
+
+class _Spring(NamedTuple):
+    """A spring of one strain."""
+
+    name: str
+    strain: FloatArray
+    """Strain per freedom, m or rad. Shape (n,)."""
+    stiffness: float
+    """Stiffness, N/m or N m/rad."""
+
+
+def _joints(system: System, time: float, tangent: FloatArray) -> Iterator[_Joint]:
+    """Yield the bearings and couplings with a stiffness matrix at `time`.
+
+    Bearings that are not linear have the slopes of their forces at the equilibrium, `tangent` (R, P).
     """
     seats, couplings, keep = system.seats, system.couplings, system.freedoms.keep
-    bearings = [(name, keep(seats.motion[at]), seats.stiffness[at, at]) for name, at in seats.group]
-    joints = zip(couplings.name, couplings.motion, couplings.stiffness, strict=True)
-    springs = [*bearings, *((name, keep(motion), matrix) for name, motion, matrix in joints)]
+    for name, strains in seats.group:
+        yield _Joint(name, keep(seats.motion[strains]), seats.stiffness[strains, strains])
+    for name, motion, matrix in zip(couplings.name, couplings.motion, couplings.stiffness, strict=True):
+        yield _Joint(name, keep(motion), matrix)
     n = system.arrays.mass.shape[0]
     parts = frame_couplings(system.scene)
-    turned = local_state(system.arrays, time, np.zeros(n), np.zeros(n)).position[len(system.scene.meshes) :]
-    for part, turn in zip(parts, turned[: len(parts)], strict=True):
+    # behind the positions of the meshes stand the rotations, in turns; those of these couplings come first
+    position = local_state(system.arrays, time, np.zeros(n), np.zeros(n)).position
+    turns = position[len(system.scene.meshes) :][: len(parts)]
+    for part, turn in zip(parts, turns, strict=True):
         motion, matrix = frame_joint(system.scene, system.rotors, part, 2.0 * np.pi * float(turn))
-        springs.append((system.couplings.name[part.coupling], keep(motion), matrix))
-    first = system.arrays.elements.first[len(system.elements) - len(system.bearings) :]
-    for start, at in zip(first, system.bearings, strict=False):
-        rows, size = slice(start, start + at.directions.shape[0]), at.directions.shape[0]
+        yield _Joint(couplings.name[part.coupling], keep(motion), matrix)
+    # the elements of bearings that are not linear are the last ones
+    first_rows = system.arrays.elements.first[len(system.elements) - len(system.bearings) :]
+    for first, bearing in zip(first_rows, system.bearings, strict=False):  # one more: the end of the rows
+        size = bearing.directions.shape[0]
+        rows = slice(first, first + size)
         matrix = 0.5 * (tangent[rows, :size] + tangent[rows, :size].T)
-        springs.append((system.supports.name[at.support], system.arrays.direction[rows], matrix))
-    return springs
+        yield _Joint(system.supports.name[bearing.support], system.arrays.direction[rows], matrix)
 
 
-def _springs(
-    system: System, time: float, tangent: FloatArray
-) -> tuple[tuple[str, ...], FloatArray, FloatArray]:
-    """Names, strains per freedom and stiffnesses of all springs."""
+def _springs(system: System, time: float, tangent: FloatArray) -> list[_Spring]:
+    """Return the springs of meshes, bearings, couplings, drives, and elastic shafts and housings."""
     direction, supports, freedoms = system.arrays.direction, system.supports, system.freedoms
-    moves, meshes = freedoms.keep(supports.motion), zip(system.scene.meshes, system.driving_rows, strict=True)
-    springs: list[tuple[str, FloatArray, float]] = [
-        (mesh.name, direction[row], tangent[row, 0]) for mesh, row in meshes
+    springs = [
+        _Spring(mesh.name, direction[row], tangent[row, 0])
+        for mesh, row in zip(system.scene.meshes, system.driving_rows, strict=True)
     ]
+    motion = freedoms.keep(supports.motion)
     for index, name in enumerate(supports.name):
         if index not in system.seats.support:
-            direction_of = zip("xyz", moves[index], supports.stiffness[index], strict=True)
-            springs += [(f"{name}.{axis}", row, value) for axis, row, value in direction_of]
-    for name, motion, matrix in _matrices(system, time, tangent):
-        values, vectors = np.linalg.eigh(matrix)
+            by_axis = zip("xyz", motion[index], supports.stiffness[index], strict=True)
+            springs += [_Spring(f"{name}.{axis}", row, value) for axis, row, value in by_axis]
+    for joint in _joints(system, time, tangent):
+        values, vectors = np.linalg.eigh(joint.stiffness)
         principal = zip(values, vectors.T, strict=True)
-        springs += [(name, np.asarray(vector @ motion), value) for value, vector in principal if value > 0.0]
+        springs += [
+            _Spring(joint.name, np.asarray(vector @ joint.motion), value)
+            for value, vector in principal
+            if value > 0.0
+        ]
     for _, drive, row in drive_springs(system.scene, system.kinematics, system.rotors, freedoms):
-        springs.append((drive.name, row, drive.stiffness or 0.0))
+        springs.append(_Spring(drive.name, row, drive.stiffness or 0.0))
     elastic = elastic_terms(system.rotors)[0][freedoms.column]
     unit = np.eye(elastic.size)
-    springs += [(freedoms.name[bent], unit[bent], elastic[bent]) for bent in np.flatnonzero(elastic > 0.0)]
-    return (
-        tuple(name for name, _, _ in springs),
-        np.array([row for _, row, _ in springs]).reshape(len(springs), direction.shape[1]),
-        np.array([value for _, _, value in springs], dtype=float),
-    )
+    springs += [_Spring(freedoms.name[i], unit[i], elastic[i]) for i in np.flatnonzero(elastic > 0.0)]
+    return springs

@@ -1,7 +1,9 @@
 """Harmonics of the loads over a common period at constant speed.
 
-In the common period all meshes and loads return to the same phase. The leading law, whose speeds these are,
-is the first drive or free rotation that turns.
+In the common period all meshes and loads return to the same phase. The leading law is the first drive or free
+rotation that turns; speeds are those of it. A multiple is a frequency over that of the common period.
+
+Shapes: S speeds, H harmonics, n freedoms.
 """
 
 from __future__ import annotations
@@ -23,6 +25,11 @@ from dynamics.types import ComplexArray, FloatArray, IntArray
 Waves = dict[Fraction, ComplexArray]
 """Amplitudes (S,) of exp(2 pi i h t / period) by the multiple h, of both signs."""
 ALONG: Waves = {Fraction(0): np.ones(1, dtype=complex)}
+"""The constant 1: the direction of a force that does not turn."""
+LARGEST_DENOMINATOR = 10_000
+"""Largest denominator of speeds of laws over that of the leading law, which are read as fractions."""
+ROUNDING = 1e-9
+"""Relative rounding of a highest multiple."""
 
 
 def load_harmonics(
@@ -30,9 +37,9 @@ def load_harmonics(
 ) -> ComplexArray:
     """Return the forces of loads and unbalances on the freedoms at `speed` (S,), (S, H, n), N and N m.
 
-    Without any (1, H, n): nothing at all speeds.
-    Complex peak amplitudes of the multiples `harmonics` (H,) of the common period's frequency; loads by time
-    have their values at `time` (s). An unbalance acts by its centrifugal force and its weight.
+    A system without loads has zeros of shape (1, H, n). Forces are complex peak amplitudes of the multiples
+    `harmonics` (H,) of the common period's frequency; loads by time have their values at `time` (s). An
+    unbalance acts by its centrifugal force and its weight.
     """
     elements, direction = system.arrays.elements, system.arrays.direction
     loads = np.flatnonzero(among(elements.law, (Law.APPLIED_FORCE, Law.UNBALANCE)))
@@ -47,6 +54,7 @@ def load_harmonics(
         for row, waves in enumerate(rows, start=first):
             for multiple, amplitude in waves.items():
                 if multiple.denominator == 1 and int(multiple) in column_of:
+                    # twice: the wave of the opposite multiple is the conjugate
                     force[:, column_of[int(multiple)]] += 2.0 * amplitude[:, None] * direction[row]
     return force
 
@@ -64,7 +72,8 @@ class _Course:
     def __init__(self, system: System, period: CommonPeriod, speed: FloatArray, time: float) -> None:
         self._system, self._time = system, time
         self._speed = speed
-        part = [Fraction(float(p)).limit_denominator(10_000) for p in period.proportion]
+        part = [Fraction(float(p)).limit_denominator(LARGEST_DENOMINATOR) for p in period.proportion]
+        # phases advance in the sense in which the leading law turns
         forward = 1 if system.scene.references[period.law].speed.extreme > 0.0 else -1
         self._multiple = [
             forward
@@ -85,7 +94,7 @@ class _Course:
         else:
             factor = self._orders(course, self._multiple_of(int(laws.phase[entry])))
         size, frame = float(laws.size[entry]), int(laws.frame[entry])
-        if frame < 0:
+        if frame < 0:  # the force does not turn with a shaft
             return [_product(factor, ALONG, size)]
         rows = [_product(factor, wave, size) for wave in _circle(self._multiple_of(frame), 0.0)]
         return [*rows, _product(factor, ALONG, size)][: int(laws.rows[entry])]
@@ -97,12 +106,13 @@ class _Course:
         cosine, sine = _circle(self._multiple_of(int(laws.phase[entry])), part.angle)
         arm = part.amount / float(laws.lever[entry])
         x, y = (arm * float(g) for g in laws.gravity)
+        # the weight of the unbalance turns the shaft: its arm in the fixed frame times gravity
         still: Waves = {Fraction(0): np.ones(self._speed.size, dtype=complex)}
         weight = _product(still, _sum(_product(ALONG, cosine, y), _product(ALONG, sine, -x)), 1.0)
         return [*(_product({Fraction(0): pull}, wave, 1.0) for wave in (cosine, sine)), weight]
 
     def _orders(self, course: Orders, multiple: Fraction) -> Waves:
-        """Return the factor by an angle."""
+        """Return the factor of a load with orders of an angle, whose frequency is `multiple`."""
         ones = np.ones(self._speed.size, dtype=complex)
         waves: Waves = {Fraction(0): np.array(course.mean * ones, dtype=complex)}
         for order, amplitude, phase in zip(course.multiple, course.amplitude, course.phase, strict=True):
@@ -111,6 +121,7 @@ class _Course:
         return waves
 
     def _multiple_of(self, position: int) -> Fraction:
+        """Return the multiple of a phase, by its position behind those of the meshes."""
         return self._multiple[position - len(self._system.scene.meshes)]
 
     def _shaft_speed(self, name: str) -> FloatArray:
@@ -119,7 +130,7 @@ class _Course:
 
 
 def _circle(multiple: Fraction, angle: float) -> tuple[Waves, Waves]:
-    """Return cosine and sine of an angle that starts at `angle`, rad."""
+    """Return cosine and sine of an angle that starts at `angle`, rad, and has the frequency `multiple`."""
     half = np.full(1, 0.5 * np.exp(1j * angle), dtype=complex)
     cosine = _sum({multiple: half}, {-multiple: half.conj()})
     return cosine, _sum({multiple: -1j * half}, {-multiple: 1j * half.conj()})
@@ -142,4 +153,4 @@ def _product(first: Waves, second: Waves, size: float) -> Waves:
 def load_cycles(system: System, period: CommonPeriod) -> int:
     """Return the highest multiple of the common period's frequency at which a load excites; 0 without one."""
     orders = load_orders(system.scene, system.kinematics) @ np.abs(period.proportion)
-    return math.ceil(float(period.revolutions) * float(np.max(orders, initial=0.0)) * (1.0 - 1e-9))
+    return math.ceil(float(period.revolutions) * float(np.max(orders, initial=0.0)) * (1.0 - ROUNDING))

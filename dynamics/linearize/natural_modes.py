@@ -65,7 +65,11 @@ def natural_modes(system: System | LinearSystem, time: float = 0.0) -> Modes:
 
 
 def _solve(linear: LinearSystem) -> tuple[FloatArray, FloatArray]:
-    """Squared circular frequencies (n,) and shapes (n, n) of unit modal mass, rigid motions exactly."""
+    """Return squared circular frequencies (n,) and shapes (n, n) of unit modal mass.
+
+    Rigid motions are known, so that their frequency is 0 exactly. The eigenproblem is solved for motions that
+    are orthogonal to them by mass.
+    """
     per_meter = 1.0 / linear.scale
     mass, stiffness = (per_meter[:, None] * a * per_meter for a in (linear.mass, linear.stiffness))
     rigid = linear.rigid * linear.scale
@@ -80,9 +84,10 @@ def _solve(linear: LinearSystem) -> tuple[FloatArray, FloatArray]:
 
 
 def unbounded(linear: LinearSystem, omega: FloatArray | ComplexArray) -> SolveError:
-    """Return the refusal of a vibration that nothing bounds at one of the frequencies, rad/s.
+    """Return the error for a vibration without bound at one of the frequencies `omega`, rad/s.
 
-    It names the mode with the least distance from a frequency and damping, both in parts of its own.
+    It names the mode for which the relative distance of its frequency from an excited one, plus its damping
+    ratio, is the least.
     """
     modes, excited = natural_modes(linear), np.unique(np.abs(omega)) / (2.0 * math.pi)
     elastic = np.flatnonzero(modes.frequency)

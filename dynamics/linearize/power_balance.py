@@ -70,33 +70,33 @@ def power_balance(at: Excited, speed: FloatArray, steady: Steady) -> PowerBalanc
     Forces of complex amplitude F on coordinates of amplitude y put in Re(F conj(i w y))/2. Each part is
     assembled by itself, so the residual tells what the linear solves and the sum of the parts leave.
     """
-    gained: dict[str, list[FloatArray]] = {mesh.name: [] for mesh in at.system.scene.meshes}
-    lost: dict[tuple[str, str], list[FloatArray]] = {}
+    gains: dict[str, list[FloatArray]] = {mesh.name: [] for mesh in at.system.scene.meshes}
+    losses: dict[tuple[str, str], list[FloatArray]] = {}
     loaded = False
     for part in speed_blocks(steady.omega.shape, steady.displacement.shape[2]):
         u, absorbed = steady.displacement[part], dict[tuple[str, str], FloatArray]()
         rate = 1j * steady.omega[part, :, None] * u
-        # the meshes come first in `gained`; after the first block `LOADS` follows, which has no cycle
-        for name, cycle in zip(gained, at.cycles, strict=False):
+        # the meshes come first in `gains`; after the first block `LOADS` follows, which has no cycle
+        for name, cycle in zip(gains, at.cycles, strict=False):
             along = rate @ at.system.arrays.direction[cycle.rows].T
             # forces that do not depend on speed have one row
             force = steady.force if len(steady.force) == 1 else steady.force[part]
-            gained[name].append(_power(np.swapaxes(force[:, cycle.rows], 1, 2), along))
+            gains[name].append(_power(np.swapaxes(force[:, cycle.rows], 1, 2), along))
         loads = load_harmonics(at.system, at.period, speed[part], steady.harmonics, at.time)
         loaded = loaded or bool(np.any(loads))
-        gained.setdefault(LOADS, []).append(_power(loads, rate))
+        gains.setdefault(LOADS, []).append(_power(loads, rate))
         for name, kind, power in _losses(at, speed[part], u, rate):
             absorbed[name, kind] = absorbed.get((name, kind), 0.0) + power
         for key, power in absorbed.items():
-            lost.setdefault(key, []).append(power)
+            losses.setdefault(key, []).append(power)
     if not loaded:
-        gained.pop(LOADS, None)
+        gains.pop(LOADS, None)
     return PowerBalance(
-        tuple(gained),
-        np.array([np.concatenate(powers) for powers in gained.values()]).reshape(-1, *steady.omega.shape),
-        tuple(name for name, _ in lost),
-        tuple(kind for _, kind in lost),
-        np.array([np.concatenate(powers) for powers in lost.values()]).reshape(-1, *steady.omega.shape),
+        tuple(gains),
+        np.array([np.concatenate(powers) for powers in gains.values()]).reshape(-1, *steady.omega.shape),
+        tuple(name for name, _ in losses),
+        tuple(kind for _, kind in losses),
+        np.array([np.concatenate(powers) for powers in losses.values()]).reshape(-1, *steady.omega.shape),
     )
 
 

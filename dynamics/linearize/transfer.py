@@ -171,9 +171,9 @@ class FlankTransfer(ArrayFile):
 
         Raises `SolveError`: nothing bounds the vibration at one of the frequencies.
         """
-        taken = self._taken(flanks.tangent - self.tangent, flanks.viscous - self.viscous, self.motion)
-        right = (flanks.force - self.force).T[None] - taken[..., 0]
-        v = solved(np.eye(len(self.force)) + taken[..., 1:], right[..., None])[..., 0]
+        opposing = self._opposing(flanks.tangent - self.tangent, flanks.viscous - self.viscous, self.motion)
+        right = (flanks.force - self.force).T[None] - opposing[..., 0]
+        v = solved(np.eye(len(self.force)) + opposing[..., 1:], right[..., None])[..., 0]
         if not np.all(np.isfinite(v)):
             raise SolveError("the vibration is unbounded with these flanks at one of the frequencies")
         return np.concatenate([np.ones((*v.shape[:2], 1)), v], axis=2)
@@ -207,13 +207,13 @@ class FlankTransfer(ArrayFile):
 
         Differentiated, (1 + X A) dv = de' - dX (A v + G u_0).
         """
-        taken = self._taken(flanks.tangent - self.tangent, flanks.viscous - self.viscous, self.motion)
+        opposing = self._opposing(flanks.tangent - self.tangent, flanks.viscous - self.viscous, self.motion)
         motion = np.einsum("rshc,shc->rsh", self.motion, inputs)[..., None]
         right = [
-            change.force.T[None] - self._taken(change.tangent, change.viscous, motion)[..., 0]
+            change.force.T[None] - self._opposing(change.tangent, change.viscous, motion)[..., 0]
             for change in changes
         ]
-        v = solved(np.eye(len(self.force)) + taken[..., 1:], np.stack(right, axis=-1))
+        v = solved(np.eye(len(self.force)) + opposing[..., 1:], np.stack(right, axis=-1))
         return np.concatenate([np.zeros((*v.shape[:2], 1, v.shape[3])), v], axis=2)
 
     def varied_inputs(self, at: Excited, flanks: FlankExcitation) -> tuple[ComplexArray, float]:
@@ -223,8 +223,8 @@ class FlankTransfer(ArrayFile):
         as in a scene of the receptances A B. Raises `SolveError` where nothing bounds the vibration.
         """
         inputs, count = self.inputs(flanks), at.cycles[-1].rows.stop
-        taken = self._taken(flanks.tangent - self.tangent, flanks.viscous - self.viscous, self.motion)
-        reach = np.linalg.inv(np.eye(len(self.force)) + taken[..., 1:])[..., :count]
+        opposing = self._opposing(flanks.tangent - self.tangent, flanks.viscous - self.viscous, self.motion)
+        reach = np.linalg.inv(np.eye(len(self.force)) + opposing[..., 1:])[..., :count]
         displacement = np.einsum("rshc,shcf->shrf", self.motion[:count, :, :, 1:], reach)
         made = np.einsum("rshc,shc->shr", self.motion[:count], inputs)
         made[..., self.first[: len(flanks.static)]] -= flanks.static.T
@@ -239,16 +239,16 @@ class FlankTransfer(ArrayFile):
             raise SolveError("the vibration is unbounded with these flanks at one of the speeds")
         return inputs, residual
 
-    def _taken(self, stiffer: FloatArray, damped: FloatArray, motion: ComplexArray) -> ComplexArray:
-        """Return the forces (S, H, R, c) that changed tangents (R, R) take of motions (R, S, H, c)."""
-        omega, taken = 2j * math.pi * self.frequency[..., None], np.zeros_like(motion)
+    def _opposing(self, stiffer: FloatArray, damped: FloatArray, motion: ComplexArray) -> ComplexArray:
+        """Return the forces (S, H, R, c) of added tangents (R, R) against motions (R, S, H, c)."""
+        omega, opposing = 2j * math.pi * self.frequency[..., None], np.zeros_like(motion)
         for start, end in pairwise(self.first.tolist()):
             flank_rows = slice(start, end)
             tangent, viscous = stiffer[flank_rows, flank_rows], damped[flank_rows, flank_rows]
             if np.any(tangent) or np.any(viscous):
                 part = motion[flank_rows]
-                taken[flank_rows] = np.tensordot(tangent, part, 1) + omega * np.tensordot(viscous, part, 1)
-        return np.moveaxis(taken, 0, 2)
+                opposing[flank_rows] = np.tensordot(tangent, part, 1) + omega * np.tensordot(viscous, part, 1)
+        return np.moveaxis(opposing, 0, 2)
 
     def response(self, flanks: FlankExcitation) -> TransferredResponse:
         """Return the linear response with other flanks; raises `SolveError` as `inputs` does."""

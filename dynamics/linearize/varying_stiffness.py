@@ -129,11 +129,11 @@ class _Varying:
     tangent: FloatArray
     """Tangents less their mean, over the table's period in time, N/m. Shape (N, p, p)."""
 
-    def pressed(self, made: ComplexArray) -> ComplexArray:
+    def pressed(self, coordinates: ComplexArray) -> ComplexArray:
         """Return the Fourier coefficients (Q + 1, p) of the forces by those of the coordinates."""
         samples = len(self.tangent)
-        spectrum = np.zeros((samples // 2 + 1, made.shape[1]), dtype=complex)
-        spectrum[self.line] = made
+        spectrum = np.zeros((samples // 2 + 1, coordinates.shape[1]), dtype=complex)
+        spectrum[self.line] = coordinates
         wave = np.fft.irfft(spectrum, samples, axis=0)
         force = np.einsum("tij,tj->ti", self.tangent, wave)
         return np.asarray(np.fft.rfft(force, axis=0)[self.line])
@@ -154,19 +154,20 @@ class VaryingStiffness:
         flanks = range(len(at.cycles))
         return cls(tuple(part for index in flanks for part in _varying(at, index, harmonics)), still)
 
-    def push(self, receptance: ComplexArray, made: ComplexArray) -> tuple[ComplexArray, FloatArray]:
+    def push(self, receptance: ComplexArray, source: ComplexArray) -> tuple[ComplexArray, FloatArray]:
         """Return the forces by the varying tangents (S, H + 1, R'), N, and the relative residuals (S,) left.
 
-        The first is the mean, the others are amplitudes. `receptance` (S, H, R', R') are those of the
-        rows, m/N, and `made` (S, H, R') amplitudes of what makes force with the mean tangents, m.
+        The first of the forces is the mean, the others are amplitudes. `receptance` (S, H, R', R') are those
+        of the rows, m/N. `source` (S, H, R') are amplitudes of the coordinates that press with the mean
+        tangents, m.
         """
-        speeds, harmonics, rows = made.shape
+        speeds, harmonics, rows = source.shape
         push, left = np.zeros((speeds, harmonics + 1, rows), dtype=complex), np.zeros(speeds)
         balance = DirectBalance.of(self.parts, harmonics + 1, rows)
         for part in speed_blocks((speeds, harmonics + 1), rows * max(rows, balance.size)):
             mean = np.broadcast_to(self.still, (len(receptance[part]), 1, rows, rows))
             receptances = np.concatenate([mean, receptance[part]], axis=1)
-            sources = np.concatenate([np.zeros_like(made[part, :1]), 0.5 * made[part]], axis=1)
+            sources = np.concatenate([np.zeros_like(source[part, :1]), 0.5 * source[part]], axis=1)
             if balance.size <= DIRECT:
                 push[part], left[part] = balance.solve(receptances, sources)
                 continue
@@ -213,21 +214,21 @@ class DirectBalance:
             pressing[part.line_index, part.rows, at], first = part_pressing, at.stop
         return cls(pressing, harmonic, row, imaginary)
 
-    def solve(self, receptance: ComplexArray, made: ComplexArray) -> tuple[ComplexArray, FloatArray]:
-        """Return the forces (S, H + 1, R'), Fourier coefficients, and the residuals (S,) left, relative.
+    def solve(self, receptance: ComplexArray, source: ComplexArray) -> tuple[ComplexArray, FloatArray]:
+        """Return the Fourier coefficients of the forces (S, H + 1, R') and the relative residuals (S,).
 
-        `receptance` (S, H + 1, R', R') are receptances of the rows, `made` (S, H + 1, R') coefficients of
-        what makes force with the mean tangents.
+        `receptance` (S, H + 1, R', R') are receptances of the rows, and `source` (S, H + 1, R') coefficients
+        of the coordinates that press with the mean tangents.
         """
         answer = np.matmul(receptance[:, self.harmonic, self.row, None], self.pressing[self.harmonic])[
             ..., 0, :
         ]
         matrix = np.where(self.imaginary[:, None], answer.imag, answer.real) + np.eye(self.size)
-        sources = made[:, self.harmonic, self.row]
+        sources = source[:, self.harmonic, self.row]
         right = np.where(self.imaginary, sources.imag, sources.real)
         unknown = solved(matrix, right[..., None])
         residuals = np.linalg.norm((matrix @ unknown)[..., 0] - right, axis=1)
-        size = np.sqrt(np.sum(np.abs(made) ** 2, axis=(1, 2)))
+        size = np.sqrt(np.sum(np.abs(source) ** 2, axis=(1, 2)))
         return np.tensordot(unknown[..., 0], self.pressing, (1, 2)), residuals / np.maximum(size, 1e-300)
 
 
@@ -294,23 +295,23 @@ def _alike(cycle: FlankCycle) -> bool:
 
 
 def _solved(
-    parts: tuple[_Varying, ...], receptance: ComplexArray, made: ComplexArray
+    parts: tuple[_Varying, ...], receptance: ComplexArray, source: ComplexArray
 ) -> tuple[ComplexArray, float]:
-    """Solve the balance at a speed, and return the residual that is left, relative.
+    """Return the forces of the balance at one speed, and its relative residual.
 
     Parameters
     ----------
     receptance : (H + 1, R', R') complex array
         Receptances of the rows, of the mean and the harmonics, m/N.
-    made : (H + 1, R') complex array
-        Fourier coefficients of what makes force with the mean tangents, m.
+    source : (H + 1, R') complex array
+        Fourier coefficients of the coordinates that press with the mean tangents, m.
 
     Returns
     -------
     (H + 1, R') complex array
         Fourier coefficients of the forces by which the varying part of the tangents presses, N.
     """
-    harmonics, rows = made.shape
+    harmonics, rows = source.shape
 
     def pressed(w: ComplexArray) -> ComplexArray:
         force = np.zeros_like(w)
@@ -322,7 +323,7 @@ def _solved(
         w = _complex(real, harmonics, rows)
         return real + _real(np.matmul(receptance, pressed(w)[..., None])[..., 0])
 
-    right = _real(made)
+    right = _real(source)
     size = float(np.linalg.norm(right))
     operator = LinearOperator((right.size, right.size), matvec=balance, dtype=float)
     solution, _ = gmres(operator, right, x0=right, rtol=CONVERGED, restart=RESTART, maxiter=CYCLES)

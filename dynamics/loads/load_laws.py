@@ -1,4 +1,8 @@
-"""The compiled laws of loads: torques by speed, forces by time, speed or angle, unbalances."""
+"""The compiled laws of loads: torques by speed, forces by time, speed or angle, unbalances.
+
+A law is a constant size times a factor, which follows the time, the speed or the angle of a shaft. A row is
+one generalized force on the mechanism. Compiled code reads the records of arrays below.
+"""
 
 from __future__ import annotations
 
@@ -62,7 +66,8 @@ class ForceCourseLaws(NamedTuple):
     @classmethod
     def packed(cls, courses: Sequence[Course], **others: Any) -> ForceCourseLaws:
         """Lay out courses; `others` are the fields that do not follow from them."""
-        angular = [course if isinstance(course, Orders) else Orders("", (), (), ()) for course in courses]
+        empty = Orders("", (), (), ())  # no orders: holds the position of a factor by time or by speed
+        angular = [course if isinstance(course, Orders) else empty for course in courses]
         kinds = {TimeLaw: BY_TIME, BySpeed: BY_SPEED, Orders: BY_ANGLE}
         return cls(
             kind=np.array([kinds[type(course)] for course in courses], dtype=np.int64),
@@ -78,12 +83,12 @@ class ForceCourseLaws(NamedTuple):
         )
 
     def starting_at(self, time: float) -> ForceCourseLaws:
-        """Return the laws with `time` (s) as 0."""
-        by_time = np.repeat(self.kind == BY_TIME, np.diff(self.factor.first))
+        """Return the laws on a clock that reads 0 at `time`, s."""
+        by_time = np.repeat(self.kind == BY_TIME, np.diff(self.factor.first))  # for each piece of the cubics
         return self._replace(factor=self.factor._replace(start=self.factor.start - time * by_time))
 
     def frozen_at(self, time: float) -> ForceCourseLaws:
-        """Return the laws with factors by time for ever as they are at `time`, s."""
+        """Return the laws with constant factors by time, of the values at `time`, s."""
         factor, coefficient = self.factor, self.factor.coefficient.copy()
         for entry in np.flatnonzero(self.kind == BY_TIME):
             first, end = factor.first[entry], factor.first[entry + 1]
@@ -105,7 +110,11 @@ def _pieces(course: Course) -> tuple[FloatArray, FloatArray]:
 
 @routine
 def applied_force(laws: ForceCourseLaws, entry: int, local: LocalState, row: int) -> None:
-    """Write the forces on the rows from `row`, positive where they resist, and their slopes by speed."""
+    """Write the forces of the law `entry` on its rows, the first of which is `row`, and their slopes.
+
+    Forces of the local state are positive where they resist motion, so applied ones have the sign -1. A slope
+    is that of a force by the rate of the row of the speed, which follows the rows with force.
+    """
     rows, size = laws.rows[entry], laws.size[entry]
     kind, steady = laws.kind[entry], laws.steady[0]
     slope = 0.0  # of the factor; over rad/s where the kind is BY_SPEED, else not used

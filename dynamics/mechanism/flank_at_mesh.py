@@ -56,7 +56,11 @@ def flanks_at_mesh(
 
 
 def _flank(scene: Scene, gear: GearBody, line: LineOfAction, sense: int, side: int) -> FlankAtMesh:
-    """Return a flank: the pitch point's angle, plus the involute to the base circle, less the helix."""
+    """Return the flank of a gear on one side that touches at the pitch point.
+
+    Its angle on the base circle at mid-face is that of the pitch point, plus the involute from there to the
+    base circle, less the turn of the helix from mid-face to the height of the pitch point.
+    """
     x, y, z = scene.shaft(gear.shaft).origin
     angle = math.atan2(line.point[1] - y, line.point[0] - x)
     angle += side * _widening(gear, line.working_pressure_angle)
@@ -86,5 +90,6 @@ def base_thickness(scene: Scene, flank: FlankAtMesh, index: int, line: LineOfAct
     share = HALF
     if mesh.coast is not None:
         driver = mesh.coast.thickness
+        # the pitch is filled by a tooth of the driver, one of the driven gear, and the backlash
         share = driver if mesh.driver == gear.name else 1.0 - driver - mesh.coast.backlash / gear.base_pitch
     return share + gear.teeth * _widening(gear, line.working_pressure_angle) / math.pi

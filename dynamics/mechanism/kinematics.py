@@ -1,4 +1,8 @@
-"""Exact speeds of all shafts: a linear system over fractions, from meshes, drives and free rotations."""
+"""Exact speeds of all shafts: a linear system over fractions, from meshes, drives and free rotations.
+
+A law is a given speed of a shaft over time: that of a drive, or that of a free rotation, whose shaft may
+vibrate in rotation about it. The k laws are numbered drives first. All speeds are about +z.
+"""
 
 from __future__ import annotations
 
@@ -24,21 +28,25 @@ class Kinematics:
     """Motion of the shafts if all gears were conjugate: a speed is a sum of ratio times law over the laws."""
 
     law_shaft: tuple[int, ...]
-    """The shaft of each law: those of the drives, then those of the free rotations."""
+    """Index of the shaft of each law: those of the drives, then those of the free rotations."""
     rigid: tuple[bool, ...]
-    """Whether the law leaves its shaft no rotation of its own."""
+    """Whether the rotation of the law's shaft follows the law exactly and is no freedom."""
     ratio: tuple[tuple[Fraction, ...], ...]
-    """(shafts, laws); speeds about +z; exact."""
+    """Exact speed of each shaft over the speed of each law, (shafts, laws)."""
     mesh_rate: tuple[tuple[Fraction, ...], ...]
-    """(meshes, laws): base pitches per revolution of each law, in the driver's sense; exact."""
+    """Exact number of base pitches that a mesh advances per revolution of each law, (meshes, laws); positive
+    in the sense of `mesh_sense`.
+    """
     sense: tuple[int, ...]
-    """+1, -1 about +z, or 0 for a shaft at rest: in which sense each shaft turns when it is fastest."""
+    """Sense of each shaft when it turns fastest: +1 or -1 about +z, or 0 for a shaft at rest."""
     mesh_sense: tuple[int, ...]
-    """+1 or -1: the same for the driver of each mesh, seen from the carrier it runs on, if any."""
+    """Sense of the driver of each mesh when it turns fastest, +1 or -1 about +z; relative to the carrier if
+    the driver runs on one.
+    """
 
     @cached_property
     def imposed(self) -> frozenset[int]:
-        """Shafts whose rotation is no freedom."""
+        """Indices of the shafts whose rotation is no freedom."""
         return frozenset(s for s, rigid in zip(self.law_shaft, self.rigid, strict=True) if rigid)
 
     @cached_property
@@ -54,13 +62,13 @@ class Kinematics:
 
 
 def proportional_speeds(scene: Scene) -> FloatArray:
-    """Return the speeds (k,) of all laws in proportion; trains that all start from rest, alike."""
+    """Return speeds (k,) of the laws in the proportion of their extremes; 1 each if all of them are 0."""
     extreme = np.array([part.speed.extreme for part in scene.references])
     return extreme if np.any(extreme) else np.ones(extreme.size)
 
 
 def at_steady_speeds(scene: Scene, scale: float = 1.0) -> Scene:
-    """Return a scene whose drives hold `scale` times their largest speeds: none accelerates."""
+    """Return a scene whose drives run at the constant speed of `scale` times their largest speeds."""
     drives = (
         replace(drive, speed=TimeLaw.constant(scale * float(drive.speed.extreme))) for drive in scene.drives
     )
@@ -68,7 +76,7 @@ def at_steady_speeds(scene: Scene, scale: float = 1.0) -> Scene:
 
 
 def _train(scene: Scene) -> tuple[object, ...]:
-    """Return the parts that fix the kinematic motion: of meshes the gears alone."""
+    """Return the parts of a scene that fix the kinematic motion; of a mesh these are its gears."""
     gears = (name for mesh in scene.meshes for name in (mesh.name, mesh.driver, mesh.driven))
     return (scene.shafts, scene.gears, scene.couplings, scene.drives, scene.free_rotations, *gears)
 
@@ -78,9 +86,9 @@ def solve_kinematics(scene: Scene) -> Kinematics:
     """Solve for the speeds of all shafts.
 
     A mesh of gears a and b on the carrier c (none: w_c = 0) requires (w_a - w_c) z_a = -(w_b - w_c) z_b, with
-    + for a ring gear and its pinion; a coupling that joins rotations for equal speeds. What they leave open,
-    drives and free rotations set. Raises `InputError`: a mesh requires another ratio than the rest of the
-    train, two drives set the same train, or nothing sets a shaft's speed.
+    + for a ring gear and its pinion. A coupling that joins rotations requires equal speeds. Drives and free
+    rotations set the speeds that meshes and couplings leave open. Raises `InputError`: a mesh requires
+    another ratio than the rest of the train, two drives set the same train, or nothing sets a shaft's speed.
     """
     speeds = TrainSpeeds(len(scene.shafts))
     for index in range(len(scene.meshes)):
@@ -135,6 +143,7 @@ def _add_mesh(scene: Scene, speeds: TrainSpeeds, index: int) -> None:
     if known is not None and known != ratio:
         raise InputError(f"meshes[{index}]", str(ratio), f"of ratio {known}, as other meshes require")
     speeds.join(a, b, carrier, ratio)
+    # the new equation may leave a former mesh, or this one, no motion but rest
     for other in range(index + 1):
         first, _, frame = mesh_shafts(scene, other)
         if speeds.at_rest(first, frame):
@@ -145,17 +154,16 @@ def _add_mesh(scene: Scene, speeds: TrainSpeeds, index: int) -> None:
 
 
 def _resolved(scene: Scene, ratio: tuple[tuple[Fraction, ...], ...]) -> Kinematics:
+    """Return the kinematics by the ratios of the shafts; refuse a mesh whose driver never turns."""
     law_shaft = tuple(scene.shaft_index(part.shaft) for part in scene.references)
     course = _speeds_over_time(scene)
     limit = STANDSTILL * float(np.max(np.abs(course), initial=0.0))
     rates, mesh_senses = [], []
     for index, mesh in enumerate(scene.meshes):
         a, _, carrier = mesh_shafts(scene, index)
-        row = (
-            ratio[a]
-            if carrier is None
-            else tuple(x - y for x, y in zip(ratio[a], ratio[carrier], strict=True))
-        )
+        row = ratio[a]
+        if carrier is not None:  # the driver turns relative to the carrier
+            row = tuple(driver - frame for driver, frame in zip(row, ratio[carrier], strict=True))
         sense = _sense(row, course, limit)
         if sense == 0:
             bound = "a gear that turns" if carrier is None else "a gear that turns against its carrier"
@@ -165,17 +173,20 @@ def _resolved(scene: Scene, ratio: tuple[tuple[Fraction, ...], ...]) -> Kinemati
         mesh_senses.append(sense)
         rates.append(tuple(sense * scene.gear(mesh.driver).teeth * value for value in row))
     return Kinematics(
-        law_shaft,
-        tuple(part.rigid for part in scene.references),
-        ratio,
-        tuple(rates),
-        tuple(_sense(row, course, limit) for row in ratio),
-        tuple(mesh_senses),
+        law_shaft=law_shaft,
+        rigid=tuple(part.rigid for part in scene.references),
+        ratio=ratio,
+        mesh_rate=tuple(rates),
+        sense=tuple(_sense(row, course, limit) for row in ratio),
+        mesh_sense=tuple(mesh_senses),
     )
 
 
 def _speeds_over_time(scene: Scene) -> FloatArray:
-    """Speeds of all laws at all times at which one of them has a knot, (laws, times), rad/s."""
+    """Return the speeds of all laws at each time at which one of them has a knot, (laws, times), rad/s.
+
+    A free rotation has its initial speed throughout.
+    """
     times = sorted({time for part in scene.references for time in part.speed.time})
     rows = [drive.speed(np.array(times)) for drive in scene.drives]
     for free in scene.free_rotations:
@@ -185,7 +196,10 @@ def _speeds_over_time(scene: Scene) -> FloatArray:
 
 
 def _sense(row: tuple[Fraction, ...], course: FloatArray, limit: float) -> int:
-    """Sign of the fastest speed of a part that turns at `row` times the laws; 0 if it is at rest."""
+    """Return the sign of the fastest speed of a part that turns at `row` times the laws; 0: it is at rest.
+
+    `course` are speeds of the laws (laws, times); a part slower than `limit`, rad/s, is at rest.
+    """
     speed = np.array([float(value) for value in row]) @ course
     fastest = float(speed[np.argmax(np.abs(speed))])
     return 0 if abs(fastest) <= limit else (1 if fastest > 0.0 else -1)

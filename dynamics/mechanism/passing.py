@@ -1,4 +1,8 @@
-"""Excitations by their order of a shaft: teeth in mesh, planets, turns of shafts, elements of bearings."""
+"""Excitations by their order of a shaft: teeth in mesh, planets, turns of shafts, elements of bearings.
+
+An order counts repetitions per revolution of the shaft. In functions, `turns` are the speeds of shafts with
+their senses and `rates` the tooth frequencies of meshes, both in one unit.
+"""
 
 from __future__ import annotations
 
@@ -106,7 +110,7 @@ def _rates(scene: Scene, kinematics: Kinematics) -> tuple[FloatArray, FloatArray
 
 
 def turning_orders(scene: Scene, kinematics: Kinematics) -> dict[str, dict[str, float]]:
-    """Return by which orders a scene repeats: of each mesh frequency, and of one turn of each gear and shaft.
+    """Return the orders of each mesh frequency, and of one revolution of each gear and shaft.
 
     ``{"mesh": {name: order}, "shaft": {name: order}}``, what is at rest left out. Orders count by the first
     mesh that turns, or by the leading shaft without one. The turns of a gear are those against its carrier.
@@ -132,10 +136,11 @@ def turning_orders(scene: Scene, kinematics: Kinematics) -> dict[str, dict[str, 
 def _of_planets(scene: Scene, turns: FloatArray, rates: FloatArray, harmonics: int) -> Iterator[Excitation]:
     """Yield the sidebands next to the harmonics of meshes of equally spaced planets on a carrier that turns.
 
-    N planets pass the ground at theta + phi_p, and their mesh with a central gear of Z teeth is at Z (theta +
-    phi_p), theta being the angle of the carrier against the gear: of harmonic k with what repeats n times a
-    revolution of the carrier, the sum over the planets is left where k Z + n is a multiple of N, and cancels
-    elsewhere (McFadden and Smith 1985). A gear that overtakes the carrier counts backwards.
+    Planet p of N stands at the angle phi_p on the carrier, and theta is the angle of the carrier against the
+    central gear, which has Z teeth. The phase of its mesh is Z (theta + phi_p), and it passes a place on the
+    ground with the phase theta + phi_p. A mesh harmonic k modulated n times per revolution of the carrier has
+    a sum over the planets where k Z + n is a multiple of N, and cancels elsewhere (McFadden and Smith 1985).
+    Z is negative for a gear that overtakes the carrier.
     """
     central = [_central_gear(scene, mesh) for mesh in scene.meshes]
     for mesh, gear, rate in zip(scene.meshes, central, rates, strict=True):
@@ -147,6 +152,7 @@ def _of_planets(scene: Scene, turns: FloatArray, rates: FloatArray, harmonics: i
         assert carrier is not None  # a central gear is on the axis of one
         turn = float(turns[carrier])
         teeth = gear.teeth if (turn - float(turns[shaft])) * turn >= 0.0 else -gear.teeth
+        # the least n in either direction, 1 to N: k Z - n, k Z + n divisible by N
         below = [(harmonic * teeth) % number or number for harmonic in range(1, harmonics + 1)]
         sides = {"lower": [-n for n in below], "upper": [number - n or number for n in below]}
         for side, passes in sides.items():
@@ -195,4 +201,5 @@ def passing(every: Iterable[Excitation], order: float) -> list[Passing]:
         for part in every
         for harmonic in range(1, part.harmonics + 1)
     ]
-    return sorted(passings, key=lambda one: round(abs(one.distance) / SAME))
+    # distances that are the same but for rounding are equally near
+    return sorted(passings, key=lambda passing: round(abs(passing.distance) / SAME))

@@ -158,8 +158,8 @@ def _check_steps(offsets: Mapping[str, Sequence[Turn]], teeth: Mapping[str, int]
     """
     names = list(offsets)
     for gear, name in zip(names[:1] * len(names), names[1:], strict=False):
-        for index, (ahead, wanted) in enumerate(zip(offsets[gear], offsets[name], strict=True)):
-            angles = ((ahead + k) * Fraction(teeth[name], teeth[gear]) - wanted for k in range(teeth[gear]))
+        for index, (ahead, offset) in enumerate(zip(offsets[gear], offsets[name], strict=True)):
+            angles = ((ahead + k) * Fraction(teeth[name], teeth[gear]) - offset for k in range(teeth[gear]))
             off = min((float(angle - round(angle)) for angle in angles), key=abs)
             if abs(off) > TOOTH_FIT:
                 value = f'planet {index + 1}, off by {off:.6g} teeth of "{name}"'
@@ -168,9 +168,9 @@ def _check_steps(offsets: Mapping[str, Sequence[Turn]], teeth: Mapping[str, int]
                 raise InputError("number", value, bound, suggestion)
 
 
-def _check_fit(mine: Sequence[Turn], other: Sequence[Turn]) -> None:
+def _check_fit(turns: Sequence[Turn], other_turns: Sequence[Turn]) -> None:
     """Refuse a planet that would have to be at two angles at once."""
-    for index, (a, b) in enumerate(zip(mine, other, strict=True)):
+    for index, (a, b) in enumerate(zip(turns, other_turns, strict=True)):
         off = float(a - b)
         if abs(off - round(off)) > TOOTH_FIT:
             value = f"planet {index + 1}, off by {off - round(off):.6g} teeth"

@@ -1,7 +1,8 @@
 """A rotor: a shaft with its gears, discs and bushings, one body, rigid or elastic.
 
 A planet is a rotor whose pin a carrier takes along. A frame is the rotating frame of a carrier, in which its
-planets and all shafts on it are described.
+planets and all shafts on it are described. Stiffness matrices k of supports have rows x, y, z, tilt_x, tilt_y
+(N/m, N/rad, N m/rad); a lever is the axial distance from the rotor's center of mass, m.
 """
 
 from __future__ import annotations
@@ -42,8 +43,8 @@ class Rotor:
     carrier: int | None
     """Rotor of the carrier that takes this rotor along, if it is a planet: a rotor off the carrier's axis."""
     curved: tuple[tuple[FloatArray, float], ...] = ()
-    """Typical stiffness of nonlinear bearing laws, and of couplings that hold the rotor where no bearing
-    does, with their levers. Tuple of ((5, 5) array, float).
+    """Stiffness matrices (5, 5) with their levers, m, of nonlinear bearing laws at their typical load, and of
+    couplings that hold the rotor where no bearing does.
     """
     elastic: ElasticShaft | None = None
     """Elastic bending and twist of the shaft; None: rigid."""
@@ -60,7 +61,7 @@ class Rotor:
 
     @property
     def rigid_kinds(self) -> tuple[str, ...]:
-        """Rigid freedoms that bending needs: it is measured against them."""
+        """Rigid freedoms that bending needs, since its elastic coordinates are relative to them."""
         bends = self.elastic is not None and self.elastic.bends
         return ("x", "y", "tilt_x", "tilt_y") if bends else ()
 
@@ -74,21 +75,25 @@ class Rotor:
 
     @cached_property
     def radial_stiffness(self) -> float:
-        """Sum over the supports, N/m."""
-        plain = sum(support.radial_stiffness for support in self.supports)
-        return plain + sum(0.5 * float(k[0, 0] + k[1, 1]) for k, _ in self._matrices)
+        """Radial stiffness, the sum over the supports, N/m."""
+        isotropic = sum(support.radial_stiffness for support in self.supports)
+        return isotropic + sum(0.5 * float(k[0, 0] + k[1, 1]) for k, _ in self._matrices)
 
     @cached_property
     def axial_stiffness(self) -> float:
-        """Sum over the supports, N/m."""
-        plain = sum(support.axial_stiffness for support in self.supports)
-        return plain + sum(float(k[2, 2]) for k, _ in self._matrices)
+        """Axial stiffness, the sum over the supports, N/m."""
+        isotropic = sum(support.axial_stiffness for support in self.supports)
+        return isotropic + sum(float(k[2, 2]) for k, _ in self._matrices)
 
     @cached_property
     def elastic_lever(self) -> float:
-        """Axial distance from the center of mass to where a radial force does not tilt the shaft, m."""
+        """Axial distance from the center of mass to the elastic center, m.
+
+        A radial force at the elastic center does not tilt the shaft.
+        """
         moment = sum(support.radial_stiffness * self.lever(support) for support in self.supports)
         for k, lever in self._matrices:
+            # coupling of x with tilt_y and of y with tilt_x; a positive tilt_x moves positive z towards -y
             moment += 0.5 * float((k[0, 0] + k[1, 1]) * lever + k[0, 4] - k[1, 3])
         return moment / self.radial_stiffness if self.radial_stiffness > 0.0 else 0.0
 
@@ -96,28 +101,34 @@ class Rotor:
     def tilt_stiffness(self) -> float:
         """Moment per tilt about the elastic center, N m/rad."""
         arms = [(b.radial_stiffness, self.lever(b) - self.elastic_lever) for b in self.supports]
-        plain = sum(stiffness * arm**2 for stiffness, arm in arms)
-        added = [(k, lever - self.elastic_lever) for k, lever in self._matrices]
-        return plain + sum(
+        isotropic = sum(stiffness * arm**2 for stiffness, arm in arms)
+        matrices = [(k, lever - self.elastic_lever) for k, lever in self._matrices]
+        return isotropic + sum(
             0.5 * float((k[0, 0] + k[1, 1]) * a**2 + 2.0 * a * (k[0, 4] - k[1, 3]) + k[3, 3] + k[4, 4])
-            for k, a in added
+            for k, a in matrices
         )
 
     @cached_property
     def _matrices(self) -> list[tuple[FloatArray, float]]:
-        """Stiffness on top of the isotropic one, with levers; means of x and y are used."""
+        """Stiffness matrices (5, 5) that add to the isotropic stiffness of the supports, with levers.
+
+        Sums over the supports take the means of x and y of these matrices.
+        """
         matrices = [(b.added_stiffness, self.lever(b)) for b in self.supports if b.stiffness is not None]
         return [*matrices, *self.curved]
 
 
 def build_rotor(scene: Scene, shaft: Shaft) -> Rotor:
-    """Gather the parts on `shaft` into a rotor."""
+    """Return the rotor of a shaft with its gears, discs and bearings; damping ratios become damping.
+
+    For this damping the supports share the mass and the transverse inertia of the rotor equally.
+    """
     parts = [*shaft.bodies, *((body.inertia, body.position) for body in scene.mounted(shaft.name))]
     mass = sum(part.mass for part, _ in parts)
-    along = sum(part.mass * center for part, center in parts) / mass if mass > 0.0 else shaft.length / 2.0
-    transverse = sum(part.transverse + part.mass * (center - along) ** 2 for part, center in parts)
+    mean = sum(part.mass * position for part, position in parts) / mass if mass > 0.0 else shaft.length / 2.0
+    transverse = sum(part.transverse + part.mass * (position - mean) ** 2 for part, position in parts)
     inertia = Inertia(mass, sum(part.polar for part, _ in parts), transverse)
-    center = np.array(shaft.origin, dtype=float) + np.array([0.0, 0.0, along])
+    center = np.array(shaft.origin, dtype=float) + np.array([0.0, 0.0, mean])
     bushings = [bushing for bushing in scene.ground_bearings if bushing.shaft == shaft.name]
     bearings = [bearing for bearing in scene.planet_bearings if bearing.shaft == shaft.name]
     supports = max(len(bushings) + len(bearings), 1)
@@ -138,8 +149,9 @@ def build_rotor(scene: Scene, shaft: Shaft) -> Rotor:
 def _damped(support: Support, share: float, tilting: float) -> Support:
     """Fill in the damping by the damping ratio; the damping of a matrix is proportional to the matrix.
 
-    `share` and `tilting` are the support's shares of mass and transverse inertia; the latter sets the time
-    where the matrix holds tilt alone.
+    `share` and `tilting` are the support's shares of mass, kg, and transverse inertia, kg m^2. The largest
+    stiffness of a matrix along an axis, with the mass, gives the factor from stiffness to damping; a matrix
+    that holds tilt alone gives it by its largest tilt stiffness and the inertia.
     """
 
     def damping(specified: float | None, stiffness: float) -> float:

@@ -178,10 +178,10 @@ def choose_sampling(scene: Scene, kinematics: Kinematics, mode: float) -> Sampli
     if rate is None:
         by_order, by_mode = order_rate(scene, kinematics), PER_BAND * min(mode, outputs.band)
         rate = _rounded_up(max(by_order, by_mode))
-        wanted = max(_top_order(scene, kinematics), mode)
+        highest = max(_top_order(scene, kinematics), mode)
         chosen = f"highest mode that meshes excite, {mode:.4g} Hz"
-        if wanted > outputs.band:
-            chosen = f"band of the output, {outputs.band:.4g} Hz; orders and modes reach {wanted:.4g} Hz"
+        if highest > outputs.band:
+            chosen = f"band of the output, {outputs.band:.4g} Hz; orders and modes reach {highest:.4g} Hz"
         elif by_order >= by_mode and load > outputs.mesh_orders * mesh:
             chosen = f"highest order of a load, {load:.4g} Hz"
         elif by_order >= by_mode:

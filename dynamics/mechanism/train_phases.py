@@ -1,8 +1,11 @@
 """Phases of the meshes of a train: where the teeth of a gear stand decides the position of all its meshes.
 
 A mesh puts one flank of the driver and one of the driven gear at its pitch point. The other flanks of both
-follow from their tooth thickness, the other gears of a shaft from the angle between their teeth. Angles are
-those of a tooth, in pitches of its gear about +z, and grow beyond a turn: meshes count teeth by them.
+follow from their tooth thickness, the other gears of a shaft from the angle between their teeth.
+
+The angle of a flank or a tooth is in pitches of its gear, about +z. It is not reduced to one turn, since its
+whole number counts teeth. A flank has a key: its gear, and its side 1 or -1, to which it faces about +z. A
+flank or gear is placed once its angle is known. A train is a set of gears that mesh or turn at one speed.
 """
 
 from __future__ import annotations
@@ -23,9 +26,9 @@ from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 
 FIT = 1e-3
-"""Pitches by which a phase may be off the geometry: axes are typed with some six digits."""
+"""Pitches by which a stated phase may differ from the geometry: axes are stated with some six digits."""
 ROUNDING = 1e-9
-"""Pitches below a whole one that are rounding of angles."""
+"""Pitches below a whole number that count as that number: the rounding of angles."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +44,7 @@ class AssumedAngle:
 
 @dataclass(frozen=True)
 class TrainPhases:
-    """Positions of all meshes before any law has turned, and the assumptions on them beyond the geometry."""
+    """Positions of all meshes at the start of the motion, and the assumptions on them beyond the geometry."""
 
     position: FloatArray
     """Base pitches; stated ones as they are, others within the period of their table. Shape (m,)."""
@@ -62,8 +65,8 @@ def train_phases(scene: Scene, senses: tuple[int, ...]) -> TrainPhases:
     """Return the positions of all meshes, and the assumptions on them beyond the geometry.
 
     A train starts where its first mesh touches at the pitch point, or where that is stated; what the teeth
-    require comes next, then assumed thicknesses and angles. `senses` (m,) are those of the drivers. Raises
-    `InputError`: a stated position or angle contradicts the geometry.
+    require comes next, then assumed thicknesses and angles. `senses` (m,): sense of rotation of each driver
+    about +z, 1 or -1. Raises `InputError`: a stated position or angle contradicts the geometry.
     """
     return _phases(_Train(scene, senses))
 
@@ -74,8 +77,8 @@ class _Train:
     def __init__(self, scene: Scene, senses: tuple[int, ...]) -> None:
         self.scene = scene
         self.pairs: list[tuple[FlankAtMesh, FlankAtMesh]] = []
-        self.first: dict[int, FlankAtMesh] = {}
-        self.thickness: dict[int, float] = {}
+        self.first: dict[int, FlankAtMesh] = {}  # flank of each gear at its first mesh
+        self.thickness: dict[int, float] = {}  # of each gear, stated or assumed, in pitches
         self.count: dict[int, int] = {}  # meshes of each gear
         for index, line in enumerate(lines_of_action(scene, senses)):
             pair = flanks_at_mesh(scene, index, line, senses[index])
@@ -93,7 +96,7 @@ class _Train:
         self.assumed_thickness: dict[int, None] = {}
 
     def assign(self, key: tuple[int, int], angle: float, moves: dict[int, float]) -> None:
-        """Place a flank."""
+        """Place a flank at an angle; `moves` are those of its gear by assumed angles."""
         self.angle[key] = angle
         self.moves.setdefault(key[0], moves)
 
@@ -106,7 +109,10 @@ class _Train:
         return self.scene.gears[gear].base_tooth_thickness is not None
 
     def position(self, index: int) -> float:
-        """Return the position of a mesh; teeth are counted by the gear of more meshes, then the first one."""
+        """Return the position of a mesh, by the angle of one of its gears: they may count teeth differently.
+
+        It is the gear with more meshes, and of two alike the one that stands first in the scene.
+        """
         flank = min(self.pairs[index], key=lambda at: (-self.count[at.gear], at.gear))
         return flank.position(self.angle[flank.key])
 
@@ -118,7 +124,7 @@ class _Train:
         return at_mesh - flank.side * 0.5 * self._actual_thickness(gear)
 
     def _actual_thickness(self, gear: int) -> float:
-        """Return the thickness that the meshes leave a tooth, or the stated or assumed one."""
+        """Return the tooth thickness, pitches, between placed flanks, else the stated or assumed one."""
         thickness = self.thickness[gear]
         if (gear, 1) in self.angle and (gear, -1) in self.angle:
             thickness += _off(self.angle[gear, 1] - self.angle[gear, -1] - thickness)
@@ -176,7 +182,8 @@ def _join(groups: dict[str, int], first: str, second: str) -> None:
 
 
 def _wrapped(position: float, period: int) -> float:
-    return max(position - period * math.floor((position + ROUNDING) / period), 0.0) + 0.0  # no -0
+    # + 0.0 makes 0 of -0
+    return max(position - period * math.floor((position + ROUNDING) / period), 0.0) + 0.0
 
 
 def _assumed(train: _Train, number: int) -> AssumedAngle:
@@ -186,7 +193,7 @@ def _assumed(train: _Train, number: int) -> AssumedAngle:
 
 
 def _state(train: _Train, index: int, position: float) -> None:
-    """Place a mesh at a stated position, or refuse it."""
+    """Place a mesh at a stated position, or raise `InputError` if the train is at another one already."""
     driver, _ = train.pairs[index]
     if driver.key not in train.angle:
         train.assign(driver.key, driver.angle(position), {})
@@ -207,7 +214,7 @@ def _contradiction(train: _Train, index: int, position: float) -> InputError:
 
 def _follow(train: _Train) -> None:
     """Place all flanks that meshes and stated thicknesses fix; raises `InputError`: teeth do not fit."""
-    placed = -1
+    placed = -1  # less than any number of flanks, so that meshes are checked at least once
     while placed < len(train.angle):
         placed = len(train.angle)
         for index, pair in enumerate(train.pairs):
@@ -249,7 +256,7 @@ def _misfit(field: str, name: str, off: float, others: str) -> InputError:
 
 
 def _assume(train: _Train) -> None:
-    """Place all gears that assumed thicknesses, and stated or assumed angles of shafts, reach."""
+    """Place all gears that follow by assumed thicknesses, and by stated or assumed angles on shafts."""
     while _assume_thickness(train) or _follow_shaft(train):
         _follow(train)
 
@@ -283,9 +290,10 @@ def _follow_shaft(train: _Train) -> bool:
 
 
 def _neighbors(train: _Train) -> Iterator[tuple[int, int, float | None]]:
-    """Yield pairs of gears of one speed, and the angle from the first to the second in pitches of this.
+    """Yield pairs of gears of one speed, and the angle from the first to the second gear.
 
-    None: it is not stated. Stated angles come first, then gears of one shaft, then those of coupled shafts.
+    The angle is in pitches of the second; None: it is not stated. Stated angles come first, then gears of one
+    shaft, then those of coupled shafts.
     """
     angles = list(_specified_angles(train))
     for first, second, angle in angles:
@@ -293,6 +301,7 @@ def _neighbors(train: _Train) -> Iterator[tuple[int, int, float | None]]:
         yield second, first, -angle * train.scene.gears[first].teeth / train.scene.gears[second].teeth
     groups = _coupled(train.scene)
     gears = [(gear, train.scene.gears[gear].shaft) for gear in train.first]
+    # gears of one shaft, then those of coupled shafts
     for alike in (lambda a, b: a == b, lambda a, b: groups[a] == groups[b]):
         for first, shaft in gears:
             yield from (
@@ -321,9 +330,10 @@ def _coupled(scene: Scene) -> dict[str, int]:
 
 
 def _check_angles(train: _Train) -> None:
-    """Refuse a stated angle between gears of a shaft that the rest of the train holds at another one.
+    """Refuse a stated angle between two gears of a shaft if the rest of the train requires another angle.
 
-    A gear of z teeth may stand a whole number of its teeth on, z_2 / z_1 pitches of the other gear.
+    Which tooth is meant does not matter: a tooth further on gear 1 is z_2 / z_1 pitches of gear 2, on gear 2
+    it is one pitch. So angles are equal up to multiples of gcd(z_1, z_2) / z_1 pitches of gear 2.
     """
     for first, second, angle in _specified_angles(train):
         if not (train.states_thickness(first) and train.states_thickness(second)):
@@ -337,7 +347,7 @@ def _check_angles(train: _Train) -> None:
 
 
 def _angle_contradiction(scene: Scene, gear: int, turns: float) -> InputError:
-    """Return the error for the angle of a gear that is less than the train has it by some turns."""
+    """Return the error for the stated angle of a gear, which the train requires to be `turns` larger."""
     name = scene.gears[gear].shaft
     number = [part.name for part in scene.gears if part.shaft == name].index(scene.gears[gear].name)
     angle = (scene.shaft(name).tooth_angles or ())[number]

@@ -1,4 +1,9 @@
-"""Meshes at temperature: center distance, backlash, misalignment."""
+"""Meshes at temperature: center distance, backlash, misalignment.
+
+Gears grow with their temperature, and the axes move apart with that of the part that carries both shafts: the
+housing, or the carrier of a planetary set. Strains are thermal: expansion coefficient times rise of
+temperature.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +26,9 @@ from dynamics.types import FloatArray
 
 
 def warmed_meshes(scene: Scene) -> Scene:
-    """Return `scene` with its meshes as temperatures leave them; itself if they are so or it has none.
+    """Return the scene with its meshes at temperature.
+
+    A scene without temperatures, or with meshes at temperature already, comes back as it is.
 
     Raises `InputError`: flanks bind, or the table does not reach the change of the center distance or the
     misalignment.
@@ -42,11 +49,11 @@ def warmed_meshes(scene: Scene) -> Scene:
 def _at_temperature(mesh: GearMesh, change: WarmMesh) -> GearMesh:
     coast = mesh.coast
     if coast is not None:
-        left = coast.backlash + change.backlash
-        if left < 0.0:
+        backlash = coast.backlash + change.backlash
+        if backlash < 0.0:
             remedy = Text.of("The temperatures take ", Quantity(-change.backlash, "m"), ".")
-            raise InputError("coast.backlash", left, at_least(0.0, "m", note=" at temperature"), remedy)
-        coast = replace(coast, backlash=left)
+            raise InputError("coast.backlash", backlash, at_least(0.0, "m", note=" at temperature"), remedy)
+        coast = replace(coast, backlash=backlash)
     return replace(
         mesh,
         coast=coast,
@@ -56,7 +63,10 @@ def _at_temperature(mesh: GearMesh, change: WarmMesh) -> GearMesh:
 
 
 def _along_axis(mesh: GearMesh, name: str, shift: float) -> float:
-    """Return the operating point of a mesh along an axis of its table, moved if the table has the axis."""
+    """Return the operating point of a mesh on an axis of its table, shifted if the table has this axis.
+
+    A table without the axis has a single knot.
+    """
     value, knots = float(getattr(mesh, name)), np.asarray(getattr(mesh.table, name), dtype=float)
     if knots.size == 1:
         return value
@@ -69,9 +79,10 @@ def _along_axis(mesh: GearMesh, name: str, shift: float) -> float:
 def _warm_mesh(scene: Scene, warm: Temperatures, index: int) -> WarmMesh:
     """Return the changes of a mesh by temperatures.
 
-    With s = +1 for external gears and -1 for the pinion in a ring gear, and r their pitch radii, a warm pair
-    meshes like the cold one whose axes are e_h a - sum(s r e) farther apart; each flank then yields by
-    sin(alpha_wt) of that.
+    Let s be -1 for the pinion in a ring gear and +1 for other gears, r operating pitch radii, e the strain of
+    the gears, e_h that of the part that carries the shafts, and a the center distance. A warm pair meshes
+    like the cold pair with axes g = e_h a - sum(s r e) farther apart. Backlash changes by 2 sin(alpha_wt) g,
+    half of it at each flank.
     """
     mesh = scene.meshes[index]
     gears = scene.gear(mesh.driver), scene.gear(mesh.driven)
@@ -79,22 +90,23 @@ def _warm_mesh(scene: Scene, warm: Temperatures, index: int) -> WarmMesh:
     distance = math.dist(shafts[0].origin[:2], shafts[1].origin[:2])
     internal = any(gear.internal for gear in gears)
     signs = [-1.0 if internal and not gear.internal else 1.0 for gear in gears]
-    acting = sum(sign * gear.base_radius for sign, gear in zip(signs, gears, strict=True))
-    if not 0.0 < acting < distance:
+    base_sum = sum(sign * gear.base_radius for sign, gear in zip(signs, gears, strict=True))
+    # base_sum is a cos(alpha_wt)
+    if not 0.0 < base_sum < distance:
         return WarmMesh(0.0, 0.0, 0.0)  # no pair: the mechanism says so
-    grown = [warm.strain(gear.thermal_expansion, gear.temperature) for gear in gears]
-    radii = [sign * gear.base_radius * distance / acting for sign, gear in zip(signs, gears, strict=True)]
+    strains = [warm.strain(gear.thermal_expansion, gear.temperature) for gear in gears]
+    radii = [sign * gear.base_radius * distance / base_sum for sign, gear in zip(signs, gears, strict=True)]
     strain, slope = _wall_strain(scene, warm, index)
-    growth = distance * strain - sum(r * e for r, e in zip(radii, grown, strict=True))
-    backlash = 2.0 * math.sqrt(1.0 - (acting / distance) ** 2) * growth * (-1.0 if internal else 1.0)
+    growth = distance * strain - sum(r * e for r, e in zip(radii, strains, strict=True))
+    backlash = 2.0 * math.sqrt(1.0 - (base_sum / distance) ** 2) * growth * (-1.0 if internal else 1.0)
     return WarmMesh(growth, backlash, _misaligned(scene, index, slope))
 
 
 def _wall_strain(scene: Scene, warm: Temperatures, index: int) -> tuple[float, float]:
     """Return the strain of the part that carries both shafts of a mesh, and its slope along z, 1/m.
 
-    A carrier is as warm as its shaft. Of the housing it is linear along each shaft through its seats, and
-    the mean of both shafts.
+    A carrier has the strain of its shaft. The strain of the housing is linear along each shaft, fitted to its
+    bearing seats; the mesh has the mean of both shafts.
     """
     driver, driven, carrier = mesh_shafts(scene, index)
     if carrier is not None:
@@ -110,13 +122,14 @@ def _wall_strain(scene: Scene, warm: Temperatures, index: int) -> tuple[float, f
 
 
 def _along(scene: Scene, warm: Temperatures, shaft: Shaft, position: float) -> tuple[float, float]:
+    """Return the strain of the housing at a position along a shaft (m), and its slope, 1/m."""
     bearings = on_ground(scene, shaft.name)
     strain = [warm.housing_strain(part.seat_temperature) for part in bearings] or [warm.housing_strain()]
-    at = [part.position for part in bearings] or [position]
-    if np.ptp(strain) == 0.0 or np.ptp(at) == 0.0:
+    positions = [part.position for part in bearings] or [position]
+    if np.ptp(strain) == 0.0 or np.ptp(positions) == 0.0:
         return float(np.mean(strain)), 0.0
-    slope, mean_strain = np.polyfit(np.subtract(at, position), strain, 1)
-    return float(mean_strain), float(slope)
+    slope, strain_at_position = np.polyfit(np.subtract(positions, position), strain, 1)
+    return float(strain_at_position), float(slope)
 
 
 def _misaligned(scene: Scene, index: int, slope: float) -> float:

@@ -2,6 +2,11 @@
 
 Every knot carries a value and its mixed derivatives; the interpolant is the tensor product of cubic Hermite
 pieces, as fe_contact evaluates it. Beyond the ends of misalignment and center distance the last value holds.
+
+Letters: x position in base pitches; m misalignment, a change of the center distance, d deflection, all in
+meters; u and w fractions of an interval, 0 to 1. The numbers of a table are flat, see `GridTables.number`: by
+m, a, x, level, channel (deflection, stiffness, levers), and last by order of differentiation in m, a (0, 1
+each) and x.
 """
 
 from __future__ import annotations
@@ -16,6 +21,7 @@ from dynamics.types import FloatArray
 
 Weights = tuple[float, float, float, float]
 DEFLECTION, STIFFNESS = 0, 1  # channels
+_FIRST_ROW, _FIRST_LEVEL, _LEVELS = 3, 4, 5  # columns of `PackedTables.offset`
 
 
 class Cell(NamedTuple):
@@ -23,6 +29,10 @@ class Cell(NamedTuple):
 
     Weights are those of value and slope at the left, then at the right side (`d...`: differentiated). An axis
     of one knot has one side.
+
+    `first` is the offset of the left knot in m and a. `m_step`, `a_step`, `level_step` and `order_step` are
+    those to the next knot, level and channel; `x_left` and `x_right` lead to the knots of x. `m_sides` and
+    `a_sides` are 1 or 2.
     """
 
     first: int
@@ -43,7 +53,7 @@ class Cell(NamedTuple):
 
 
 class Sample(NamedTuple):
-    """A quantity with its derivatives in position, misalignment and center distance."""
+    """A quantity with its derivatives in x, m and a."""
 
     value: float
     x: float
@@ -52,7 +62,7 @@ class Sample(NamedTuple):
 
 
 class GridForce(NamedTuple):
-    """Force F (N) at (x, d; m, a) with its derivatives, and where in the table it was found."""
+    """Force in N at (x, d; m, a) with its derivatives in them, and the interval of levels it was read in."""
 
     value: float
     d: float
@@ -97,11 +107,11 @@ def find_cell(grid: GridTables, flank: int, position: float, m: float, a: float)
     """Return the cell that holds the query."""
     base: PackedTables = grid.base
     row, u, per_width = position_interval(base, flank, position)
-    levels, width = base.offset[flank, 5], 1.0 / per_width
-    interval = (row - base.offset[flank, 3]) // levels
+    levels, width = base.offset[flank, _LEVELS], 1.0 / per_width
+    interval = (row - base.offset[flank, _FIRST_ROW]) // levels
     sizes = grid.shape[flank]
     m_sides, a_sides = min(sizes[0], 2), min(sizes[1], 2)
-    order_step = 2 * m_sides * a_sides
+    order_step = 2 * m_sides * a_sides  # value and slope in x, for every mixed derivative in m and a
     level_step = order_step * grid.channels[flank]
     x_step = level_step * levels
     a_step = x_step * sizes[2]
@@ -113,7 +123,7 @@ def find_cell(grid: GridTables, flank: int, position: float, m: float, a: float)
         m_step,
         a_step,
         interval * x_step,
-        (interval + 1) % sizes[2] * x_step,
+        (interval + 1) % sizes[2] * x_step,  # the table is periodic in x
         m_sides,
         a_sides,
         level_step,
@@ -129,7 +139,7 @@ def find_cell(grid: GridTables, flank: int, position: float, m: float, a: float)
 
 @inner
 def sample(number: FloatArray, cell: Cell, level: int, channel: int) -> Sample:
-    """Return one channel at one level."""
+    """Return one channel at one level; i, j: sides of the cell in m, a; p, q: orders of the derivatives."""
     value, in_x, in_m, in_a = 0.0, 0.0, 0.0, 0.0
     start = cell.first + level * cell.level_step + channel * cell.order_step
     for i in range(cell.m_sides):
@@ -156,7 +166,7 @@ def _grid_interval(
     grid: GridTables, flank: int, cell: Cell, deflection: float, hint: int
 ) -> tuple[int, Sample, Sample]:
     """Return the level interval that holds `deflection`, the first or last outside, and both deflections."""
-    last = grid.base.offset[flank, 5] - 2
+    last = grid.base.offset[flank, _LEVELS] - 2
     k = min(max(hint, 0), last)
     low = sample(grid.number, cell, k, DEFLECTION)
     high = sample(grid.number, cell, k + 1, DEFLECTION)
@@ -173,11 +183,11 @@ def _grid_interval(
 
 @inner
 def grid_force(grid: GridTables, flank: int, cell: Cell, deflection: float, hint: int) -> GridForce:
-    """Return the transverse force: zero below lift-off, straight on above the last level."""
+    """Return the transverse force: zero below lift-off, linear by the last stiffness above the last level."""
     k, low, high = _grid_interval(grid, flank, cell, deflection, hint)
     if deflection < low.value:
         return GridForce(0.0, 0.0, 0.0, 0.0, 0.0, k)
-    level = grid.base.offset[flank, 4] + k
+    level = grid.base.offset[flank, _FIRST_LEVEL] + k
     start, end = grid.base.level[level], grid.base.level[level + 1]
     last = sample(grid.number, cell, k + 1, STIFFNESS)
     if deflection >= high.value:
@@ -195,6 +205,7 @@ def grid_force(grid: GridTables, flank: int, cell: Cell, deflection: float, hint
     w = (deflection - low.value) / span
     rise, fall = span * stiff.value, span * last.value
     step = end - start
+    # Hermite cubic: F = start + rise w + c2 w^2 + c3 w^3
     c2, c3 = 3.0 * step - 2.0 * rise - fall, rise + fall - 2.0 * step
     tangent = (rise + w * (2.0 * c2 + 3.0 * w * c3)) / span
     ends = (low.value, high.value, stiff.value, last.value)

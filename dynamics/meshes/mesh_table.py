@@ -12,8 +12,11 @@ from dynamics.identity_cache import identity_cached
 from dynamics.types import FloatArray
 
 DERIVATIVES = ("deflection_derivative", "stiffness_derivative")
+"""Optional fields of shape (2, 2, 2, M, D, P, L)."""
 LEVERS = ("load_arm", "sliding_share", "sliding_lever")
+"""Optional fields of shape (M, D, P, L)."""
 FIELDS = ("deflection", "deflection_slope", "stiffness", "stiffness_slope")
+"""Fields that every table has, of shape (M, D, P, L)."""
 LARGEST_PERIOD = 1_000_000  # most base pitches after which a table repeats
 
 
@@ -41,11 +44,12 @@ class MeshTable(Protocol):
     Optional, for effects that need them (None or left out: absent):
 
     deflection_derivative, stiffness_derivative : (2, 2, 2, M, D, P, L) arrays
-        Differentiated once (1) or not (0) in misalignment, center-distance change and position.
+        Derivatives of deflection and stiffness. Each of the first three indices is 1 where the field is
+        differentiated once in misalignment, center-distance change and position, and else 0.
     load_arm : (M, D, P, L) array
-        Arm of the load about the axis of a misalignment, m: mean distance from mid-face of the driving gear,
-        towards positive z of one that turns clockwise seen from there, less tan(beta_b) times that from the
-        pitch point along the line of action.
+        Arm of the load about the axis of a misalignment, m: mean distance from mid-face of the driving gear
+        along z, less tan(beta_b) times the distance from the pitch point along the line of action. Seen from
+        positive z the driving gear turns clockwise.
     sliding_share, sliding_lever : (M, D, P, L) arrays
         Sums over the pairs of load share times the sign of y, and times `abs(y)` (m), y the position of a
         pair's contact from the pitch point, > 0 in recess.

@@ -1,4 +1,12 @@
-"""Compiled Coulomb friction of sliding flanks: against the sliding velocity, never driving."""
+"""Compiled Coulomb friction of sliding flanks: against the sliding velocity, never driving.
+
+Tooth pairs touch at a distance y from the pitch point along the line of action, > 0 in recess. sigma is the
+mean of sign(y) weighted by the load shares of the pairs, kappa that of abs(y) in m (`sliding_share`,
+`sliding_lever` of `MeshTable`). So the part (1 + sigma)/2 of the load is in recess and slides by v + kappa w,
+the rest is in approach and slides by v - kappa w: v is the sliding velocity at the pitch point in m/s, w the
+relative angular velocity in rad/s. d, m and a are deflection, misalignment and change of the center distance,
+m.
+"""
 
 from __future__ import annotations
 
@@ -7,9 +15,10 @@ from typing import NamedTuple
 from dynamics.kernels.compiled import inner
 
 CREEP_SPEED = 1e-3
-"""Sliding speed from which on friction has its full size, m/s; below, it passes smoothly through zero. Flanks
-that stick in truth creep at up to it. A pair of 4 mm module at 10 rpm slides ten times as fast at the ends of
-contact.
+"""Sliding speed from which friction has its full size, m/s; below it, friction passes smoothly through zero.
+
+So flanks that would stick creep at up to this speed. A pair of 4 mm module at 10 rpm slides ten times as fast
+at the ends of contact.
 """
 
 
@@ -23,12 +32,12 @@ class Lever(NamedTuple):
 
 
 class Sliding(NamedTuple):
-    """Friction over the normal force along sliding at the pitch point and about the axis, mu = 1."""
+    """Friction over the normal force, for a coefficient of friction of 1."""
 
     along: Lever
-    """1; its derivatives 1/m."""
+    """Force along the sliding at the pitch point, 1; its derivatives are in 1/m."""
     about: Lever
-    """m; its derivatives 1."""
+    """Moment about the pitch point, m; its derivatives are in 1."""
     along_rate: float
     mixed_rate: float
     about_rate: float
@@ -52,10 +61,10 @@ def _direction(speed: float) -> tuple[float, float]:
 def sliding_force(share: Lever, lever: Lever, slip: float, spin: float, running: bool) -> Sliding:
     """Return the friction at sigma = `share`, kappa = `lever`, v = `slip` and w = `spin`.
 
-    `running`: with the directions of gears that run in the sense of the scene, whatever slip and spin are.
+    `running`: take the directions of gears that run in the sense of the scene, whatever slip and spin are.
     """
     kappa, sigma = lever.value, min(max(share.value, -1.0), 1.0)
-    ahead, behind = 0.5 * (1.0 + sigma), 0.5 * (1.0 - sigma)
+    ahead, behind = 0.5 * (1.0 + sigma), 0.5 * (1.0 - sigma)  # parts of the load in recess and approach
     if running:
         up, up_rate, down, down_rate = 1.0, 0.0, -1.0, 0.0
     else:

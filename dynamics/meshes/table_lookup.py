@@ -143,8 +143,8 @@ def deflection_from(table: PackedTables, flank: int, position: float, force: flo
     """Return the deflection at a force in the level interval `k`, as `table_deflection` does."""
     row, u, _ = position_interval(table, flank, position)
     first = table.offset[flank, 4]
-    low, wanted = cubic_value(table.row, row + k, 0, u), force - table.level[first + k]
-    if wanted <= 0.0:
+    low, excess = cubic_value(table.row, row + k, 0, u), force - table.level[first + k]
+    if excess <= 0.0:
         return float(low)
     high = cubic_value(table.row, row + k + 1, 0, u)
     if force >= table.level[first + k + 1]:
@@ -152,14 +152,14 @@ def deflection_from(table: PackedTables, flank: int, position: float, force: flo
     # Newton's method for w inside a bracket: the cubic is monotone, so that bisection can replace a step.
     # The first guess is the chord; 100 steps are more than bisection needs for w to 1e-15.
     rise, c2, c3 = _force_cubic(table, row + k, first + k, u, high - low)
-    w, minimum, maximum = wanted / (rise + c2 + c3), 0.0, 1.0
+    w, minimum, maximum = excess / (rise + c2 + c3), 0.0, 1.0
     for _ in range(100):
         trial = w * (rise + w * (c2 + w * c3))
-        if trial < wanted:
+        if trial < excess:
             minimum = w
         else:
             maximum = w
-        step = (wanted - trial) / (rise + w * (2.0 * c2 + 3.0 * w * c3))
+        step = (excess - trial) / (rise + w * (2.0 * c2 + 3.0 * w * c3))
         if not minimum <= w + step <= maximum:
             step = 0.5 * (minimum + maximum) - w
         w += step

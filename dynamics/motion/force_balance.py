@@ -1,4 +1,8 @@
-"""All forces in one state and their derivatives, and loads at their means, from which statics starts."""
+"""All forces in one state and their derivatives, and loads at their means, from which statics starts.
+
+Shapes: n freedoms, R rows of local coordinates of all elements, P rows of the largest element, m meshes, f
+frames. G (R, n) is `SystemArrays.direction`: local coordinates by freedoms.
+"""
 
 from __future__ import annotations
 
@@ -63,8 +67,9 @@ def force_balance(
 def swept_by_frames(elements: Elements, local: LocalState, pace: FloatArray) -> FloatArray:
     """Return the part of the tangents (R, P) that dampers across frames have from the rotation of these.
 
-    The second frame turns at psi' against the first and carries b along, which takes psi' J R b from the rate
-    of the strain. `pace` (m + f,) holds psi' per second behind that of the meshes.
+    A coupling has n rows a in its first and n rows b in its second frame. The second frame turns at psi'
+    against the first by the rotation R, and with it b, which subtracts psi' J R b (J a quarter turn) from the
+    rate of the strain. `pace` (m + f,): revolutions per second of the frames behind the paces of the meshes.
     """
     swept = np.zeros_like(local.tangent)
     for e in np.flatnonzero(elements.law == Law.FRAME_COUPLING):
@@ -82,7 +87,7 @@ def _on_freedoms(arrays: SystemArrays, derivative: FloatArray) -> FloatArray:
 
 
 def block_diagonal(elements: Elements, derivative: FloatArray) -> FloatArray:
-    """Return the (R, R) matrix of the elements' blocks, whose rows `derivative` (R, P) holds."""
+    """Return the (R, R) matrix of the elements' square blocks; `derivative` (R, P) has their rows."""
     rows = elements.offset.size
     matrix = np.zeros((rows, rows))
     for first, end in zip(elements.first[:-1], elements.first[1:], strict=True):
@@ -91,9 +96,9 @@ def block_diagonal(elements: Elements, derivative: FloatArray) -> FloatArray:
 
 
 def at_mean_loads(arrays: SystemArrays) -> SystemArrays:
-    """Return `arrays` with the mean over a turn of every load that changes with an angle.
+    """Return `arrays` with the mean over a revolution of every load that changes with an angle.
 
-    Of an unbalance, whose force and weight turn, nothing is left.
+    The mean of an unbalance, whose force and weight turn, is zero.
     """
     laws = arrays.elements.laws
     if laws.applied_force.size.size + laws.unbalance.amount.size == 0:
@@ -107,11 +112,11 @@ def at_mean_loads(arrays: SystemArrays) -> SystemArrays:
 
 
 def mean_loads(arrays: SystemArrays, time: float) -> FloatArray:
-    """Return the forces (n,) of loads at the speeds of the kinematic motion at `time`, means over a turn."""
-    none, loads = np.zeros(arrays.mass.shape[0]), among(arrays.elements.law, LOADS)
+    """Return the mean forces (n,) of loads over a revolution, at the kinematic speeds at `time`."""
+    rest, loads = np.zeros(arrays.mass.shape[0]), among(arrays.elements.law, LOADS)
     if not np.any(loads):
-        return none
-    local = local_state(at_mean_loads(arrays), time, none, none)
+        return rest
+    local = local_state(at_mean_loads(arrays), time, rest, rest)
     rows = np.repeat(loads, np.diff(arrays.elements.first))
     return np.asarray(-local.force[rows] @ arrays.direction[rows])
 

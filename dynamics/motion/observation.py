@@ -85,14 +85,14 @@ def _look(
     """Observe T states, and leave the last one in `local`."""
     rows, laws = system.direction.shape[0], system.inertial.shape[0]
     meshes = system.position_gradient.shape[0]
-    seen = Observed(*(np.empty((size, time.size)) for size in (meshes, rows, rows, rows)))
+    observed = Observed(*(np.empty((size, time.size)) for size in (meshes, rows, rows, rows)))
     counted = np.zeros((time.size, laws), dtype=np.int64) if quanta is None else quanta
     seats = np.empty((time.size, 0)) if carried is None else carried
     motion = np.empty((laws, MOTION_COLUMNS))
     scratch = np.empty((2, q.shape[1]))
-    into = scratch, by_address(seen)
+    into = scratch, by_address(observed)
     _observe(by_address(system), by_address(local), motion, time, counted, q, v, seats, *into)
-    return seen
+    return observed
 
 
 @compiled
@@ -106,7 +106,7 @@ def _observe(
     v: FloatArray,
     carried: FloatArray,
     scratch: FloatArray,
-    seen: Observed,
+    observed: Observed,
 ) -> None:
     for k in range(time.size):
         write_motion(system.reference, time[k], quanta[k], motion)
@@ -121,10 +121,10 @@ def _observe(
         if has_unbalance(system.elements):
             _settle(system, local, motion, time[k], q[k], v[k], scratch)
         for m in range(local.position.size):
-            seen.position[m, k] = wrapped(local.position[m], float(system.reference.period[m]))
+            observed.position[m, k] = wrapped(local.position[m], float(system.reference.period[m]))
         for r in range(local.force.size):
-            seen.coordinate[r, k], seen.force[r, k] = local.coordinate[r], local.force[r]
-            seen.elastic[r, k] = local.elastic[r]
+            observed.coordinate[r, k], observed.force[r, k] = local.coordinate[r], local.force[r]
+            observed.elastic[r, k] = local.elastic[r]
 
 
 @inner

@@ -243,5 +243,5 @@ def _coarse_hull(outer: OuterHull, cell: IntArray) -> tuple[RadiatingHull, IntAr
     corners = _without_thin(nodes[used], corners.reshape(-1, 3))
     coarse = Hull(nodes[used], corners[~flat_triangles(nodes[used], corners)])
     shapes = OuterHull(coarse, outer.motion[fine_node], inner_area=0.0, cap_area=0.0).shapes
-    lost = hull.areas @ outer.shapes - coarse.areas @ shapes
-    return RadiatingHull(coarse, shapes + lost / coarse.area), used
+    lost_flow = hull.areas @ outer.shapes - coarse.areas @ shapes
+    return RadiatingHull(coarse, shapes + lost_flow / coarse.area), used

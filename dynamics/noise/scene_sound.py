@@ -1,7 +1,7 @@
 """Sound power of all housings of a scene under one set of bearing forces, and bounds of its error.
 
 Radiation models have errors of known bounds: monopoles neglect scattering, equivalent radiated power neglects
-interference.
+interference. Axis letters: S speeds, or windows of a run; H orders. A point is a speed and an order.
 """
 
 from __future__ import annotations
@@ -41,9 +41,9 @@ class SceneSound:
     """Sound power of all housings together, with the panels of the loudest point."""
     housings: tuple[SoundingHousing, ...]
     models: Mapping[str, ModelLevels | None]
-    """Radiation models by housing; None of a silent one."""
+    """Levels by further radiation models, by housing; None for a housing that is silent."""
     regions: tuple[tuple[HousingRegion, ...], ...]
-    """Regions of each of the `loudest` points, the strongest first."""
+    """Regions of the housings at each of the `loudest` points, those of the largest power first."""
     error: FloatArray
     """Bounds of the error of the levels by the radiation models, dB: lower and upper; a negative error is a
     level that is too low. Shape (2, S, H).
@@ -55,7 +55,7 @@ class SceneSound:
 
     @property
     def radiation(self) -> dict[str, HousingRadiation]:
-        """Return the most exact radiation by housing."""
+        """The radiation by the most exact model, by housing."""
         return {housing.name: housing.radiation for housing in self.housings}
 
 
@@ -72,11 +72,11 @@ def scene_sound(
     Parameters
     ----------
     response : BearingHarmonics
-        Linear, or the orders of the run; in the frame of the meshes of the housings.
+        Bearing forces of the linear response or of the run, in the frame of the meshes of the housings.
     surfaces : sequence of SurfaceHousing
         Housings with their surfaces, at least one.
     run : RunResult, optional
-        Whose sound over time is found too.
+        Run whose sound over time is computed too.
     """
     housings = sounding_housings(response, surfaces, radiation, run)
     sounds = [housing.sound(response) for housing in housings]
@@ -103,6 +103,7 @@ def scene_sound(
 def _panels(
     response: BearingHarmonics, housings: Sequence[SoundingHousing], point: LoudPoint, radiation: Radiation
 ) -> list[PanelSound]:
+    """Return the sound of the panels of each housing at a point."""
     at = point.speed_index, point.order_index
     return [
         panel_sound(response, housing.body, housing.bearings, housing.radiation, at, radiation.model)
@@ -111,6 +112,7 @@ def _panels(
 
 
 def _with_panels(power: RadiatedSound, panels: Sequence[PanelSound]) -> RadiatedSound:
+    """Return the sound of all housings with the panels of all of them as one surface."""
     joined = PanelSound.of_all(panels)
     nodes, corners = joined.hull.nodes, joined.hull.triangles
     return replace(power, panel_node=nodes, panel_corner=corners, panel_power=joined.power)
@@ -136,9 +138,10 @@ def joined_error(
     sounds: Sequence[RadiatedSound],
     models: Mapping[str, ModelLevels | None],
 ) -> FloatArray:
-    """Return from and to where the levels of housings together may be off, (2, S, H), dB; < 0: too quiet.
+    """Return the lower and the upper bound of the error of the levels of all housings, (2, S, H), dB.
 
-    All housings are off to the same side at once, each by the error of its own radiation model.
+    A negative error is a level that is too low. At a bound all housings have the errors of their radiation
+    models to the same side.
     """
     power, true = np.zeros(sounds[0].power.shape), np.zeros((2, *sounds[0].power.shape))
     for housing, sound in zip(housings, sounds, strict=True):
@@ -146,14 +149,17 @@ def joined_error(
         if isinstance(radiation, EstimatedRadiation):
             error = radiation.off(sound.frequency, sound.mode_alone)
         else:
+            # a model without a band of its error counts as exact
             bands = {} if compared is None else compared.error_band
             band = bands.get(radiation.model_name, (0.0, 0.0))
             error = np.broadcast_to(np.reshape(band, (2, 1, 1)), true.shape)
-        power, true = power + sound.power, true + sound.power * 10.0 ** (-error / 10.0)
+        power = power + sound.power
+        true = true + sound.power * 10.0 ** (-error / 10.0)  # power without the error of the level
     return np.asarray(-10.0 * np.log10(np.maximum(true, MIN) / np.maximum(power, MIN)))
 
 
 def _over_time(run: RunResult, housings: Sequence[SoundingHousing]) -> SoundOverTime | None:
+    """Return the sound power over a run; None: the run is shorter than a block."""
     if run.time.size < BLOCK * run.sample_rate:
         return None
     sounds = [sound_over_time(run, housing.body, housing.bearings, housing.radiation) for housing in housings]

@@ -494,6 +494,6 @@ def _levels(order: FloatArray, loudest: IntArray, power_orders: FloatArray, powe
     listed = np.isin(power_orders, order)
     weighted[np.searchsorted(order, power_orders[listed])] = power.weighted_power[listed]
     total = weighted.sum(axis=0) + power.weighted_floor
-    there = weighted[np.arange(order.size), loudest]
+    at_loudest_speed = weighted[np.arange(order.size), loudest]
     totals = [total.max(), mean_power(power.frequency[0], total)]
-    return sound_power_level(np.concatenate([totals, weighted.max(axis=1), there, total]))
+    return sound_power_level(np.concatenate([totals, weighted.max(axis=1), at_loudest_speed, total]))

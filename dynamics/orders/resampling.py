@@ -101,20 +101,20 @@ def resampled(values: FloatArray, up: int, down: int, half_length: int) -> Float
         return np.array(values, dtype=float)
     steps = max(up, down)
     taps = firwin(2 * half_length * steps + 1, 1.0 / steps, window=("kaiser", KAISER))
-    made = resample_poly(values, up, down, window=taps)  # type: ignore[call-overload]  # its stubs know none
-    return np.asarray(made)
+    return np.asarray(resample_poly(values, up, down, window=taps))  # type: ignore[call-overload]  # its stubs know none
 
 
 def interpolated(values: FloatArray, factor: int, half_length: int) -> FloatArray:
     """Return a series (T,) with `factor` - 1 values between its samples, (`factor` (T - 1) + 1,).
 
-    It is continued beyond its ends by its odd reflection, so that a mean and a slope leave no ripple there.
+    The series is extended at both ends by its odd reflection, so that a mean and a slope leave no ripple
+    there.
     """
-    beyond = min(half_length, values.size - 1)
-    head = 2.0 * values[0] - values[beyond:0:-1]
-    tail = 2.0 * values[-1] - values[-2 : -beyond - 2 : -1]
-    made = resampled(np.concatenate([head, values, tail]), factor, 1, half_length)
-    return made[factor * beyond : factor * (beyond + values.size - 1) + 1]
+    extension = min(half_length, values.size - 1)
+    head = 2.0 * values[0] - values[extension:0:-1]
+    tail = 2.0 * values[-1] - values[-2 : -extension - 2 : -1]
+    extended = resampled(np.concatenate([head, values, tail]), factor, 1, half_length)
+    return extended[factor * extension : factor * (extension + values.size - 1) + 1]
 
 
 def low_passed(values: FloatArray, frequency: float) -> FloatArray:
@@ -167,8 +167,8 @@ def _at(values: FloatArray, index: IntArray, part: FloatArray) -> FloatArray:
     rows = values.reshape(-1, values.shape[-1])  # one at a time: the finer grid is four times as long
     coordinate = FINER * (index + part)
     fine = np.minimum(coordinate.astype(int), FINER * (rows.shape[1] - 1) - 1)
-    made = [cubic_between(interpolated(row, FINER, HALF_LENGTH), fine, coordinate - fine) for row in rows]
-    return np.reshape(made, (*values.shape[:-1], index.size))
+    sampled = [cubic_between(interpolated(row, FINER, HALF_LENGTH), fine, coordinate - fine) for row in rows]
+    return np.reshape(sampled, (*values.shape[:-1], index.size))
 
 
 def cubic_between(values: FloatArray, index: IntArray, part: FloatArray) -> FloatArray:

@@ -85,8 +85,8 @@ def order_waterfall(
         raise InputError("pitches", pitches, bound)
     blocks = _blocks(time.size, pitches * per_pitch, overlap)
     frequency = np.interp(time, result.time, result.mesh_frequency[mesh])
-    made = [spectrum(values[..., block], float(per_pitch), unit, window) for block in blocks]
-    return _waterfall(made, values, blocks, (time, frequency), highest * pitches + 1)
+    spectra = [spectrum(values[..., block], float(per_pitch), unit, window) for block in blocks]
+    return _waterfall(spectra, values, blocks, (time, frequency), highest * pitches + 1)
 
 
 def order_track(
@@ -121,8 +121,8 @@ def frequency_waterfall(
         raise InputError("block", block, bound)
     blocks = _blocks(result.time.size, length, overlap)
     values = getattr(result, series)
-    made = [spectrum(values[..., block], result.sample_rate, unit, window) for block in blocks]
-    return _waterfall(made, values, blocks, (result.time, result.mesh_frequency[mesh]))
+    spectra = [spectrum(values[..., block], result.sample_rate, unit, window) for block in blocks]
+    return _waterfall(spectra, values, blocks, (result.time, result.mesh_frequency[mesh]))
 
 
 def _blocks(samples: int, length: int, overlap: float) -> list[slice]:
@@ -133,22 +133,25 @@ def _blocks(samples: int, length: int, overlap: float) -> list[slice]:
 
 
 def _waterfall(
-    made: list[Spectrum],
+    spectra: list[Spectrum],
     values: FloatArray,
     blocks: list[slice],
-    over: tuple[FloatArray, FloatArray],
+    series: tuple[FloatArray, FloatArray],
     lines: int | None = None,
 ) -> Waterfall:
-    """Put the spectra of blocks of `values` (..., T) together, the first `lines`; `over` (T,) are means."""
-    time, frequency = (np.array([series[block].mean() for block in blocks]) for series in over)
+    """Return the first `lines` of the spectra of blocks of `values` (..., T).
+
+    `series` are time and mesh frequency (T,), whose means belong to the blocks.
+    """
+    time, frequency = (np.array([values_over[block].mean() for block in blocks]) for values_over in series)
     return Waterfall(
-        made[0].frequency[:lines],
+        spectra[0].frequency[:lines],
         time,
         frequency,
-        np.stack([waterfall.amplitude[..., :lines] for waterfall in made], axis=-2),
+        np.stack([spectrum.amplitude[..., :lines] for spectrum in spectra], axis=-2),
         np.stack([values[..., block].std(axis=-1) for block in blocks], axis=-1),
-        made[0].unit,
-        made[0].noise_bandwidth,
+        spectra[0].unit,
+        spectra[0].noise_bandwidth,
     )
 
 

@@ -26,8 +26,12 @@ from dynamics.periodic.shooting import (
 from dynamics.types import FloatArray
 
 ITERATION_LIMIT = 16  # most Newton iterations to a point of the branch
-FALLING = 0.3  # residual over the one before: where more is left, derivatives are taken anew
-EASY = 1  # derivations for a motion, with no more of which the step along the branch grows
+FALLING = 0.3
+"""Residual over that of the last iteration, above which the Jacobian is computed anew."""
+EASY = 1
+"""Most computations of the Jacobian for a motion after which the step along the branch grows."""
+_SHRINK, _GROW = 0.5, 1.5
+"""Factors of the step along the branch where Newton fails, and after an easy motion."""
 SMALLEST_STEP = 1e-5  # over the largest step
 LARGEST_STEP = 0.02  # between neighboring motions, over the larger speed or the size of the state
 MAX_POINTS = 500  # usual limit of the points of a branch
@@ -85,8 +89,8 @@ class Branch:
 class _Point:
     """A point z = (state / size, speed / scale) on the branch with its unit tangent.
 
-    `jacobian` (2n, 2n + 1): derivative of (map - identity) / size in z; `renewed`: how often it was taken on
-    the way.
+    `jacobian` (2n, 2n + 1): derivative of (map - identity) / size by z, with the map of a state over a
+    period; `renewed`: number of times that it was computed to find the point.
     """
 
     z: FloatArray
@@ -133,7 +137,7 @@ def follow_branch(
     integer("points", points, 2, 1_000_000)
     if first == last:
         raise InputError("last", last, "another speed than the first")
-    PeriodMap(problem, last).arrays  # noqa: B018 - checks the speed
+    PeriodMap(problem, last).arrays  # noqa: B018 - raises if the speed is zero or of the wrong sense
     start = find_orbit(problem, first, guess)
     if not start.status.usable:
         return Branch(BranchStatus.NO_START, (start,), ())
@@ -163,7 +167,7 @@ def _continue(
     while len(trail) < points:
         arrived = _step(problem, scale, trail[-1], step)
         if arrived is None:
-            step *= 0.5
+            step *= _SHRINK
             if step < SMALLEST_STEP * largest_step:
                 status = BranchStatus.STEP_FLOOR
                 break
@@ -173,7 +177,7 @@ def _continue(
         if progress is not None:
             progress(min(max(abs(p.orbit.speed - first) for p in trail) / abs(last - first), 1.0))
         if arrived.renewed <= EASY:
-            step = min(1.5 * step, largest_step)
+            step = min(_GROW * step, largest_step)
         if not low <= arrived.orbit.speed <= high:
             status = BranchStatus.COMPLETED
             break
@@ -183,17 +187,23 @@ def _continue(
 def _point_on_branch(
     problem: PeriodicProblem, scale: float, orbit: Orbit, along: FloatArray, renewed: int = 0
 ) -> _Point:
-    """Return the point of `orbit` with its tangent turned to the side of `along` (2n + 1,)."""
+    """Return the point of `orbit` with its tangent in the sense of `along` (2n + 1,)."""
     z = np.append(orbit.state / problem.size, orbit.speed / scale)
     jacobian = _jacobian(problem, scale, PeriodMap(problem, orbit.speed), orbit.state, orbit.monodromy)
-    tangent = np.linalg.svd(jacobian)[2][-1]
-    return _Point(z, tangent if tangent @ along >= 0.0 else -tangent, orbit, jacobian, renewed)
+    tangent = np.linalg.svd(jacobian)[2][-1]  # the null vector: the last right singular vector
+    return _Point(
+        z=z,
+        tangent=tangent if tangent @ along >= 0.0 else -tangent,
+        orbit=orbit,
+        jacobian=jacobian,
+        renewed=renewed,
+    )
 
 
 def _jacobian(
     problem: PeriodicProblem, scale: float, over_period: PeriodMap, y: FloatArray, monodromy: FloatArray
 ) -> FloatArray:
-    """Return the derivative of (map - identity) / size in z, (2n, 2n + 1)."""
+    """Return the derivative of (map - identity) / size by z, (2n, 2n + 1)."""
     by_speed = over_period.by_speed(y) * (scale / problem.size)
     return np.concatenate([monodromy - np.eye(y.size), by_speed[:, None]], axis=1)
 
@@ -201,8 +211,8 @@ def _jacobian(
 def _step(problem: PeriodicProblem, scale: float, point: _Point, step: float) -> _Point | None:
     """Return the motion at the arclength `step` behind `point`, or None if Newton fails.
 
-    It begins with the derivatives at `point`, and Broyden's update follows them: an iteration integrates one
-    period instead of 4 n. They are taken anew where the residual falls by too little.
+    It begins with the Jacobian at `point`, to which Broyden's updates are added: so an iteration integrates
+    one period, while a Jacobian takes 4 n. It is computed anew where the residual falls by too little.
     """
     aim = point.z + step * point.tangent
     z, correction, matrix = aim.copy(), aim, np.vstack([point.jacobian, point.tangent])
@@ -212,14 +222,14 @@ def _step(problem: PeriodicProblem, scale: float, point: _Point, step: float) ->
         if speed * point.orbit.speed <= 0.0:
             return None
         over_period = PeriodMap(problem, speed)
-        left = over_period(y) - y
-        if not np.all(np.isfinite(left)):
+        residual = over_period(y) - y
+        if not np.all(np.isfinite(residual)):
             return None
-        if np.max(np.abs(left)) <= RESIDUAL_LIMIT * problem.size:
+        if np.max(np.abs(residual)) <= RESIDUAL_LIMIT * problem.size:
             monodromy = over_period.monodromy(y)
-            orbit = Orbit.of(over_period, OrbitStatus.CONVERGED, y, left, monodromy, iteration)
+            orbit = Orbit.of(over_period, OrbitStatus.CONVERGED, y, residual, monodromy, iteration)
             return _point_on_branch(problem, scale, orbit, point.tangent, renewed)
-        right = np.append(left / problem.size, point.tangent @ (z - aim))
+        right = np.append(residual / problem.size, point.tangent @ (z - aim))
         if np.linalg.norm(right) > FALLING * before:
             jacobian = _jacobian(problem, scale, over_period, y, over_period.monodromy(y))
             matrix, renewed = np.vstack([jacobian, point.tangent]), renewed + 1
@@ -250,9 +260,10 @@ def _passed(
 
 
 def _fold(problem: PeriodicProblem, scale: float, before: _Point, behind: _Point, step: float) -> float:
-    """Return the extreme speed between two points: bracketed on the tangent's part along the speed.
+    """Return the extreme speed between two points, where the tangent's component of the speed is 0.
 
-    Where flanks graze a branch has a corner instead of a smooth fold: the bracket closes on it.
+    It is found by the Illinois variant of regula falsi over the arclength. Where flanks graze, a branch has a
+    corner instead of a smooth fold, and the bracket closes on the corner.
     """
     low, high = 0.0, step
     at_low, at_high = before.tangent[-1], behind.tangent[-1]
@@ -266,6 +277,7 @@ def _fold(problem: PeriodicProblem, scale: float, before: _Point, behind: _Point
         if middle is None:
             break
         speeds.append(middle.orbit.speed)
+        # half the value at an end that stays, so that both ends move
         if middle.tangent[-1] * at_low > 0.0:
             low, at_low, at_high = inside, middle.tangent[-1], 0.5 * at_high
         else:

@@ -124,25 +124,25 @@ def find_orbit(problem: PeriodicProblem, speed: float, guess: FloatArray | None 
     """
     over_period = PeriodMap(problem, speed)
     y = np.array(problem.rest if guess is None else guess, dtype=float)
-    left = over_period(y) - y
-    status, taken = OrbitStatus.ITERATION_LIMIT, 0
+    defect = over_period(y) - y
+    status, iterations = OrbitStatus.ITERATION_LIMIT, 0
     jacobian = np.full((y.size, y.size), np.nan)
-    while taken <= ITERATION_LIMIT:
-        if not np.all(np.isfinite(left)):
+    while iterations <= ITERATION_LIMIT:
+        if not np.all(np.isfinite(defect)):
             status = OrbitStatus.NOT_FINITE
             break
         jacobian = over_period.monodromy(y)
-        if np.max(np.abs(left)) <= RESIDUAL_LIMIT * problem.size:
+        if np.max(np.abs(defect)) <= RESIDUAL_LIMIT * problem.size:
             status = OrbitStatus.CONVERGED
             break
-        update = _solve(np.eye(y.size) - jacobian, left)
-        searched = _line_search(over_period, y, update, left)
+        update = _solve(np.eye(y.size) - jacobian, defect)
+        searched = _line_search(over_period, y, update, defect)
         if searched is None:
             status = OrbitStatus.STALLED
             break
-        y, left = searched
-        taken += 1
-    return Orbit.of(over_period, status, y, left, jacobian, taken)
+        y, defect = searched
+        iterations += 1
+    return Orbit.of(over_period, status, y, defect, jacobian, iterations)
 
 
 def _solve(matrix: FloatArray, right: FloatArray) -> FloatArray:

@@ -112,20 +112,20 @@ def motion(
     q = np.ascontiguousarray(scipy.interpolate.CubicHermiteSpline(step_end, path[0], path[1])(time))
     v = np.ascontiguousarray(scipy.interpolate.CubicHermiteSpline(step_end, path[1], path[2])(time))
     system, arrays = problem.system, over_period.arrays
-    seen = observe(arrays, time, q, v)
+    observed = observe(arrays, time, q, v)
     meshes, driving = len(system.scene.meshes), system.driving_rows
     coast = arrays.elements.first[meshes : meshes + len(system.flanks.coast)]
     static = np.empty((meshes, samples))
     for f, force in enumerate(system.flanks.nominal_force):
-        static_deflections(system.flanks.static, f, seen.position[f], float(force), static[f])
+        static_deflections(system.flanks.static, f, observed.position[f], float(force), static[f])
     return _PeriodicMotion(
         time,
-        seen.position[:meshes],
-        seen.coordinate[driving],
+        observed.position[:meshes],
+        observed.coordinate[driving],
         static,
-        seen.force[driving],
-        seen.force[coast],
-        system.bearing_force(seen.force, q, v),
+        observed.force[driving],
+        observed.force[coast],
+        system.bearing_force(observed.force, q, v),
         np.ascontiguousarray(q.T),
         np.ascontiguousarray(v.T),
         np.arange(samples // 2 + 1) / pitches,

@@ -1,6 +1,12 @@
-"""Checks of a run on tables that are read at one misalignment or center distance."""
+"""Checks of a run on tables that are read at one misalignment or center distance.
+
+The operating point of a mesh is its misalignment and its change of center distance, m. Where an effect is
+off, the force of a mesh does not follow the motion of its gears on one of these axes.
+"""
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,6 +25,18 @@ USUAL_TOLERANCE = 0.01
 """Relative change of the mean transmission error that may pass where no tolerance was requested."""
 
 WHAT = ("tilt", "center distance")
+"""Names of the axes in a report, in the order of `FIELDS`."""
+
+
+class _Axis(NamedTuple):
+    """An axis of a mesh's operating point that the force does not follow."""
+
+    number: int
+    """Index of the axis in `FIELDS`."""
+    mesh: int
+    """Index of the mesh."""
+    gradient: FloatArray
+    """Derivative of the operating point on this axis by the freedoms. Shape (n,)."""
 
 
 class HeldOperatingPointChecks:
@@ -26,20 +44,20 @@ class HeldOperatingPointChecks:
 
     def __init__(self, system: System) -> None:
         self._system = system
-        self._watched = [  # axes that are not followed, and the derivative of each in the freedoms (n,)
-            (axis, index, _gradient(system, axis, index))
+        self._axes = [
+            _Axis(axis, index, _gradient(system, axis, index))
             for axis, field in enumerate(FIELDS)
             for index, mesh in enumerate(system.scene.meshes)
             if any(
                 row.possible and not row.on for row in system.ledger.adding(field) if row.part == mesh.name
             )
         ]
-        self._range = [(0.0, 0.0)] * len(self._watched)
+        self._range = [(0.0, 0.0)] * len(self._axes)  # lowest and highest operating point so far, m
 
     def see(self, _series: SeriesBlock, states: States) -> None:
         """Widen the range of the operating points by a block of states."""
-        for k, (_, _, gradient) in enumerate(self._watched):
-            point = states.q @ gradient[: states.q.shape[1]]
+        for k, axis in enumerate(self._axes):
+            point = states.q @ axis.gradient[: states.q.shape[1]]
             low, high = self._range[k]
             self._range[k] = (
                 float(np.min(point, initial=low)),
@@ -49,11 +67,11 @@ class HeldOperatingPointChecks:
     def checks(self) -> list[Check]:
         """Return one check per mesh and axis.
 
-        ``farthest`` is how far the bodies moved in m, ``change`` how much that changes the mean transmission
-        error of the nominal force, of its value.
+        ``farthest`` is the largest motion of the bodies along the axis, m; ``change`` is the relative change
+        of the mean transmission error by it, at the nominal force.
         """
-        pairs = zip(self._watched, self._range, strict=True)
-        return [self._check(axis, mesh, max(span, key=abs)) for (axis, mesh, _), span in pairs]
+        pairs = zip(self._axes, self._range, strict=True)
+        return [self._check(axis.number, axis.mesh, max(span, key=abs)) for axis, span in pairs]
 
     def _check(self, axis: int, index: int, farthest: float) -> Check:
         system, quantity = self._system, WHAT[axis]

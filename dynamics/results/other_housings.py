@@ -31,7 +31,9 @@ def _same(housing: Housing, part: Json | None) -> bool:
             np.zeros((0, 0)) if of[name] is None else np.array(of[name], float)
             for of in (vars(housing), part)
         )
-        mine, other = (matrix[seats, seats] for matrix in both)
-        if mine.shape != other.shape or np.any(np.abs(mine - other) > SAME * np.abs(mine).max(initial=0.0)):
+        matrix_here, other = (matrix[seats, seats] for matrix in both)
+        if matrix_here.shape != other.shape or np.any(
+            np.abs(matrix_here - other) > SAME * np.abs(matrix_here).max(initial=0.0)
+        ):
             return False
     return True

@@ -20,11 +20,12 @@ from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray, Json
 
 STRAIGHT_ON = 1.2
-"""Times the highest load of a table: up to here it may go on straight, with its last stiffness.
+"""Force over the highest load of a table up to which linear extrapolation by the last stiffness is valid.
 
-The result is then reported as extrapolated. Beyond it is wrong: tooth pairs that would share the load, and
-corner contact that would set in, are not in the table. A table of two levels is a closed form and holds
-everywhere."""
+The result is then reported as extrapolated. Beyond this it is wrong: further tooth pairs that would share the
+load, and corner contact that would set in, are not in the table. A table of two levels is a closed form and
+holds everywhere.
+"""
 
 
 class _AxisChecks:
@@ -32,6 +33,7 @@ class _AxisChecks:
 
     def __init__(self, system: System) -> None:
         self._system, self._samples = system, 0
+        # (axis, mesh): 0 is the misalignment, 1 the center distance, of meshes that follow the motion in it
         self._watched = [(axis, mesh) for axis in (0, 1) for mesh in axis_rows(system, axis, follows=True)]
         self._beyond = dict.fromkeys(self._watched, 0)
         self._range = dict.fromkeys(self._watched, (np.inf, -np.inf))
@@ -50,8 +52,8 @@ class _AxisChecks:
     def checks(self) -> list[Check]:
         """Return one check per mesh and axis in use.
 
-        ``beyond`` is the share of the samples off the axis, where the table's last value holds, ``farthest``
-        in m how far off.
+        ``beyond`` is the share of the samples beyond the ends of the axis, where the table's last value
+        holds; ``farthest`` is the largest distance from the ends, m.
         """
         return [self._check(axis, mesh) for axis, mesh in self._watched if self._samples]
 
@@ -63,16 +65,16 @@ class _AxisChecks:
         if farthest > 0.0:
             reason = f"{WHAT[axis]} beyond the axis: {span}; the last value was held. Compute a wider axis"
         return Check(
-            self._system.ledger.effect_adding(FIELDS[axis]),
-            f"{WHAT[axis]} inside the table",
-            self._system.scene.meshes[mesh].name,
-            farthest <= 0.0,
-            reason,
-            {"beyond": self._beyond[axis, mesh] / self._samples, "farthest": farthest},
+            effect=self._system.ledger.effect_adding(FIELDS[axis]),
+            assumption=f"{WHAT[axis]} inside the table",
+            part=self._system.scene.meshes[mesh].name,
+            holds=farthest <= 0.0,
+            reason=reason,
+            figures={"beyond": self._beyond[axis, mesh] / self._samples, "farthest": farthest},
         )
 
     def _ends(self, axis: int, mesh: int) -> tuple[float, float]:
-        """First and last knot of the table's axis, m."""
+        """Return the first and the last knot of the table's axis, m."""
         knots = np.ravel(getattr(self._system.scene.meshes[mesh].table, FIELDS[axis]))
         return float(knots[0]), float(knots[-1])
 
@@ -104,7 +106,8 @@ class _ForceChecks:
 def _force_checks(scene: Scene, largest: FloatArray, beyond: FloatArray | None = None) -> list[Check]:
     """Return one check per mesh whose table is read between its loads.
 
-    `largest` (m,) are the largest transverse mesh forces, N, also among the figures.
+    `largest` (m,) are the largest transverse mesh forces, N, by mesh. `beyond` (m,) are the shares of samples
+    above the highest load. Both are figures of the checks.
     """
     return [
         _force_check(
@@ -118,7 +121,7 @@ def _force_checks(scene: Scene, largest: FloatArray, beyond: FloatArray | None =
 def checked_ledger(system: System, largest: FloatArray) -> Json:
     """Return the effect ledger of a study whose largest mesh forces are `largest` (m,), N, with its checks.
 
-    Raises `SolveError`: a force is beyond its table and the scene's ``on_violation`` does not let that pass.
+    Raises `SolveError`: a force is beyond its table, and the scene's ``on_violation`` makes that an error.
     """
     checks = _force_checks(system.scene, largest)
     entries = [check.to_json() for check in checks]
@@ -134,8 +137,10 @@ def _force_check(scene: Scene, index: int, largest: float, share: Mapping[str, f
     if times > 1.0:
         mesh = scene.meshes[index]
         driver, driven = scene.gear(mesh.driver), scene.gear(mesh.driven)
-        radius = driven.base_radius if driver.internal else driver.base_radius  # whose torques it counts
+        # the table's torques are those of the driving gear, but of the pinion where the ring gear drives
+        radius = driven.base_radius if driver.internal else driver.base_radius
         maximum = largest * radius
+        # rounded up to two significant digits
         digit = 10.0 ** (np.floor(np.log10(maximum)) - 1.0)
         rounded = float(np.ceil(maximum / digit) * digit)
         reason = (
@@ -145,11 +150,22 @@ def _force_check(scene: Scene, index: int, largest: float, share: Mapping[str, f
         )
     figures = {**share, "largest": largest}
     name, valid = scene.meshes[index].name, times <= STRAIGHT_ON
-    return Check("", "force inside the table", name, times <= 1.0, reason, figures, valid)
+    return Check(
+        effect="",
+        assumption="force inside the table",
+        part=name,
+        holds=times <= 1.0,
+        reason=reason,
+        figures=figures,
+        valid=valid,
+    )
 
 
 def _highest(scene: Scene, index: int) -> float:
-    """Highest load of a mesh's table, N; of the lower one where the coast flank has its own."""
+    """Return the highest load of a mesh's table, N.
+
+    Where the coast flank has a table of its own, it is that of the table with the lower highest load.
+    """
     coast = scene.meshes[index].coast
     tables = [scene.meshes[index].table, *([coast.table] if coast is not None and coast.table else [])]
     return min(float(table.level[-1]) for table in tables)
@@ -162,7 +178,7 @@ class _RunCheck(Protocol):
 
 
 class RunChecks:
-    """All checks of a run on its own model; `further` ones look at it too."""
+    """All checks of a run on its own model, and `further` ones."""
 
     def __init__(self, system: System, further: Sequence[_RunCheck] = ()) -> None:
         kinds = (ContactChecks, _AxisChecks, _ForceChecks, BearingLoadChecks, HeldOperatingPointChecks)
@@ -175,5 +191,5 @@ class RunChecks:
             check.see(series, states)
 
     def checks(self) -> list[Check]:
-        """Return the checks of all that was seen."""
+        """Return the checks of all blocks taken."""
         return [check for part in self._all for check in part.checks()]

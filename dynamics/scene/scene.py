@@ -50,17 +50,17 @@ def _check_housings(scene: Scene) -> None:
     """
     bushings = {bushing.name: bushing for bushing in scene.ground_bearings}
     lawful = {law.bushing for law in scene.bearing_laws}
-    taken: dict[str, str] = {}
+    housing_of_bushing: dict[str, str] = {}
     for index, housing in enumerate(scene.housings):
         for position, name in enumerate(housing.bushings):
             field = f"housings[{index}].bushings[{position}]"
             one_of(field, name, list(bushings))
-            if name in taken:
-                raise InputError(field, name, f'in one housing only; "{taken[name]}" has it')
+            if name in housing_of_bushing:
+                raise InputError(field, name, f'in one housing only; "{housing_of_bushing[name]}" has it')
             if scene.shaft(bushings[name].shaft).frame is not None:
                 bound = "a bushing of a shaft described in the fixed frame"
                 raise InputError(field, name, bound, "A planetary set's frame turns against the housing.")
-            taken[name] = housing.name
+            housing_of_bushing[name] = housing.name
         for seat, (name, at) in enumerate(zip(housing.bushings, housing.seat_positions or (), strict=False)):
             bearing = bushings[name]
             origin = scene.shaft(bearing.shaft).origin

@@ -20,13 +20,14 @@ _FORCE_FACTOR = Declared(
     0.5,
 )
 _ONE = "Give the case's own force and moment, or a factor on the scene's."
+"""Remedy of a force with both kinds of values, or with none."""
 DRIVE, COAST = "drive", "coast"
 _SHARE = Declared(Kind.RATIO, "", up_to(1e9), "Share of the duration, relative to the other load cases", 1.0)
 _FACTOR = Declared(Kind.RATIO, "", up_to(1e6), "Factor on the scene's loads, not on its forces", 1.0)
 _TORQUE = Declared(
     Kind.LOAD, "N m", up_to(1e9), "Torque on the leading shaft, in place of a factor on the loads", 100.0
 )
-_FASTEST = 1e7 * math.pi / 30.0
+_FASTEST = 1e7 * math.pi / 30.0  # rad/s, of 1e7 rpm
 _SPEED = Declared(
     Kind.SPEED, "rad/s", up_to(_FASTEST), "Speed of the leading shaft; left out: the scene's", 150.0
 )
@@ -62,7 +63,8 @@ class CaseForce:
             for axis, value in zip("xyz", vector, strict=True):
                 finite(f"{name}.{axis}", value)
         if vectors and self.factor is not None:
-            raise InputError("factor", self.factor, f"left out if a {min(vectors)} is given", _ONE)
+            first = min(vectors)  # "force" before "moment"
+            raise InputError("factor", self.factor, f"left out if a {first} is given", _ONE)
         if not vectors and self.factor is None:
             raise InputError("force", None, "given, or a moment, or a factor", _ONE)
 

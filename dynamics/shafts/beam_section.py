@@ -20,6 +20,8 @@ from dynamics.shafts.bodies import (
 )
 from dynamics.types import FloatArray
 
+_ROUNDING = 1e-9
+"""Number of parts beyond a whole number that is rounding of the logarithm."""
 _EXACT = np.polynomial.legendre.leggauss(4)
 """Points and weights that integrate polynomials up to degree 7: inertia has degree 6 along a cone."""
 
@@ -94,23 +96,30 @@ class BeamSection:
         The shear coefficient is the share of the area that carries shear: Cowper, J. Appl. Mech. 33 (1966)
         335-340, hollow circle.
         """
-        at = np.asarray(share, dtype=float)
-        outer, bore = (d[0] + at * (d[1] - d[0]) for d in (self.outer_diameters, self.bore_diameters))
+        fraction = np.asarray(share, dtype=float)
+        outer, bore = (
+            left + fraction * (right - left) for left, right in (self.outer_diameters, self.bore_diameters)
+        )
         nu, square = self.poissons_ratio, (bore / outer) ** 2
         quotient = (1.0 + square) ** 2
+        shear = 6.0 * (1.0 + nu) * quotient / ((7.0 + 6.0 * nu) * quotient + (20.0 + 12.0 * nu) * square)
         return _CrossSection(
-            math.pi / 4.0 * (outer**2 - bore**2),
-            math.pi / 64.0 * (outer**4 - bore**4),
-            6.0 * (1.0 + nu) * quotient / ((7.0 + 6.0 * nu) * quotient + (20.0 + 12.0 * nu) * square),
+            area=math.pi / 4.0 * (outer**2 - bore**2),
+            second_moment=math.pi / 64.0 * (outer**4 - bore**4),
+            shear_coefficient=shear,
         )
 
     @property
     def grading(self) -> tuple[float, ...]:
-        """Shares of the length between which outer diameter and wall vary by a factor of at most 2."""
-        (left, right), bores = self.outer_diameters, self.bore_diameters
+        """Shares of the length between which outer diameter and wall vary by a factor of at most 2.
+
+        The sections of a cone at these shares have diameters in a geometric sequence; so have its walls.
+        """
+        (left, right), (left_bore, right_bore) = self.outer_diameters, self.bore_diameters
         shares: list[float] = []
-        for ratio in (right / left, (right - bores[1]) / (left - bores[0])):
-            parts = math.ceil(abs(math.log2(ratio)) - 1e-9)
+        for ratio in (right / left, (right - right_bore) / (left - left_bore)):
+            parts = math.ceil(abs(math.log2(ratio)) - _ROUNDING)
+            # the linear course from 1 to `ratio` has the value ratio^(k / parts) at this share
             shares += [(ratio ** (k / parts) - 1.0) / (ratio - 1.0) for k in range(1, parts)]
         return tuple(shares)
 

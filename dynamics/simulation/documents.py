@@ -260,7 +260,7 @@ def _over_speed(system: System, linear: LinearSystem) -> Json:
 
 def _moves(freedom: Sequence[str], kinetic_energy: FloatArray) -> list[Json]:
     """Return the motions of each mode, "shaft, how", with shares in the energy (m, n), the largest first."""
-    names, moves = [f"{shaft}, {how}" for shaft, how in freedom_parts(freedom)], []
+    names, moves = [f"{shaft}, {direction}" for shaft, direction in freedom_parts(freedom)], []
     for shares in kinetic_energy.tolist():
         summed = dict.fromkeys(names, 0.0)
         for name, share in zip(names, shares, strict=True):
@@ -386,12 +386,12 @@ def _known_influences(decision: Decision, system: System) -> Mapping[str, Influe
 
 def series_of(system: System, time: FloatArray, states: States) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return all series of `RunResult` for the `states` at `time` (T,), and those to check, unfiltered."""
-    seen = observe(system.arrays, time, states.q, states.v, states.quanta, states.carried)
-    motion = system, time, observe_laws(system.arrays, time), states, seen
+    observed = observe(system.arrays, time, states.q, states.v, states.quanta, states.carried)
+    motion = system, time, observe_laws(system.arrays, time), states, observed
     if system.sampling.stop_band == 0.0:
-        points = histories(*motion, unfiltered(system, seen, states))
+        points = histories(*motion, unfiltered(system, observed, states))
         return points, points
-    return histories(*motion, filtered(system, states, seen)), checked_series(*motion)
+    return histories(*motion, filtered(system, states, observed)), checked_series(*motion)
 
 
 def finer(integration: Integration) -> Integration:

@@ -168,10 +168,10 @@ def observed_signals(
     system: System, time: FloatArray, states: States
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return positions (m, T), base pitches, transmission errors (m, T), m, bearing forces (b, 3, T), N."""
-    seen = observe(system.arrays, time, states.q, states.v, states.quanta, states.carried)
-    force = system.bearing_force(seen.force, states.q, states.v)
+    observed = observe(system.arrays, time, states.q, states.v, states.quanta, states.carried)
+    force = system.bearing_force(observed.force, states.q, states.v)
     meshes = len(system.scene.meshes)  # frames that turn have positions too, behind those of the meshes
-    return unwrapped(seen.position[:meshes]), seen.coordinate[system.driving_rows], force[:, :3]
+    return unwrapped(observed.position[:meshes]), observed.coordinate[system.driving_rows], force[:, :3]
 
 
 def error_by_source(

@@ -1,4 +1,8 @@
-"""The cost of a run: steps measured at several times of it, and counted over its duration."""
+"""The cost of a run: steps measured at several times of it, and counted over its duration.
+
+A probe starts a run at one of these times and takes a stretch of steps. A run may be integrated by ordinary
+compiled loops or by code made for the structure of its system, which costs time to make.
+"""
 
 from __future__ import annotations
 
@@ -23,26 +27,34 @@ from host import cpu_seconds
 PARTS = (0.05, 0.5, 0.95)
 """Times at which a run is probed, over its duration."""
 ENOUGH = 0.02
-"""CPU s of the stretch of a probe that counts; all of them take twice that, and up to twice that again."""
+"""Least CPU seconds of the stretch whose steps are counted. Stretches double, so all stretches of a probe
+take two to four times as much.
+"""
 MIN_STEPS = 32
-"""Least steps of a stretch that counts, however long a step takes."""
+"""Least number of steps of the stretch whose steps are counted."""
+FIRST_STRETCH = 1.0 / 16.0
+"""First stretch of a probe over the step of the chosen method."""
 FINER = 10.0**0.2
-"""Steps at a tenth of the tolerance, over the steps of the run; with half the positions there are as many."""
+"""Steps at a tenth of the tolerance, over the steps of the run: a method of order 5. A run with half the
+positions takes as many steps.
+"""
 FASTER, MAKING = 2.3, 2.0
-"""Ordinary loops over code of a structure's own, measured 2.0 to 2.8; CPU s of making it, 1.1 to 4.6."""
+"""CPU time of ordinary loops over that of code made for the structure (measured: 2.0 to 2.8), and CPU seconds
+of making this code (1.1 to 4.6).
+"""
 
 
 class ProbedRun(NamedTuple):
-    """CPU seconds of the start and the steps of a run, and whether code of its own may follow.
-
-    `error_share`: steps of its error estimates over its own. The additional cost of flanks that part is not
-    known in advance.
-    """
+    """Predicted cost of a run. The additional cost of flanks that part is not known in advance."""
 
     start: float
+    """CPU seconds from the scene to the first step."""
     steps: float
+    """CPU seconds of all steps by ordinary loops."""
     code_may_follow: bool
+    """Whether code may be made for the structure of the system."""
     error_share: float
+    """Steps of the runs that estimate errors, over the steps of the run."""
 
     def seconds(self, runs: int, *, with_errors: bool) -> float:
         """Return the CPU seconds of `runs` runs, with or without their error estimates."""
@@ -52,10 +64,10 @@ class ProbedRun(NamedTuple):
 
 
 def probe_run(scene: Scene) -> ProbedRun:
-    """Return the expected cost of a run of a scene; some tenths of a CPU second of it are run.
+    """Return the expected cost of a run of a scene, from probes of some tenths of a CPU second.
 
-    Raises `InputError`: its parts do not fit each other; `SolveError`: nothing holds it at rest, or no steps
-    can be taken.
+    Raises `InputError`: parts of the scene do not fit each other; `SolveError`: there is no static
+    equilibrium, or no steps can be taken.
     """
     assemble(scene)  # loads modules and compiled code before the measurement
     began = cpu_seconds()
@@ -69,35 +81,42 @@ def probe_run(scene: Scene) -> ProbedRun:
 
 
 class _Probe(NamedTuple):
-    """CPU seconds of starting; CPU seconds and steps per second of a run about some time of it."""
+    """Cost of a run about one of its times."""
 
     start: float
+    """CPU seconds from the assembled system to the first step."""
     seconds: float
+    """CPU seconds per second of the run."""
     steps: float
+    """Steps per second of the run."""
     code_may_follow: bool
     lightly_damped: bool
 
 
 class _Discarded:
-    """Takes samples, and keeps none."""
+    """Store of samples that keeps none."""
 
     def __init__(self, widths: Widths) -> None:
         self._widths = widths
 
     def room(self, first: int, count: int) -> States:
-        """Return rows that nobody reads."""
+        """Return rows to write samples to."""
         return self._widths.states(count)
 
     def keep(self, first: int, count: int) -> None:
-        """Do nothing."""
+        """Discard the samples."""
 
     def states(self, first: int, stop: int) -> States:
-        """Refuse: nothing is kept."""
+        """Raise `NotImplementedError`: no samples are kept."""
         raise NotImplementedError
 
 
 def _probe(system: System, time: float) -> _Probe:
-    """March on from the equilibrium at a time by stretches that grow, until one of them tells."""
+    """Integrate from the equilibrium at a time over stretches of doubled length, and measure the last one.
+
+    It has `MIN_STEPS` steps and `ENOUGH` CPU seconds, or is as long as the run. The first stretch never
+    counts, since it may load code.
+    """
     began = cpu_seconds()
     later = starting_at(system, time, np.zeros(len(system.scene.references), dtype=np.int64))
     rest = static_equilibrium(later)
@@ -109,16 +128,14 @@ def _probe(system: System, time: float) -> _Probe:
     )
     code = StructureCode(march.control.implicit, march.structure, makes=False)
     start = cpu_seconds() - began
-    stretch, sink, first = choice.step / 16.0, _Discarded(march.widths), True
+    stretch, sink, first = FIRST_STRETCH * choice.step, _Discarded(march.widths), True
     while True:
         stretch = min(stretch, system.scene.duration)
-        began, before, since = cpu_seconds(), _steps(march), float(march.work.time[0])
+        since, before, began = float(march.work.time[0]), _steps(march), cpu_seconds()
         status = advance_to(march, code, since + stretch, sink)
-        seconds, steps, passed = (
-            cpu_seconds() - began,
-            _steps(march) - before,
-            float(march.work.time[0]) - since,
-        )
+        seconds = cpu_seconds() - began
+        steps = _steps(march) - before
+        passed = float(march.work.time[0]) - since
         if not status.usable:
             raise SolveError(f"no steps at {time:.6g} s: {status.name.lower()}")
         is_entire = stretch >= system.scene.duration  # the stretch is the entire short run
@@ -129,4 +146,5 @@ def _probe(system: System, time: float) -> _Probe:
 
 
 def _steps(march: March) -> int:
+    """Return the number of steps so far; a rejected step costs as much as an accepted one."""
     return int(march.work.counts[Count.ACCEPTED] + march.work.counts[Count.REJECTED])

@@ -86,11 +86,11 @@ class _Leg:
         self._status: RunStatus | None = None
         self.since = 0.0
         checkpoint = self.spool.checkpoint() if resume else None
-        taken = earlier and taken_over(earlier.ledger, earlier.trail, self.spool.states, system)
+        start_value = earlier and taken_over(earlier.ledger, earlier.trail, self.spool.states, system)
         if checkpoint is not None:
             self._resume(path, *checkpoint)
-        elif earlier and taken:
-            self._go_on_for(earlier.widths, taken)
+        elif earlier and start_value:
+            self._go_on_for(earlier.widths, start_value)
         else:
             self.spool.begin()
 
@@ -104,13 +104,13 @@ class _Leg:
         status = RunStatus(int(values["status"]))
         self._status = None if status is RunStatus.CANCELLED else status
 
-    def _go_on_for(self, widths: Widths, taken: StartValue) -> None:
+    def _go_on_for(self, widths: Widths, start_value: StartValue) -> None:
         """Start from an earlier run, whose samples the spool holds; save at once, as its own are gone."""
-        taken.start(self.march)
-        samples = taken.at.samples
-        self.spool.rewrite(widths, samples, lambda states: taken.widened(states, self.march))
+        start_value.start(self.march)
+        samples = start_value.at.samples
+        self.spool.rewrite(widths, samples, lambda states: start_value.widened(states, self.march))
         self.spool.resume(samples)
-        self.since = taken.at.time
+        self.since = start_value.at.time
         self._save(RunStatus.CANCELLED)
 
     def go(
@@ -263,9 +263,9 @@ def _run(
     system = start.system
     if earlier is not None:
         states_of = earlier.trajectory.states.rows
-        taken = taken_over(earlier.result.effect_ledger, earlier.trail, states_of, system)
-        before = before if taken is None else replace(before, since=taken.at.time)
-        start.trail.taken = taken
+        start_value = taken_over(earlier.result.effect_ledger, earlier.trail, states_of, system)
+        before = before if start_value is None else replace(before, since=start_value.at.time)
+        start.trail.taken = start_value
     trajectory = integrate(
         system,
         start.rest,

@@ -17,6 +17,8 @@ from dynamics.structure_code.module import Module
 
 MAX_IN_MEMORY, MAX_IN_FILES = 32, 256  # most structures whose code stays in memory, and in files
 SUFFIX = ".structure"
+_DIGEST_BYTES = 32
+"""Bytes of the SHA-256 with which a file begins."""
 
 
 class MachineCode:
@@ -30,7 +32,7 @@ class MachineCode:
         self._engine.finalize_object()
 
     def call(self, name: str, *arguments: Any) -> int:
-        """Call a function of tuples by address and floats without the interpreter's lock."""
+        """Call a function without the interpreter's lock; its arguments are floats, and tuples by address."""
         kinds = [c_double if isinstance(argument, float) else c_void_p for argument in arguments]
         function = CFUNCTYPE(c_int64, *kinds)(self._engine.get_function_address(name))
         passed = (argument if isinstance(argument, float) else argument._address for argument in arguments)
@@ -38,7 +40,7 @@ class MachineCode:
 
 
 def _machine() -> Any:
-    """Return the processor at hand as a target; an engine takes it for its own."""
+    """Return a target for this machine's processor; each engine needs a target of its own."""
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
     processor = {"cpu": llvm.get_host_cpu_name(), "features": llvm.get_host_cpu_features().flatten()}
@@ -48,7 +50,7 @@ def _machine() -> Any:
 def compiled(module: Module) -> bytes:
     """Return the machine code of a module.
 
-    Scalars stay apart: gathering them into vectors costs more than it saves where entries are few.
+    Loops are vectorized, single scalars are not: gathering few of them costs more than vectors save.
     """
     parsed, target = llvm.parse_assembly(str(module.module)), _machine()
     parsed.triple, parsed.data_layout = llvm.get_process_triple(), str(target.target_data)
@@ -79,8 +81,9 @@ class CodeStore:
                 return self._loaded[key]
         with suppress(OSError):
             content = self._file(key).read_bytes()
-            if len(content) > 32 and sha256(content[32:]).digest() == content[:32]:
-                return self._hold(key, MachineCode(content[32:]))
+            digest, code = content[:_DIGEST_BYTES], content[_DIGEST_BYTES:]
+            if code and sha256(code).digest() == digest:
+                return self._hold(key, MachineCode(code))
         return None
 
     def seen(self, key: str) -> bool:

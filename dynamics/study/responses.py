@@ -151,8 +151,10 @@ class Response:
         """Return the value of the response in a window of a run; of several parts the largest one."""
         run, rows = window.run, self.rows(window.run)
         mesh = run.mesh.index(one_of("mesh", self.mesh, run.mesh)) if self.mesh else 0
-        seen = window if self.kind.of == "mesh" else window.along(mesh)
-        return max((self.kind.take(seen, row, self.order) for row in rows), key=lambda value: value.value)
+        projected = window if self.kind.of == "mesh" else window.along(mesh)
+        return max(
+            (self.kind.take(projected, row, self.order) for row in rows), key=lambda value: value.value
+        )
 
 
 def responses_of(
@@ -212,14 +214,14 @@ QUANTITIES: dict[str, _Quantity] = {
         "m",
         "mesh",
         False,
-        lambda seen, row, _: _Value(float(np.std(seen.transmission_error(row))), seen.error("rms")),
+        lambda window, row, _: _Value(float(np.std(window.transmission_error(row))), window.error("rms")),
     ),
     "dte_peak_to_peak": _Quantity(
         "dynamic transmission error, peak to peak",
         "m",
         "mesh",
         False,
-        lambda seen, row, _: _Value(float(np.ptp(seen.transmission_error(row)))),
+        lambda window, row, _: _Value(float(np.ptp(window.transmission_error(row)))),
     ),
     "peak_mesh_force": _Quantity("peak mesh force", "N", "mesh", False, _peak_mesh_force),
     "dynamic_factor": _Quantity("dynamic factor K_v", "", "mesh", False, _dynamic_factor),

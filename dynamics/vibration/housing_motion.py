@@ -27,8 +27,9 @@ HALF_LENGTH = 24
 ROUNDING = 1e-9
 """Coupling of two modes over the damping of both, below which it is rounding."""
 UNDAMPED = 1e-12
-"""Dynamic stiffness of a mode over its stiffness and inertia, below which it is rounding: a resonance without
-damping.
+"""Dynamic stiffness of a mode over the sum of its stiffness and inertia terms, below which it counts as 0.
+
+The mode then resonates without damping.
 """
 BLOCK = 64
 """Number of frequencies whose matrices are in memory at a time, where damping couples modes."""
@@ -69,7 +70,7 @@ class BearingHarmonics(BearingForces, Protocol):
     def bearing_force(self) -> ComplexArray:
         """Peak amplitudes on the ground, (b, 3, S, H) in N or (b, 6, S, H) with moments in N m.
 
-        The phases of all bearings at one speed and order are about one moment.
+        The phases of all bearings at one speed and order refer to the same instant.
         """
 
     @property
@@ -82,11 +83,11 @@ class BearingHarmonics(BearingForces, Protocol):
 
 
 class ReportedHarmonics(BearingHarmonics, Protocol):
-    """The same with what is known of their origin."""
+    """Forces of bearings in orders, with the metadata of the result that they are from."""
 
     @property
     def metadata(self) -> Json:
-        """Plain JSON."""
+        """Metadata of the result, in plain JSON."""
 
 
 def seat_forces(
@@ -129,7 +130,8 @@ def finer_seat_forces(
 ) -> tuple[FloatArray, FloatArray]:
     """Return times (F,) and `run_seat_forces` (F, s) at `factor` times the rate of the run.
 
-    Between finer samples a cubic spline follows what the run's output passes: see `motion_pieces`.
+    A cubic spline through the finer samples has the whole band that the run's output filter passes, see
+    `motion_pieces`.
     """
     force = run_seat_forces(result, housing, bearings)
     finer = np.empty((factor * (len(force) - 1) + 1, force.shape[1]))
@@ -181,13 +183,14 @@ def modal_amplitudes(housing: ReducedHousing, frequency: FloatArray, force: Comp
     natural, shape = housing.modes
     damping = shape.T @ housing.damping @ shape
     omega = 2.0 * math.pi * np.asarray(frequency, dtype=float)
-    pushed = np.asarray(force) @ shape[: np.shape(force)[-1]]
+    modal_force = np.asarray(force) @ shape[: np.shape(force)[-1]]
     diagonal = np.diag(damping)
     square = natural**2 - omega[:, None] ** 2
     dynamic = square + 1j * omega[:, None] * diagonal  # stiffness of every mode, (N, m)
-    unheld = ~(np.abs(dynamic) > UNDAMPED * (natural**2 + omega[:, None] ** 2))
-    if np.any(unheld):
-        at, mode = np.argwhere(unheld)[0]
+    # negated, so that NaN counts as a resonance
+    resonant = ~(np.abs(dynamic) > UNDAMPED * (natural**2 + omega[:, None] ** 2))
+    if np.any(resonant):
+        at, mode = np.argwhere(resonant)[0]
         remedy = "Give the housing damping (loss_factor, damping_ratio, mounts), or leave that speed out."
         where = Quantity(float(natural[mode] / (2.0 * math.pi)), "Hz")
         off = Text.of("off the natural frequency of a mode of the housing without damping, ", where)
@@ -195,15 +198,18 @@ def modal_amplitudes(housing: ReducedHousing, frequency: FloatArray, force: Comp
     if np.all(
         np.abs(damping - np.diag(diagonal)) <= ROUNDING * np.sqrt(np.outer(diagonal, diagonal).clip(0.0))
     ):
-        return np.asarray(pushed / dynamic[:, None, :])
-    return _coupled(square, omega, damping, pushed)
+        return np.asarray(modal_force / dynamic[:, None, :])
+    return _coupled(square, omega, damping, modal_force)
 
 
 def _coupled(
-    square: FloatArray, omega: FloatArray, damping: FloatArray, pushed: ComplexArray
+    square: FloatArray, omega: FloatArray, damping: FloatArray, modal_force: ComplexArray
 ) -> ComplexArray:
-    """Solve for all modes together, a block of frequencies at a time."""
-    loads = np.broadcast_to(pushed, (omega.size, *pushed.shape[1:]))
+    """Return the amplitudes (N, e, m) of modes that damping couples, a block of frequencies at a time.
+
+    `square` (N, m): squares of the natural frequencies less that of omega; `modal_force` (N or 1, e, m).
+    """
+    loads = np.broadcast_to(modal_force, (omega.size, *modal_force.shape[1:]))
     amplitude = np.empty(loads.shape, dtype=complex)
     for first in range(0, omega.size, BLOCK):
         part = slice(first, first + BLOCK)

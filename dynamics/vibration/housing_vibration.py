@@ -95,7 +95,10 @@ def named_points(housing: ReducedHousing, names: Sequence[str] | None = None) ->
 
 
 def point_rows(housing: ReducedHousing, names: Sequence[str] | None = None) -> FloatArray:
-    """Return the motion of named points per reduced coordinate, (k, 3, r); by default of all, even none."""
+    """Return the motion of named points per reduced coordinate, (k, 3, r); by default of all points.
+
+    A housing without points has k = 0, unless `names` asks for one, which raises `InputError`.
+    """
     points = named_points(housing, names) if housing.points or names else ()
     return np.array([point.motion for point in points]).reshape(-1, 3, len(housing.mass))
 
@@ -145,7 +148,7 @@ class HousingVibration:
 
     @property
     def valid(self) -> BoolArray:
-        """Whether the modes kept carry the harmonic, (S, H)."""
+        """Whether the harmonic is within the frequencies for which the housing has modes, (S, H)."""
         return np.asarray(self.frequency <= self.highest_valid_frequency)
 
     @property
@@ -164,6 +167,7 @@ class HousingVibration:
         return self.overall - self._with_floor(1.0)
 
     def _with_floor(self, share: float) -> FloatArray:
+        """Return `overall` with the floor lowered by a share of its error; the floor is at least 0."""
         if self.floor is None or self.floor_error is None:
             return overall(self.rms)
         listed = np.sum(np.square(self.rms), axis=-1)
@@ -176,7 +180,8 @@ class HousingVibration:
     def largest(self, speed: float | None = None, order: float | None = None) -> tuple[int, int]:
         """Return the indices of speed and order at which a point moves fastest; without points, the surface.
 
-        `speed`, `order`: the nearest one alone, rad/s; what is valid comes first.
+        `speed` in rad/s, `order`: search at the nearest speed or order alone. Harmonics that are `valid` are
+        preferred to larger ones that are not.
         """
         near = np.ones(self.frequency.shape, dtype=bool)
         if speed is not None:
@@ -185,6 +190,7 @@ class HousingVibration:
             near &= np.arange(self.order.size) == np.argmin(np.abs(self.order - order))
         near = near & self.valid if np.any(near & self.valid) else near
         size = self.rms.max(axis=0) if self.point else self.mean_square_velocity
+        # -1 is below every velocity: harmonics that are not searched
         row, column = np.unravel_index(int(np.argmax(np.where(near, size, -1.0))), size.shape)
         return int(row), int(column)
 
@@ -215,29 +221,36 @@ def housing_vibration(
     rate = 2j * np.pi * response.frequency[..., None] * motion
     rows = point_rows(housing, points)
     weight = 0.0 * housing.mass if housing.surface is None else surface_weight(housing)
+    floor, floor_error = (
+        (None, None) if response.floor is None else _point_floor(response.floor, housing, bearings, rows)
+    )
     return HousingVibration(
-        tuple(point.name for point in housing.points) if points is None else tuple(points),
-        response.speed,
-        response.order,
-        response.frequency,
-        force,
-        np.einsum("kcr,shr->kcsh", rows, rate),
-        mean_square(rate, weight),
-        housing.valid_frequency,
-        *(_point_floor(response.floor, housing, bearings, rows) if response.floor is not None else ()),
+        point=tuple(point.name for point in housing.points) if points is None else tuple(points),
+        speed=response.speed,
+        order=response.order,
+        frequency=response.frequency,
+        seat_force=force,
+        velocity=np.einsum("kcr,shr->kcsh", rows, rate),
+        mean_square_velocity=mean_square(rate, weight),
+        highest_valid_frequency=housing.valid_frequency,
+        floor=floor,
+        floor_error=floor_error,
     )
 
 
 def _point_floor(
     floor: LineFloor, housing: ReducedHousing, bearings: Sequence[str] | None, rows: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the mean squares of the velocity of points (k, 3, r) in the lines left out, and their errors."""
+    """Return the mean squares (k, S) of velocities in the lines left out, m^2/s^2, and their errors.
+
+    `rows` (k, 3, r): the motion of the points per reduced coordinate.
+    """
     amplitude = modal_amplitudes(housing, floor.frequency, seat_forces(floor, housing, bearings))
     rate = 2j * np.pi * floor.frequency[:, None, None] * (amplitude @ housing.modes[1].T)
     velocities = [rate @ velocity.T for velocity in rows]
-    made = [floor.power(0.5 * velocity.conj() @ np.swapaxes(velocity, 1, 2)) for velocity in velocities]
+    powers = [floor.power(0.5 * velocity.conj() @ np.swapaxes(velocity, 1, 2)) for velocity in velocities]
     shape = (len(rows), floor.pace.size)
     return (
-        np.reshape([np.sum(power.power, axis=1) for power in made], shape),
-        np.reshape([np.sum(power.missed, axis=1) for power in made], shape),
+        np.reshape([np.sum(power.power, axis=1) for power in powers], shape),
+        np.reshape([np.sum(power.missed, axis=1) for power in powers], shape),
     )

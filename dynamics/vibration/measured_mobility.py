@@ -205,8 +205,8 @@ class MeasuredVibration:
 def measured_vibration(response: BearingHarmonics, housing: MeasuredMobility) -> MeasuredVibration:
     """Return the vibration of points under the forces of bearings, by measured mobilities.
 
-    The housing does not act back: the scene of the response has what stiffness the seats have in its
-    bearings. Raises `InputError`: a bearing of the measurement is not in the response, or no order at any
+    The housing does not act back on the shafts: a stiffness of the seats has to be in the bearings of the
+    scene. Raises `InputError`: a bearing of the measurement is not in the response, or no order at any
     speed lies inside the measured band.
 
     Parameters
@@ -227,27 +227,29 @@ def measured_vibration(response: BearingHarmonics, housing: MeasuredMobility) ->
     square = np.abs(force) ** 2
     measured = {(response.bearing.index(part.name), part.axis) for part in housing.excitation}
     omitted = [at for at in np.ndindex(*square.shape[:2]) if at not in measured and np.any(square[at])]
-    lost = np.sum([square[at] for at in omitted], axis=0) + np.zeros(covered.shape)
+    omitted_square = np.sum([square[at] for at in omitted], axis=0) + np.zeros(covered.shape)
     total = square.sum(axis=(0, 1))
     return MeasuredVibration(
-        housing.points,
-        response.speed,
-        response.order,
-        response.frequency,
-        _velocity(housing, response, force),
-        covered,
-        tuple(Direction(response.bearing[bearing], axis) for bearing, axis in omitted),
-        np.divide(lost, total, out=np.zeros(covered.shape), where=total > 0.0),
-        bool(np.any(response.bearing_force[:, 3:])),
-        response.floor is not None,
+        point=housing.points,
+        speed=response.speed,
+        order=response.order,
+        frequency=response.frequency,
+        velocity=_velocity(housing, response, force),
+        covered=covered,
+        omitted=tuple(Direction(response.bearing[bearing], axis) for bearing, axis in omitted),
+        omitted_force=np.divide(omitted_square, total, out=np.zeros(covered.shape), where=total > 0.0),
+        moments=bool(np.any(response.bearing_force[:, 3:])),
+        floor=response.floor is not None,
     )
 
 
 def _velocity(housing: MeasuredMobility, response: BearingHarmonics, force: ComplexArray) -> ComplexArray:
     """Return the velocities of points (k, 3, S, H) under forces along the measured axes, (b, 3, S, H)."""
     shape = response.frequency.shape
-    pushed = np.array([force[response.bearing.index(part.name), part.axis] for part in housing.excitation])
-    hertz, loads = response.frequency.ravel(), pushed.reshape(len(pushed), -1)
+    excitation = np.array(
+        [force[response.bearing.index(part.name), part.axis] for part in housing.excitation]
+    )
+    hertz, loads = response.frequency.ravel(), excitation.reshape(len(excitation), -1)
     responses = np.empty((len(housing.response), hertz.size), dtype=complex)
     for first in range(0, hertz.size, BLOCK):
         part = slice(first, first + BLOCK)
@@ -270,6 +272,6 @@ def bearing_shares(response: BearingHarmonics, housing: MeasuredMobility) -> Flo
     shares = []
     for bearing in housing.bearings:
         part = measured_vibration(response, housing.through(bearing)).velocity
-        felt = np.nansum((total.conj() * part).real, axis=1)
-        shares.append(np.divide(felt, square, out=np.full(square.shape, np.nan), where=square > 0.0))
+        in_phase = np.nansum((total.conj() * part).real, axis=1)  # the part's velocity along the total's
+        shares.append(np.divide(in_phase, square, out=np.full(square.shape, np.nan), where=square > 0.0))
     return np.array(shares)

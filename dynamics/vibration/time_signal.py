@@ -213,12 +213,12 @@ def motion_pieces(
     step = _checked_step(times, forces, housing)
     natural, shape = housing.modes
     damping = shape.T @ housing.damping @ shape
-    push, seen = shape[: housing.motions].T, (np.asarray(rows) @ shape).T
-    propagator = _propagator(natural, damping, push, step)
+    loaded_shape, measured_shape = shape[: housing.motions].T, (np.asarray(rows) @ shape).T
+    propagator = _propagator(natural, damping, loaded_shape, step)
     elastic = natural > LOOSE * natural.max()
-    rest = np.divide(push @ forces[0], natural**2, out=np.zeros(natural.size), where=elastic)
+    rest = np.divide(loaded_shape @ forces[0], natural**2, out=np.zeros(natural.size), where=elastic)
     state = np.concatenate([rest * propagator.scale, np.zeros(natural.size)])
-    of_amplitudes, of_rates = seen / propagator.scale[:, None], seen / step
+    of_amplitudes, of_rates = measured_shape / propagator.scale[:, None], measured_shape / step
     for first in range(0, times.size, PIECE):
         states, state = propagator.advance(_derivatives(forces, first), state)
         amplitudes, rates = states[:, : natural.size], states[:, natural.size :]
@@ -227,7 +227,7 @@ def motion_pieces(
         elif quantity is MotionQuantity.VELOCITY:
             yield rates @ of_rates
         else:
-            pushed = forces[first : first + PIECE] @ (push.T @ seen)
+            pushed = forces[first : first + PIECE] @ (loaded_shape.T @ measured_shape)
             yield (
                 pushed - rates @ (damping.T @ of_rates) - amplitudes @ (natural[:, None] ** 2 * of_amplitudes)
             )

@@ -1,4 +1,9 @@
-"""Transmission error over a revolution or a hunting cycle, by derivatives, with errors by solved pitches."""
+"""Transmission error of gears with deviating teeth over a revolution or a hunting cycle.
+
+The hunting cycle ends when the same two teeth meet again. Contact is solved in some base pitches; in the
+others the transmission error follows by its derivatives with respect to the deviations. Shapes: T base
+pitches, P positions in each, L loads, 23 quantities of a curve.
+"""
 
 from __future__ import annotations
 
@@ -28,12 +33,14 @@ from model_studies.stage_clock import StageClock
 
 POSITIONS = 64
 """Positions in a base pitch of a request that names none."""
+_MAX_POSITIONS = 4096
+"""Most positions in a base pitch that a request may name."""
 
 
 @brief
 @dataclass(frozen=True)
 class DeviatingCycle:
-    """Transmission error over T base pitches, P even positions in each, at L loads."""
+    """Transmission error over T base pitches, at P evenly spaced positions in each, at L loads."""
 
     teeth: tuple[int, int]
     """Numbers of teeth of the driving and the driven gear."""
@@ -52,6 +59,7 @@ class DeviatingCycle:
     alone, m. Shape (23, L).
     """
     predicted: CycleSeconds
+    """Cost predicted before the contact was solved."""
 
     def orders(self, load: int = -1) -> Spectrum:
         """Return the orders of mesh and shafts at one of the loads, with the errors of `quantity_error`."""
@@ -67,17 +75,19 @@ def deviating_cycle(
 ) -> DeviatingCycle:
     """Compute the transmission error until the teeth of both gears repeat, or over the pitches requested.
 
-    Drawn pitches are solved, then those furthest from all that are, until derivatives give the others within
-    the tolerance. Short cycles are solved whole, and those of which that takes a quarter.
+    First, pitches drawn at random are solved; then the pitches whose deviations differ most from those of all
+    solved ones, until derivatives give the others within the tolerance. Every pitch is solved in short
+    cycles, and where more than a quarter of the pitches would have to be.
 
     Parameters
     ----------
     axes : TableAxes
         Loads at one misalignment and center distance, and the pitches.
     options : AnalysisOptions
-        The tolerance is that of mean and peak-to-peak, without one 1 % or 20 nm. Positions are even.
+        The tolerance is that of mean and peak-to-peak; without one it is 1 % or 20 nm. Positions are evenly
+        spaced.
     run : Run
-        Its workers condense; this process solves.
+        Its workers condense the gears; this process solves the contact.
 
     Raises
     ------
@@ -97,13 +107,18 @@ def deviating_cycle(
 def cycle_contact(
     pair: ParallelAxes, axes: TableAxes, options: AnalysisOptions, run: Run
 ) -> tuple[CycleContact, CycleSeconds]:
-    """Condense the gears of a cycle and predict its contact; parameters and errors of `deviating_cycle`."""
+    """Condense the gears of a cycle and predict the cost of its contact.
+
+    Parameters and exceptions are those of `deviating_cycle`.
+    """
     for name in ("misalignment", "center_distance_change"):
         if (count := getattr(axes, name).size) > 1:
             raise InputError(f"{name}s", count, "one value", "A cycle has one alignment.")
     positions = options.positions or POSITIONS
     options = replace(options, positions=positions)
-    within("positions", positions, 2 * HARMONICS + 1, 4096, "They tell twenty mesh harmonics apart.")
+    within(
+        "positions", positions, 2 * HARMONICS + 1, _MAX_POSITIONS, "They tell twenty mesh harmonics apart."
+    )
     choice = decide(check_request(pair, axes, options, check_size=False), run.cache)
     request, plan = choice.checked.request, choice.plan
     bodies = condensed_bodies(choice.checked, plan, StageClock(run.workers.cost), run)
@@ -116,9 +131,10 @@ def cycle_contact(
 def _solved(
     contact: CycleContact, predicted: CycleSeconds, allowed: AllowedError
 ) -> tuple[FloatArray, BoolArray, FloatArray]:
-    """Return the transmission error (T, P, L) in m, the pitches solved, and errors (1 + 23, L) in m.
+    """Return the transmission error (T, P, L) in m, whether each pitch is solved (T,), and errors in m.
 
-    Of a position in another pitch, and of the quantities.
+    The errors are an array (1 + 23, L): first that of a position in a pitch that is not solved, then those of
+    the quantities.
     """
     every, none = np.arange(contact.pitches), np.zeros((1 + QUANTITIES, contact.load.size))
     envelope = chosen(contact, allowed) if predicted.pays(contact.pitches) else None

@@ -55,8 +55,8 @@ def table_of_solution(
 
 def table_fields(points: OperatingPoints, contacts: Sequence[SolvedContact]) -> dict[str, NDArray[Any]]:
     """Arrays of the database at the requested loads, (P, F, M, D, ...), and its pair axis."""
-    seen = np.concatenate([contact.problem.candidates.pair for contact in contacts])
-    pairs = np.arange(seen.min(), seen.max() + 1)
+    pair_of_candidates = np.concatenate([contact.problem.candidates.pair for contact in contacts])
+    pairs = np.arange(pair_of_candidates.min(), pair_of_candidates.max() + 1)
     stored = [dict(contact.stored) for contact in contacts]
     for arrays, contact in zip(stored, contacts, strict=True):
         numbers = np.unique(contact.problem.candidates.pair)

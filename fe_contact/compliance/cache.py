@@ -31,7 +31,9 @@ PATIENCE_S = 600.0
 time the result is computed here too.
 """
 _LOOK_S = 0.05
+"""Time between two attempts to get a lock, s."""
 NOT_ARRAYS = ("facts", "checksum")
+"""Entries of a file that are texts: the plain fields as JSON, and the checksum of all of it."""
 Cached = TypeVar("Cached", FlankCompliance, FlankCompliance3D, UnitRootStress)
 Result = TypeVar("Result")
 
@@ -50,7 +52,7 @@ def content_hash(content: Json) -> str:
 def cached_or_computed(
     directory: Path | None, key: str, kind: type[Cached], compute: Callable[[], Cached]
 ) -> Cached:
-    """Return the result kept under `key`, or compute it and keep it; without a directory just compute.
+    """Return the result stored under `key`, or compute and store it; without a directory only compute it.
 
     Of all processes that share the directory one computes; the others wait for it.
     """
@@ -69,9 +71,11 @@ def cached_or_computed(
 
 @contextmanager
 def _alone(directory: Path, key: str) -> Iterator[None]:
-    """Keep others from computing the same; after `PATIENCE_S`, or where nothing can be locked, do not wait.
+    """Hold the lock of a key in the context, so that no other process computes the same.
 
-    The lock ends with its process. Its file goes while it is held: who waited for it finds the result first.
+    After `PATIENCE_S`, or where nothing can be locked, the context begins without the lock. The lock ends
+    with its process. Its file is removed before the lock is released: processes that waited then look for the
+    result first, and find it.
     """
     file, descriptor, locked = directory / f"compliance-{key}.lock", None, False
     with suppress(OSError):
@@ -105,7 +109,7 @@ def _locked(descriptor: int) -> bool:
 
 
 def computed_once(keys: Sequence[str], compute: Callable[[int], Result]) -> tuple[Result, ...]:
-    """Return a result for each key, computed with the number of its first place: equal keys share one."""
+    """Return a result for each key; equal keys share one, computed by the index of the first of them."""
     results: dict[str, Result] = {}
     for number, key in enumerate(keys):
         if key not in results:
@@ -114,7 +118,7 @@ def computed_once(keys: Sequence[str], compute: Callable[[int], Result]) -> tupl
 
 
 def read_compliance(directory: Path, key: str, kind: type[Cached]) -> Cached | None:
-    """Return the result kept under `key`, or None if there is none or its file is damaged."""
+    """Return the result stored under `key`, or None if there is none or its file is damaged."""
     result = _read(directory, key, kind)
     COMPLIANCE_READS.note(hit=result is not None)
     return result
@@ -139,9 +143,9 @@ def _read(directory: Path, key: str, kind: type[Cached]) -> Cached | None:
 def write_compliance(
     directory: Path, key: str, compliance: FlankCompliance | FlankCompliance3D | UnitRootStress
 ) -> None:
-    """Keep a result under `key`; a reader sees the whole file or none.
+    """Store a result under `key`; a reader sees the whole file or none.
 
-    A directory that cannot be written is no reason to lose the result: it is left as it is.
+    Nothing is raised where the directory cannot be written: the caller has the result all the same.
     """
     content = {f.name: getattr(compliance, f.name) for f in fields(compliance) if f.name != "from_cache"}
     arrays = {name: value for name, value in content.items() if isinstance(value, np.ndarray)}
@@ -161,7 +165,7 @@ def write_compliance(
 
 
 def cached_size(directory: Path | None, key: str) -> int:
-    """Return the bytes kept under `key`, 0 if nothing is; whether it is whole shows when it is read."""
+    """Return the size of the file under `key` in bytes, 0 if there is none; the file is not checked."""
     if directory is None:
         return 0
     try:

@@ -2,6 +2,9 @@
 
 A sector is the part of the gear with one tooth. Its cuts are the faces to the neighboring sectors.
 Condensation expresses all freedoms of a sector by those of its flank and cuts; the sectors close to a ring.
+The flank has a coordinate s along the profile and z along the face. Its element faces have eight nodes:
+element k has the profile nodes 2k, 2k + 1, 2k + 2, and so along z. Shapes: nf flank freedoms, nc freedoms of
+a cut, p loads.
 """
 
 from __future__ import annotations
@@ -24,7 +27,8 @@ from fe_contact.mesh.swept_sector import SweptSector, swept_sector
 from fe_contact.types import FloatArray, IntArray
 from model_studies.stage_clock import StageClock
 
-# Share of a uniform pressure that the nodes of an eight-node face carry, by plane and profile node.
+# Share of a uniform pressure that the nodes of an eight-node face carry, by its 3 nodes along z and s; the
+# middle is no node.
 FACE_SHARES = np.array([[-1.0, 4.0, -1.0], [4.0, 0.0, 4.0], [-1.0, 4.0, -1.0]]) / 12.0
 
 
@@ -59,7 +63,11 @@ class CondensedGear:
 
 
 def pressure_forces(s: FloatArray, z: FloatArray, index: IntArray, loaded: FloatArray) -> FloatArray:
-    """Return the consistent forces (nf,) of a pressure of `loaded` (L, elements) per unit of s and z."""
+    """Return the consistent forces (nf,) of a pressure on the elements of the flank.
+
+    `s` and `z`: coordinates of the nodes along the profile and of the layers' ends, m. `index`: freedoms of
+    the nodes by z and s. `loaded` (layers, elements): pressure per unit of s and z.
+    """
     forces = np.zeros(index.max() + 1)
     areas = loaded * np.diff(z)[:, None] * (s[2::2] - s[:-2:2])
     planes, profile = len(index) - 2, len(s) - 2
@@ -76,10 +84,10 @@ def probe_loads(s: FloatArray, z: FloatArray, index: IntArray, s_form: float) ->
 
     Elements that begin below `s_form` carry nothing, since their normals miss the base circle.
     """
-    on = np.broadcast_to(s[:-2:2] >= s_form, (len(z) - 1, len(s) // 2)).astype(float)
-    end = np.zeros_like(on)
-    end[-1] = on[-1]
-    return np.stack([pressure_forces(s, z, index, part) for part in (on, end)], axis=1)
+    whole = np.broadcast_to(s[:-2:2] >= s_form, (len(z) - 1, len(s) // 2)).astype(float)
+    uppermost = np.zeros_like(whole)
+    uppermost[-1] = whole[-1]
+    return np.stack([pressure_forces(s, z, index, part) for part in (whole, uppermost)], axis=1)
 
 
 def condensed_gear(
@@ -95,7 +103,7 @@ def condensed_gear(
     Parameters
     ----------
     gear : Gear
-        Right hand or spur.
+        Gear with right-hand helix or spur.
     reach : int
         Largest distance in teeth that is kept.
     clock : StageClock
@@ -114,7 +122,7 @@ def condensed_gear(
 
 
 class CondensedTooth(NamedTuple):
-    """One sector before it meets the others: the first four parts of a `CondensedGear`."""
+    """One condensed sector before the ring is closed: the first four fields of a `CondensedGear`."""
 
     sector: SweptSector
     stiffness: ElementStiffness
@@ -146,9 +154,10 @@ def condensed_tooth(
 
 
 def free_turn(section: QuadSector, sector: SweptSector) -> FreeTurn | None:
-    """Return how a gear moves that nothing but a key keeps from turning; None for one that cannot turn."""
+    """Return the rotation of a gear's sector that only a key prevents; None: the bore is fixed otherwise."""
     if sector.seat.key is None:
         return None
+    # a rotation by 1 rad in the cylindrical directions of the nodes: the second, tangential, by the radius
     radius = np.zeros((len(sector.freedoms), 3))
     planes, columns = np.nonzero(sector.nodes >= 0)
     radius[sector.nodes[planes, columns], 1] = np.linalg.norm(section.points, axis=1)[columns]

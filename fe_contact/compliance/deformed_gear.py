@@ -31,11 +31,14 @@ class DeformedGear:
     quality: Mapping[str, FloatArray]
     """Quality measures of the elements by name, (m,)."""
     flank_displacement: Mapping[int, FloatArray]
-    """Displacement along the flank's normal by tooth number, m: in the freedoms and with the sign of the
-    flank compliance of the gear.
+    """Displacement along the flank's normal by tooth number, m.
+
+    Its entries are the degrees of freedom of the gear's flank compliance, in their order and with their sign.
     """
     residual: float
-    """Norm of f - K u over that of f, on all free freedoms of these elements but outer cuts."""
+    """Norm of f - K u over the norm of f, on the freedoms of these elements that are neither fixed nor on a
+    cut, where elements that are not here would add to the force.
+    """
 
     @property
     def von_mises(self) -> FloatArray:
@@ -76,7 +79,10 @@ def turn_about_axis(angle: float) -> FloatArray:
 
 
 def nodal_mean(cells: IntArray, values: FloatArray, count: int) -> FloatArray:
-    """Return the mean (count, ...) over elements of values (m, p, ...) at their nodes (m, p)."""
+    """Return the mean (count, ...) at each node of the values (m, p, ...) of its elements.
+
+    `cells` (m, p): the p nodes of each element; nodes of no element have 0.
+    """
     total = np.zeros((count, *values.shape[2:]))
     np.add.at(total, cells, values)
     times = np.bincount(cells.ravel(), minlength=count).reshape(-1, *(1,) * (values.ndim - 2))
@@ -84,7 +90,7 @@ def nodal_mean(cells: IntArray, values: FloatArray, count: int) -> FloatArray:
 
 
 def stress_of(gradient: FloatArray, lame: tuple[float, float]) -> FloatArray:
-    """Return lambda tr(e) I + mu (g + g') for displacement gradients g (..., 3, 3), Pa."""
+    """Return the stress lambda tr(g) I + mu (g + g') for displacement gradients g (..., 3, 3), Pa."""
     lam, mu = lame
     trace = np.trace(gradient, axis1=-2, axis2=-1)[..., None, None]
     return np.asarray(lam * trace * np.eye(3) + mu * (gradient + np.swapaxes(gradient, -1, -2)))

@@ -192,9 +192,9 @@ class _Builder:
 
     def _shared(self, group: IntArray, other: IntArray) -> int:
         self._seen[:] = False
-        mine, theirs = self._seen
-        mine[self.nodes[group]] = theirs[self.nodes[other]] = True
-        return int(np.count_nonzero(mine[:-1] & theirs[:-1]))
+        in_group, in_other = self._seen
+        in_group[self.nodes[group]] = in_other[self.nodes[other]] = True
+        return int(np.count_nonzero(in_group[:-1] & in_other[:-1]))
 
 
 def sector_tree(sector: SweptSector) -> EliminationTree:

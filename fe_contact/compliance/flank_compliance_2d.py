@@ -31,6 +31,7 @@ from model_studies.stage_clock import StageClock
 
 MODEL_VERSION = 5  # raise it whenever the same input gives another result: old cache files are then not found
 USUAL_TEETH = 5
+"""Number of condensed teeth unless another is requested."""
 
 
 def flank_compliance(
@@ -46,15 +47,15 @@ def flank_compliance(
     Parameters
     ----------
     gear : Gear
-        Modification plays no part, and face width only beside the thickness of a web: its elements are as
-        much thinner than the others (`docs/effects.md#thin_rim`).
+        The modification has no influence. The face width has one only with a web, whose elements have its
+        thickness over the face width (`docs/effects.md#thin_rim`).
     recipe : MeshRecipe, optional
         Default `MeshRecipe.standard(gear)`.
     teeth : int, optional
-        Number of condensed teeth, odd, centered on tooth 0, at most the real ones; default 5, or as many as
-        there are.
+        Number of condensed teeth, odd, centered on tooth 0, at most those that the mesh has in full; default
+        5, or as many as there are.
     cache : Path, optional
-        Directory of kept results (see `default_cache_directory`); None: neither read nor written.
+        Directory of stored results (see `default_cache_directory`); None: neither read nor written.
 
     Raises
     ------
@@ -113,7 +114,7 @@ def section_keys(
 
 
 def condensed_teeth(gear: Toothing, recipe: MeshRecipe, teeth: int | None) -> int:
-    """Return the number of condensed teeth, checked against the real ones."""
+    """Return the number of condensed teeth, checked against the teeth that the mesh has in full (real)."""
     whole = gear.teeth if gear.sector_teeth is None else gear.sector_teeth - 2  # cut planes carry no load
     real = min(whole, recipe.real_teeth or whole)
     limit = real - 1 + real % 2
@@ -130,13 +131,13 @@ def condensed_teeth(gear: Toothing, recipe: MeshRecipe, teeth: int | None) -> in
 
 
 def compliance_key(gear: Toothing, recipe: MeshRecipe, hypothesis: PlaneHypothesis, teeth: int) -> str:
-    """Return the hash of all that decides a compliance of the transverse section."""
+    """Return the hash of all inputs that determine a compliance of the transverse section."""
     return _key(gear, recipe, hypothesis, teeth, MODEL_VERSION)
 
 
 @lru_cache(maxsize=CACHED_KEYS)
 def _key(gear: Toothing, recipe: MeshRecipe, hypothesis: PlaneHypothesis, teeth: int, version: int) -> str:
-    """Hash them once: predictions ask for the same few keys again and again."""
+    """Return the hash of `compliance_key`, cached since predictions need the same few keys repeatedly."""
     section = gear.macro_geometry()
     if gear.web is None:
         section.pop("face_width")

@@ -1,4 +1,14 @@
-"""A ring of teeth whose cuts move in the space of a few solved harmonics, as many as residuals ask for."""
+"""A ring of teeth whose cuts move in the space of a few solved harmonics.
+
+A sector is the part of a gear with one tooth, a cut its face to the next sector. Loads turn from tooth to
+tooth by harmonics (`cyclic_harmonics`). A few harmonics are solved exactly; their solutions span a space in
+which the others are solved (Galerkin). Forces that stay unbalanced, the residuals, tell whether a further
+harmonic is solved too. Cuts are scaled so that squares of displacements and of forces are energies; see
+`cyclic_ring`.
+
+Shapes: z teeth, nc freedoms of a cut, nf flank freedoms, k columns of the basis, p loads. A is the compliance
+of the flank with the cuts held.
+"""
 
 from __future__ import annotations
 
@@ -11,40 +21,54 @@ from fe_contact.compliance.cyclic_harmonics import TurningLoads, weights
 from fe_contact.types import ComplexArray, FloatArray
 from model_studies.progress import Report
 
-# Shares of the largest entry of A:
-MIN_SIGNIFICANT = 1e-12  # compliance by what flank loads pass to the cuts that is told from rounding
-MIN_PASSED = 1e-7  # the same that is solved for where not every harmonic is
-MIN_ENERGY = 1e-8  # energy under unit loads that a direction of the space holds
-LARGEST_ERROR = 3e-7  # what a flank node may be off by harmonics that are not solved
+MIN_SIGNIFICANT = 1e-12
+"""Share of A's largest entry below which the compliance by forces on the cuts, passed on by flank loads, is
+rounding.
+"""
+MIN_PASSED = 1e-7
+"""Share of A's largest entry below which this compliance is left out, where not every harmonic is solved."""
+MIN_ENERGY = 1e-8
+"""Share of A's largest entry: energy under unit loads below which a direction is left out of the space."""
+LARGEST_ERROR = 3e-7
+"""Share of A's largest entry: allowed error of a flank node by the harmonics that are not solved."""
 
-SOFTENED = 2.0  # what moving neighbors add to the compliance of a cut; where it is more, the space holds it
-RESOLVED = 1e-10  # of the largest energy among vectors: the least that their products show
-SKETCH = 16  # random sums that tell the size of what is unbalanced
+SOFTENED = 2.0
+"""Factor of a cut's compliance for neighbors that move; softer directions are in the space anyway."""
+RESOLVED = 1e-10
+"""Share of the largest energy among vectors below which their scalar products show rounding only."""
+SKETCH = 16
+"""Number of random sums of the unbalanced forces, by which the size of these is estimated."""
 
 
 def first_harmonics(teeth: int) -> list[int]:
-    """Return the harmonics that are solved first: even steps of the logarithm from 2 on; all of few teeth."""
+    """Return the harmonics that are solved first: 0, 1, and four from 2 to z/2, evenly by the logarithm.
+
+    For few teeth these are all harmonics.
+    """
     spread = (round(2.0 * (teeth / 4.0) ** (i / 3.0)) for i in range(4))
     return sorted({min(number, teeth // 2) for number in (0, 1, *spread)})
 
 
 def least_passed(teeth: int) -> float:
-    """Return the share of the compliance from which loads count as different; more with all harmonics."""
+    """Return the share of the compliance from which loads are solved for: less with all harmonics."""
     return MIN_SIGNIFICANT if len(first_harmonics(teeth)) > teeth // 2 else MIN_PASSED
 
 
 class ClosedRing(NamedTuple):
-    """All harmonics in the space of `basis` (nc, k), as `left_cuts` takes them.
-
-    `solved` (z, nc, p) are scaled left cuts under some loads, of which `shares` (z,) act on each tooth so
-    that solved harmonics alone appear; `error` is what a flank node is off, estimated, m/N.
-    """
+    """Motions of the cuts by harmonic, in the space of a basis."""
 
     basis: FloatArray
+    """Orthonormal columns of the space. Shape (nc, k)."""
     solutions: list[ComplexArray]
+    """Left cut of sector 0 by harmonic, as `left_cuts` takes them. Shape (k, p) each."""
     solved: FloatArray
+    """Left cut of each sector under the probe loads times `shares`, in which exactly solved harmonics alone
+    appear. Shape (z, nc, p).
+    """
     shares: FloatArray
+    """Factor of the probe loads on each tooth for `solved`. Shape (z,)."""
     error: float
+    """Estimated error of a flank node, m/N."""
 
 
 def solve_few(
@@ -55,18 +79,18 @@ def solve_few(
     probes: slice,
     report: Report,
 ) -> ClosedRing:
-    """Solve a few harmonics and as many more as residuals ask for, the others in the space of these.
+    """Solve as many harmonics as residuals require, and the others in the space of their solutions.
 
     Parameters
     ----------
     basis : (nc, k) array
-        What the space holds to begin with.
+        Columns with which the space begins.
     modes : (nf, r) array
-        Flank loads that the first columns of the loads stand for.
+        Flank loads of the first r columns of the ring's loads.
     largest : float
-        That the limits are shares of, m/N.
+        Largest entry of A, of which the limits are shares, m/N.
     probes : slice
-        Columns of the loads that `solved` is wanted for.
+        Columns of the ring's loads that are the probe loads of `ClosedRing.solved`.
     """
     known: dict[int, ComplexArray] = {}
     chosen = first_harmonics(ring.teeth)
@@ -76,14 +100,14 @@ def solve_few(
             x = ring.solve(number)
             known[number] = x[:, probes]
             basis = _extended(basis, np.concatenate([x.real, x.imag], axis=1), MIN_ENERGY * largest)
-            report(len(known) / (len(known) + 2.0))
+            report(len(known) / (len(known) + 2.0))  # as if two more harmonics were needed
         within = ring.within(basis)
         solutions = [within.solve(number) for number in ring.harmonics]
         residual = _residual_energy(ring, basis, solutions, modes)
         if residual.sum(axis=0).max() <= LARGEST_ERROR * largest:
             break
         chosen = [int(residual.max(axis=1).argmax())]
-        # as large as the problem, or rounding alone is left
+        # solve all harmonics if the space is nearly as large as the problem, or rounding alone is left
         direct = 4 * basis.shape[1] > 3 * len(basis) or chosen[0] in known
     if direct:
         solutions = [ring.solve(number) for number in ring.harmonics]
@@ -93,13 +117,20 @@ def solve_few(
     parts /= parts.sum()
     turns = np.exp(2j * np.pi / ring.teeth * np.outer(np.arange(ring.teeth), list(known)))
     solved = np.tensordot(parts * turns, np.stack(list(known.values())), axes=1).real
-    return ClosedRing(basis, solutions, solved, turns.real @ parts, float(residual.sum(axis=0).max()))
+    return ClosedRing(
+        basis=basis,
+        solutions=solutions,
+        solved=solved,
+        shares=turns.real @ parts,
+        error=float(residual.sum(axis=0).max()),
+    )
 
 
 def _extended(basis: FloatArray, columns: FloatArray, minimum: float) -> FloatArray:
-    """Return orthonormal columns that also span `columns` (nc, p), but for directions of less energy.
+    """Return orthonormal columns that also span `columns` (nc, p), but for directions of less than `minimum`.
 
-    The softest come first: beside them rounding hides the stiff ones.
+    The directions of largest energy are added first, since rounding of their products hides the stiff ones;
+    the rest follow in further passes.
     """
     while True:
         columns = columns - basis @ (basis.T @ columns)
@@ -117,7 +148,7 @@ def _residual_energy(
 ) -> FloatArray:
     """Return the energy of the unbalanced forces under unit load, by harmonic and flank node or other load.
 
-    That is told by the squares of `SKETCH` sums of all forces with random signs.
+    It is estimated by the squares of `SKETCH` sums of all forces with random signs, whose mean it is.
     """
     signs = np.random.default_rng(0).choice([-1.0, 1.0], size=(SKETCH, len(basis))) / np.sqrt(SKETCH)
     left, right = (signs @ part for part in np.split(ring.loads, 2))
@@ -134,7 +165,7 @@ def _residual_energy(
 
 
 def row_space(matrix: FloatArray, minimum: float) -> FloatArray:
-    """Return orthonormal columns (nf, r) that span the rows of a matrix but for squares below `minimum`."""
+    """Return orthonormal columns (nf, r) that span the rows of a matrix, but for squares below `minimum`."""
     vectors, values = _whitening(_gram(matrix), minimum)
     return vectors * np.sqrt(values)
 
@@ -147,12 +178,14 @@ def _gram(columns: FloatArray) -> FloatArray:
 def _whitening(gram: FloatArray, minimum: float) -> tuple[FloatArray, FloatArray]:
     """Return T (p, k) with T' G T = 1 and the k eigenvalues above `minimum` of a Gram matrix, lower triangle.
 
-    They are those of its pivoted factor, which ends when no diagonal entry above `minimum` is left.
+    The eigenvalues are computed from its pivoted Cholesky factor, which ends when no diagonal entry above
+    `minimum` is left.
     """
     factor, pivots, rank, _ = lapack.dpstrf(np.asfortranarray(gram), lower=1, tol=minimum)
     lower = np.tril(factor[:, :rank])
     values, vectors = np.linalg.eigh(lower.T @ lower)
     significant = values > minimum
     whitening = np.empty((len(gram), int(significant.sum())))
+    # LAPACK counts from 1
     whitening[pivots - 1] = lower @ (vectors[:, significant] / values[significant])
     return whitening, values[significant]

@@ -1,4 +1,9 @@
-"""Static condensation of one sector by dense Cholesky fronts on its elimination tree; nothing sparse."""
+"""Static condensation of one sector by dense Cholesky fronts on its elimination tree; nothing sparse.
+
+A front is the dense matrix in which one node of the tree eliminates its inner freedoms. Its border are the
+freedoms that stay and couple to the parent; the matrix that is left on the border is its update. A front has
+three blocks, stored by columns: `within` (inner, inner), `below` (border, inner), `rest` (border, border).
+"""
 
 from __future__ import annotations
 
@@ -18,16 +23,18 @@ from fe_contact.types import FloatArray, IntArray
 from model_studies.progress import Report, unreported
 
 NOTHING, NO_ROWS = np.zeros(0), np.zeros(0, dtype=np.int64)
-"""Update of a child that a front does not have, and its rows."""
+"""Update, and its rows, in place of a child where a front has fewer than two."""
 
 
 @dataclass(frozen=True)
 class _FrontFactor:
-    """The factors that recover the freedoms a front eliminated: u_inner = -L^-T coupling' u_border."""
+    """The factors that recover the freedoms that a front eliminated: u_inner = -L^-T coupling' u_border."""
 
     front: Front
     factor: FloatArray
+    """Lower Cholesky factor L of the inner freedoms; its upper triangle is undefined. Shape (i, i)."""
     coupling: FloatArray
+    """Stiffness between border and inner freedoms times L^-T. Shape (b, i)."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +49,7 @@ class Condensation:
     """Number of all freedoms."""
 
     def expand(self, values: FloatArray) -> FloatArray:
-        """Return all freedoms (n, m) from the kept ones (k, m), no force on the others."""
+        """Return m vectors of all freedoms (n, m) from the kept ones (k, m), no force on the others."""
         u = np.zeros((self.size, values.shape[1]))
         u[self.retained] = values
         for part in self.factors:
@@ -61,14 +68,15 @@ def condense(
     Parameters
     ----------
     freedoms : (e, 60) int array
-        Freedoms of the elements, -1 where held.
+        Numbers of the 60 freedoms (20 nodes) of e elements, -1 where a freedom is fixed.
     report : callable
         Called after each front with the fraction of the operations done.
 
     Returns
     -------
     (k, k) array, Condensation
-        Stiffness condensed on the kept freedoms, N/m, whose lower triangle is valid, and how others follow.
+        Stiffness condensed on the kept freedoms, N/m, of which the lower triangle alone is valid; and the
+        factors that recover all freedoms.
     """
     factors: list[_FrontFactor] = []
     done, total = 0.0, tree.operations
@@ -96,7 +104,10 @@ class _Work(NamedTuple):
 
 
 def _reduced(front: Front, work: _Work) -> FloatArray:
-    """Return what is left of a front; no closure that calls itself, which would keep all factors alive."""
+    """Return the update of a front, after those of its children.
+
+    It is no closure of `condense`: a closure that calls itself is a cycle, and would keep all factors alive.
+    """
     updates = [work.memory.put_update(child, _reduced(child, work)) for child in front.children]
     blocks = work.memory.blocks(front)
     _gather(front, blocks, updates, work)
@@ -106,16 +117,17 @@ def _reduced(front: Front, work: _Work) -> FloatArray:
 
 
 def _gather(front: Front, blocks: FrontBlocks, updates: list[FloatArray], work: _Work) -> None:
-    """Sum a front up.
+    """Add the updates of the children and the elements to the blocks of a front.
 
-    It and its children are numbered as they are eliminated, so lower triangles stay lower on the way up.
+    A front and its children are numbered in the order of elimination, so lower triangles of the children stay
+    lower triangles in the front.
     """
     order = work.order
     numbers, count = np.concatenate([order[front.inner], order[front.border]]), len(front.inner)
     rows = [np.searchsorted(numbers, order[child.border]) for child in front.children]
-    none = 2 - len(rows)
-    first, second = updates + none * [NOTHING]
-    first_rows, second_rows = rows + none * [NO_ROWS]
+    absent = 2 - len(rows)  # children that the binary tree lacks here
+    first, second = updates + absent * [NOTHING]
+    first_rows, second_rows = rows + absent * [NO_ROWS]
     add_updates(*blocks, first, first_rows, second, second_rows, count)
     if len(front.elements):
         freedoms = work.freedoms[front.elements]
@@ -125,7 +137,7 @@ def _gather(front: Front, blocks: FrontBlocks, updates: list[FloatArray], work: 
 
 
 def _eliminated(front: Front, blocks: FrontBlocks) -> _FrontFactor:
-    """Factorise the inner freedoms of a front in their memory. What is left is in the block of its rest."""
+    """Factorise the inner freedoms of a front in place; the update is then in the block `rest`."""
     inner, border = len(front.inner), len(front.border)
     # LAPACK leaves the upper triangle as it was: rubbish that every later call must be told to ignore.
     factor, info = lapack.dpotrf(_by_columns(blocks.within, inner, inner), lower=1, overwrite_a=1, clean=0)

@@ -1,4 +1,10 @@
-"""Derivatives of transmission error and load arm from the solved contact, by its adjoint."""
+"""Derivatives of transmission error and load arm from the solved contact, by its adjoint.
+
+The load is n'F, the share n of every candidate in the equilibrium (`torque_share`) times its normal force F.
+The derivatives are by gaps g that take away normal approach: m d - g is the approach at deflection d, with m
+the `motion_arm`. S is the symmetric stiffness of the contact at a solution: dF = S (m dd - dg). Shapes: P
+positions, L loads, m candidates, R or A rows of gaps.
+"""
 
 from __future__ import annotations
 
@@ -41,11 +47,11 @@ class _Adjoint:
     times `Candidates.motion_arm`, is 0. Shape (P, L, m).
     """
     added_arm: FloatArray
-    """Arm of a small further load, m. Shape (P, L)."""
+    """Arm of the increment by which the load grows, m. Shape (P, L)."""
     middle: FloatArray
     half: FloatArray
-    """`middle`, `half`: Middle of each contact strip from the touching point on, towards tip 1, and half its
-    length, m. Shape (P, L, m) each.
+    """`middle`, `half`: Distance of the middle of each contact strip from the touching point, > 0 towards tip
+    1, and half the strip's length, m. Shape (P, L, m) each.
     """
 
 
@@ -56,26 +62,25 @@ def load_arm(pair: ParallelAxes, problem: ContactProblem, solution: ContactSolut
 
 
 def _shares(pair: ParallelAxes, c: Candidates) -> FloatArray:
-    """Return the shares of the load per unit force, and these times the arms in m, (2, P, m)."""
+    """Return the shares of the load per unit force, and the shares times the arms in m, (2, P, m)."""
     return c.torque_share * np.stack([np.ones(c.gap.shape), pair.tilt_arm(c.touch.roll_1, c.face_position)])
 
 
 def adjoint(pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution) -> _Adjoint:
     """Find the weights of all candidates, and the strips, of a solved problem.
 
-    With S the fall of the forces as contacts are moved apart by g at one deflection, which is symmetric, n
-    the shares of the load, m the normal approach per deflection and z the arms, dF = S (m dSTE - dg) and
-    n'dF = 0: the weights of the STE are S n/(n'S m), those of the arm (b S n - S (n z))/load, b being the
-    arm of a little more load.
+    At constant load n'dF = 0, so from dF = S (m dSTE - dg) the weights of the STE are S n/(n'S m). With the
+    arms z, those of the load arm are (b S n - S (n z))/load, where b = n z'S m/(n'S m) is `added_arm`.
     """
     c = problem.candidates
+    # S n and S (n z); then the strips
     pushed, (middle, half) = (np.zeros((2, *solution.force.shape)) for _ in range(2))
     weigh(point_problems(problem), solution.force, _shares(pair, c), pushed, middle, half)
     pushed[:, solution.status != Status.CONVERGED] = np.nan
     stiffness, of_arm = np.einsum("rplm,pm->rpl", pushed, c.motion_arm)
     weight, added_arm = pushed[0] / stiffness[..., None], of_arm / stiffness
     arm_weight = (added_arm[..., None] * pushed[0] - pushed[1]) / solution.load[:, None]
-    return _Adjoint(weight, arm_weight, added_arm, middle, half)
+    return _Adjoint(weight=weight, arm_weight=arm_weight, added_arm=added_arm, middle=middle, half=half)
 
 
 @njit(cache=True, error_model="numpy")
@@ -87,7 +92,10 @@ def weigh(
     middle: FloatArray,
     half: FloatArray,
 ) -> None:
-    """Fill in what rows of shares (R, P, m) push, (R, P, L, m), and the strips of all positions and loads."""
+    """Fill in `pushed` (R, P, L, m), S times the rows of shares (R, P, m), and the strips (P, L, m).
+
+    Positions with one row of `every.bodies` follow each other, so that its arrays are prepared once.
+    """
     count = every.bodies.shape[0]
     for row in range(count):
         bodies = row_bodies(every, row)
@@ -105,11 +113,13 @@ def weigh(
 
 @inner(error_model="numpy")
 def _pushed(problem: PointProblem, force: FloatArray, rows: FloatArray) -> FloatArray:
-    """Return by how much forces fall as contacts are moved apart by rows (R, m), at one deflection.
+    """Return S times rows (R, m): the fall of the forces as rows move contacts apart, at one deflection.
 
-    It is D (1 - N K (1 + N'DN K)^-1 N'D), which is symmetric, about the forces of a solution.
+    S = D (1 - N K (1 + N'DN K)^-1 N'D): D the diagonal of the local law's stiffnesses at the solution, N the
+    curves by which forces act on the bodies, K the compliance of the bodies between the curves.
     """
     state = pressed_state(problem, force)
+    # exact stiffnesses at the solution's forces in place of those of Newton's last step
     for q in range(force.size):
         if force[q] > 0.0:
             state.slope[q] = 1.0 / approach(problem.law, q, force[q])[1]
@@ -139,7 +149,7 @@ def force_changes(problem: ContactProblem, solution: ContactSolution, opened: Fl
     ----------
     problem, solution
     opened : ndarray, shape (A, P, L, m)
-        Normal approach taken away from each candidate by A changes, m; of those that carry.
+        Normal approach taken away from each candidate by A changes, m; only candidates that carry count.
 
     Returns
     -------
@@ -153,7 +163,10 @@ def force_changes(problem: ContactProblem, solution: ContactSolution, opened: Fl
 
 @njit(cache=True, error_model="numpy")
 def _respond(every: PointProblems, force: FloatArray, opened: FloatArray, changes: FloatArray) -> None:
-    """Fill in the changes of the forces of all positions and loads: dF = S (m dd - dg), n'dF = 0."""
+    """Fill in the changes of the forces of all positions and loads: dF = S (m dd - dg), n'dF = 0.
+
+    `lag` is dd over `opened`, the change of the deflection at constant load.
+    """
     count = every.bodies.shape[0]
     for row in range(count):
         bodies = row_bodies(every, row)

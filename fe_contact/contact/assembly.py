@@ -1,4 +1,12 @@
-"""Compliance between the contact candidates of gears in the transverse plane."""
+"""Compliance between the contact candidates of gears in the transverse plane.
+
+A candidate is the place where a tooth pair may touch. A patch is the area over which the finite elements of a
+gear are loaded there, by nodal weights b. The compliance between candidates i and j of a gear is b_i' S b_j,
+with S that of the condensed flank. The tilt of (i, j) is its derivative by the position of patch i along the
+profile, towards tip 1: the angle by which a unit force on j tilts the flanks at i. The lever of a candidate
+at a tip edge is the arm of its force, which acts along the mate's normal, over the arm along the tip gear's
+own normal; elsewhere it is 1. Shapes: P positions, n candidates, k nodes of a flank.
+"""
 
 from __future__ import annotations
 
@@ -13,10 +21,10 @@ from fe_contact.types import BoolArray, FloatArray, IntArray
 from host.loops import njit
 
 NEAR = 1e-3
-"""Way over half a patch by which patches are displaced to see how their forces change."""
+"""Displacement of patches by which the tilt is differenced, in half-widths of the widest patch."""
 
 _STRETCH = 0.25
-"""Relative change of the length of a patch at an edge, by which the change of its forces is measured."""
+"""Relative change of the length of a patch at an edge, by which the tilt is differenced there."""
 
 
 def share_of_pinion(pinion: FloatArray, both: FloatArray) -> FloatArray:
@@ -44,14 +52,15 @@ def contact_problem(
     -----
     A corner force acts along the mating flank's normal, inclined to the tip gear's own. The tip gear moves
     less along that line than along its own normal, and by reciprocity is moved less: both scale with the
-    lever arm of the line, as for a rotation. Without this the corner stiffness reads up to 4 % too low, and
-    the error of STE grows with load.
+    lever, if the tooth only rotates about the gear's axis. Without this the corner stiffness reads up to 4 %
+    too low, and the error of STE grows with load.
 
-    A gear that turns about its axis moves so. Under the load on its edge a tooth also bends about its root,
-    and the wedge at the tip yields across: the way along the flank is kappa times that of a turn, by the
-    finite elements, and 1 + kappa (lever - 1) takes the place of the lever.
+    Under the load on its edge a tooth also bends about its root, and the wedge at the tip yields across. The
+    displacement along the flank is then kappa times that of a rotation about the axis, with kappa from the
+    finite elements, and the factor is 1 + kappa (lever - 1) instead of the lever.
 
-    At edges the tilt is that of patches that grow from the edge, less the logarithm that the local law has.
+    At edges the tilt is the derivative by the length of patches that grow from the edge, without the
+    logarithm that the local law has already.
 
     Pair +1 is ahead in the sense of rotation. The load turns a gear counter-clockwise in its tooth frame; the
     driving gear turns against its load and the driven one with it, so pair j lies on tooth -j of gear 1 and
@@ -74,13 +83,15 @@ def contact_problem(
     planes, modulus = half_planes(compliances)
     diagonal = np.arange(slices.pair.size)
     tilt[:, diagonal, diagonal] += _logarithm_at_edges(slices, planes)
+    half_plane_1, half_plane_2 = planes
     return ContactProblem(
         candidates,
         compliance / slices.width,
         modulus,
-        *planes,
-        tilt / slices.width,
-        share_of_pinion(*diagonals),
+        half_plane_1,
+        half_plane_2,
+        tilt=tilt / slices.width,
+        share_1=share_of_pinion(*diagonals),
     )
 
 
@@ -105,10 +116,12 @@ def _tooth_blocks(flank: FlankCompliance, teeth: IntArray) -> FloatArray:
 def _laid(
     patch: Patches, mate: Patches, side: FloatArray, tip: float, end: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Return patches of one gear as they are and on either side of that, and how far apart those lie.
+    """Return patches of one gear, displaced either way for the tilt, and the distances between those.
 
-    Centers, half-widths and edge shares (3, 3, P, n); ways (P, n) in m, positive towards tip 1. Patches at an
-    edge grow from it, the others are displaced as if they were plain ones.
+    The patches are an array (3, 3, P, n): first the patch itself, then the lower and the higher one; of each
+    the center, half-width and edge share. The distances (P, n) from lower to higher are in m, positive
+    towards tip 1. Patches at an edge are lengthened from it; the others are displaced with the widest
+    half-width and no edge share.
 
     Parameters
     ----------
@@ -137,10 +150,14 @@ def _laid(
 
 
 def _logarithm_at_edges(slices: LoadedSlices, planes: tuple[float, float]) -> FloatArray:
-    """Return half of how the logarithm in the local law falls as strips at edges grow (P, n), 1/N."""
+    """Return half the change of the local law's logarithm as strips at edges grow (P, n), 1/N.
+
+    The law has -half_plane ln(length). Its derivative over the same stretch as in `_laid` is `growth` over
+    the distance of the patch's center from the edge.
+    """
     first, second = slices.half_planes(*planes)
-    near, far = slices.patch_1.edge_distance, slices.patch_2.edge_distance
-    by_distance = np.where(slices.edge_side < 0.0, first / near, second / far)
+    distance_1, distance_2 = slices.patch_1.edge_distance, slices.patch_2.edge_distance
+    by_distance = np.where(slices.edge_side < 0.0, first / distance_1, second / distance_2)
     growth = math.log((1.0 + _STRETCH) / (1.0 - _STRETCH)) / (2.0 * _STRETCH)
     return np.asarray(0.5 * slices.edge_side * by_distance * growth)
 
@@ -158,10 +175,11 @@ def _add_gear(
     out: FloatArray,
     tilt: FloatArray,
 ) -> None:
-    """Add b_i' S b_j of one gear for all positions, and to `tilt` how it changes as patch i moves to tip 1.
+    """Add b_i' S b_j of one gear for all positions to `out`, and its derivative by patch i to `tilt`.
 
-    `laid` and `way` are those of `_laid`, `along` (k, k) the motions along the flank over those of a rotation
-    that moves it across by 1.
+    `laid` and `way` are those of `_laid`. `along` (k, k) are the displacements along the flank by unit
+    forces, over those of a rotation about the axis that moves the flank across by 1. `blocks` (n, n, k, k)
+    are S. Nodes first[i] to last[i] - 1 are loaded by patch i; last[i] = 0: no such candidate.
     """
     positions, n = present.shape
     load = np.zeros((3, n, nodes.size))
@@ -182,12 +200,12 @@ def _add_gear(
                     continue
                 value, change = 0.0, 0.0
                 for a in range(first[i], last[i]):
-                    motion, plain = 0.0, 0.0
+                    motion, both = 0.0, 0.0  # by the patch on j, and by the lower and the higher one together
                     for b in range(first[j], last[j]):
                         motion += blocks[i, j, a, b] * load[0, j, b]
-                        plain += blocks[i, j, a, b] * (load[1, j, b] + load[2, j, b])
+                        both += blocks[i, j, a, b] * (load[1, j, b] + load[2, j, b])
                     value += load[0, i, a] * motion
-                    change += (load[2, i, a] - load[1, i, a]) * plain
+                    change += (load[2, i, a] - load[1, i, a]) * both
                 arms = lever[p, i] * lever[p, j]
                 value, change = arms * value, arms * change
                 if i == j and lever[p, i] != 1.0:
@@ -195,6 +213,7 @@ def _add_gear(
                     value = _turned(blocks[i, i], along, load[0, i], *ends)
                     change = _turned(blocks[i, i], along, load[2, i], *ends)
                     change -= _turned(blocks[i, i], along, load[1, i], *ends)
+                # half: `both` is twice a patch; on the diagonal both patches move, half of that is the tilt
                 tilt[p, i, j] += change / (2.0 * way[p, i])
                 if j <= i:
                     out[p, i, j] += value
@@ -206,10 +225,10 @@ def _add_gear(
 def _turned(
     block: FloatArray, along: FloatArray, load: FloatArray, first: int, last: int, lever: float
 ) -> float:
-    """Return the yield of an edge under its load, nodes first to last - 1, along the normal of its mate."""
+    """Return the yield of an edge along the normal of its mate under its load on nodes first to last - 1."""
     across = _work(block, load, first, last)
-    turn = _work(along, load, first, last) / across
-    return across * (1.0 + turn * (lever - 1.0)) ** 2
+    kappa = _work(along, load, first, last) / across
+    return across * (1.0 + kappa * (lever - 1.0)) ** 2
 
 
 @njit(cache=True)

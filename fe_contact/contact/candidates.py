@@ -22,16 +22,17 @@ from fe_contact.types import FloatArray, IntArray
 LAW_LENGTH = 0.45
 """Reference length of the local law over the width of a slice.
 
-Line loads that vary within a slice are felt that far: waves of a slice and shorter, 0.3 to 0.6 widths. Waves
-of two slices, the shortest ones that the bodies carry, move them as patches of 0.72 slices would.
+It is the depth to which a line load that varies along the face matters: 0.3 to 0.6 widths for waves of one
+slice and shorter. Waves of two slices, the shortest ones that the finite elements describe, move the bodies
+as patches of 0.72 slices would.
 """
 LONGEST_LAW = 0.5
 """Largest reference length of the local law in modules: about half the thickness of a tooth."""
 
 _FLUSH = 1e-6
-"""Faces that stand apart by less than this part of their width end together."""
+"""Distance between the ends of two faces over their width, below which they count as at the same place."""
 _USUAL_LOAD = 60e6
-"""Normal force over face width and module, Pa: about the rated one."""
+"""Normal force over face width and module, Pa; near that of the rated load."""
 
 
 @dataclass(frozen=True)
@@ -39,13 +40,13 @@ class PatchRule:
     """The widths of the load patches."""
 
     half_width: float
-    """Away from the tip edges, m."""
+    """Half-width of patches away from the tip edges, m."""
     edge_length: float
     """Least length of the patch at a tip edge, m."""
     edge_load: float = 0.0
-    """4 p/(pi E*) of the line load p whose strip the patch at a tip edge follows, m."""
+    """4 p/(pi E*) in m, where p is the line load whose strip is as long as the patch at a tip edge."""
     law_length: float = 0.0
-    """Least reference length of the local law, m: that of the widest strip."""
+    """Least reference length of the local law, m, which the widest strip needs."""
 
     def lengths(self, offset: FloatArray, radius: FloatArray) -> FloatArray:
         """Return the lengths of patches at a tip edge, m: those of the strip, (4) of docs/theory/hertz.md.
@@ -76,7 +77,7 @@ def contact_candidates(
     Returns
     -------
     Candidates
-        Of plain involutes: m = pairs x slices x points, pairs that touch nowhere left out.
+        Candidates on plain involutes: m = pairs x slices x points, without the pairs that touch nowhere.
     """
     lead = slices.point_center * math.tan(pair.base_helix_angle)
     ends = float(lead.min()), float(lead.max())
@@ -86,7 +87,7 @@ def contact_candidates(
     meets = np.isfinite(touch.gap).any(axis=0).reshape(index.size, -1).any(axis=1)
     index, keep = index[meets], np.repeat(meets, slices.point_center.size)
     touch, part = touch.columns(keep), part[:, keep]
-    middle = touch  # of the one point of each slice
+    middle = touch  # where slices have one point it is their middle
     if slices.points > 1:
         middle, _ = _touching(pair, model, position, index, slices.center, 0.0)
     curves, heights = slices.curves
@@ -111,16 +112,17 @@ def _touching(
     face: FloatArray,
     width: float,
 ) -> tuple[Touch, FloatArray]:
-    """Return where plain involutes touch at places `face` (f,) of pairs (J,), and what part is on line.
+    """Return where plain involutes touch, and which part of each point's width touches.
 
-    Arrays (P, J f). A place stands for `width` of the face. Without corner contact it counts as far as that
-    is on the path of contact, so that nothing jumps as the contact line moves on.
+    Both are arrays (P, J f) over pairs `index` (J,) and face positions `face` (f,) in m. Each point stands
+    for `width` in m of the face. Without corner contact, only the part of it on the path of contact touches,
+    so that nothing jumps as the contact line moves on.
     """
-    pairs, along = np.repeat(index, face.size), np.tile(face, index.size)
+    pairs, face_of_point = np.repeat(index, face.size), np.tile(face, index.size)
     roll, _ = pair.roll_lengths(position[:, None], pairs)
     # on a right-hand driving gear the contact line runs towards the root as the face position grows
     lead = math.tan(pair.base_helix_angle)
-    roll = roll - along * lead
+    roll = roll - face_of_point * lead
     touch = conjugate_touch(pair, roll, pair.mating_roll_length(roll), model.corner_contact)
     half = 0.5 * width * abs(lead)
     if model.corner_contact or half == 0.0:
@@ -132,7 +134,7 @@ def _touching(
 
 
 def with_gaps(pair: ParallelAxes, candidates: Candidates, model: ContactModel) -> Candidates:
-    """Add the gaps of the model: how far apart the rigid flanks are, and their course about that place.
+    """Add the gaps of the model: distances of the rigid flanks at touching points, and the gaps about them.
 
     The load patches stay where plain involutes touch, so that the compliance between the candidates depends
     on the macro geometry alone and serves every modification, misalignment and load.
@@ -149,17 +151,20 @@ def with_gaps(pair: ParallelAxes, candidates: Candidates, model: ContactModel) -
 
 
 def teeth_in_reach(pair: ParallelAxes) -> int:
-    """Return how many teeth, odd and centered on tooth 0, hold every contact of a plane pair in a pitch.
+    """Return the odd number of teeth, centered on tooth 0, among which all contacts of a plane pair occur.
 
-    Where the path of contact lies off the pitch point, as with unlike profile shifts, pairs run further to
-    one side than to the other.
+    Where the path of contact is not centered on the pitch point, as with unequal profile shifts, more teeth
+    are in contact on one side of tooth 0 than on the other.
     """
     first, last = _pair_range(pair, 0.0, 1.0, (0.0, 0.0))
     return 2 * max(math.ceil(pair.transverse_contact_ratio), -first, last) + 1
 
 
 def _pair_range(pair: ParallelAxes, low: float, high: float, lead: tuple[float, float]) -> tuple[int, int]:
-    """Return the first and the last pair from position `low` to `high`; `lead` of the outer slices, m."""
+    """Return the first and the last pair in contact at any position from `low` to `high`.
+
+    `lead`: Least and largest product of face position and tan(beta_b), m.
+    """
     path = pair.path_of_contact
     first = np.floor((path.start - path.pitch_point + lead[0]) / path.base_pitch - high)
     last = np.ceil((path.end - path.pitch_point + lead[1]) / path.base_pitch - low)
@@ -174,7 +179,10 @@ def _loaded_slices(
     rule: PatchRule,
     slices: Slices,
 ) -> LoadedSlices:
-    """Lay load patches where the points of the slices of all pairs touch; `middle` is that of the slices."""
+    """Return the slices of all pairs, with load patches where their points touch.
+
+    `touch`, `middle`: Touching points at the points and at the middles of the slices.
+    """
     tip_1 = float(pair.pinion.flank_coordinate(pair.pinion.tip_roll_length))
     tip_2 = float(pair.wheel.flank_coordinate(pair.wheel.tip_roll_length))
     radius = touch.radius / math.cos(pair.base_helix_angle)
@@ -209,23 +217,26 @@ def _loaded_slices(
 
 
 def _free_ends(pair: ParallelAxes, gear: Toothing, middle: float, slices: Slices) -> FreeEnds:
-    """Return the ends of a gear that are those of the common face; none in a plane.
+    """Return the ends of a gear's face where the common face ends, too; in a plane it has none.
 
-    `middle`: its mid-face from the pinion's, m.
+    `middle`: Distance of the gear's mid-face from the pinion's, m.
     """
     if slices.center.size == 1:
         return ENDLESS
     low, high = (middle + part * gear.face_width for part in (-0.5, 0.5))
-    near = _FLUSH * gear.face_width
+    tolerance = _FLUSH * gear.face_width
     return FreeEnds(
-        low if abs(low - pair.common_face[0]) <= near else -math.inf,
-        high if abs(high - pair.common_face[1]) <= near else math.inf,
+        low if abs(low - pair.common_face[0]) <= tolerance else -math.inf,
+        high if abs(high - pair.common_face[1]) <= tolerance else math.inf,
         end_softness(gear.material.poissons_ratio),
     )
 
 
 def _shift(s: FloatArray, offset: FloatArray, tip: float, radius: FloatArray, rule: PatchRule) -> FloatArray:
-    """Shift of the load's centroid to its root by the partner's edge, m: both forces must be in line."""
+    """Return how far the load's centroid moves to a gear's root near the gear's tip edge, m.
+
+    The load on the partner moves as far, as both forces must be in line.
+    """
     patches = tip_patches(s, offset, tip, rule.half_width, rule.lengths(offset, radius))
     return np.maximum(s - patches.centroid, 0.0)
 
@@ -233,27 +244,27 @@ def _shift(s: FloatArray, offset: FloatArray, tip: float, radius: FloatArray, ru
 def _patches(
     s: FloatArray, offset: FloatArray, tip: float, shift: FloatArray, radius: FloatArray, rule: PatchRule
 ) -> Patches:
-    """Patches of one gear; beside the partner's edge they follow its load towards the own tip."""
+    """Return the patches of one gear; at the partner's edge they move with its load towards the own tip."""
     offset = offset - shift
     return tip_patches(s + shift, offset, tip, rule.half_width, rule.lengths(offset, radius))
 
 
 def _flank_curvature(gear: Toothing, patches: Patches) -> FloatArray:
-    """Return the curvature of flanks under patches in the normal section, 1/m; below zero if hollow.
+    """Return the curvature of flanks under patches in the normal section, 1/m; negative where concave.
 
-    On the fillet, below the involute, it is that half a patch above its base.
+    On the fillet, below the involute, it is that of the involute a quarter of a patch above its base.
     """
-    along = np.maximum(np.abs(patches.center), 0.5 * patches.half_width)
-    return math.cos(gear.base_helix_angle) / (gear.sign * np.sqrt(2.0 * gear.base_radius * along))
+    coordinate = np.maximum(np.abs(patches.center), 0.5 * patches.half_width)
+    return math.cos(gear.base_helix_angle) / (gear.sign * np.sqrt(2.0 * gear.base_radius * coordinate))
 
 
 def _turned_normals(
     pair: ParallelAxes, curvatures: tuple[FloatArray, FloatArray], rule: PatchRule
 ) -> FloatArray:
-    """Return by how much normals turn over the mean distance of two points of the strip, rad.
+    """Return the angle by which normals turn over the mean distance of two points of the strip, rad.
 
-    The strip is that of a usual load, the same whatever loads are asked together. Both flanks have its
-    curvature there: the softer one follows the stiffer one.
+    The strip is that of a usual load instead of the real one, so that the angle does not depend on the load.
+    Both flanks have one curvature over the strip, nearer to that of the stiffer one.
     """
     first, second = (1.0 / gear.material.plane_strain_modulus for gear in (pair.pinion, pair.wheel))
     relative = curvatures[0] + curvatures[1]
@@ -272,6 +283,6 @@ def _tip_inclination(gear: Toothing) -> float:
 def corner_softness(gear: Toothing) -> float:
     """Return the softness of the corner at a tip edge over that of a half plane; see `wedge_softness`.
 
-    Flank and tip circle meet at a right angle and the pressure angle at the tip.
+    Flank and tip circle meet at the angle of 90 degrees and the pressure angle at the tip.
     """
     return wedge_softness(0.5 * math.pi + math.acos(gear.base_radius / gear.tip_radius))

@@ -1,4 +1,4 @@
-"""The strips of a contact that carry: their pressures and edge loads under changes of the flanks."""
+"""Changes of transmission error and load arm by changes of the flanks under loaded strips."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _POINTS = 8
 
 @dataclass(frozen=True)
 class CarryingStrips:
-    """The k strips that carry, of all positions, loads and candidates."""
+    """The k strips under load, of all positions, loads and candidates."""
 
     shape: tuple[int, int, int]
     """Numbers of positions, loads and candidates."""
@@ -30,7 +30,7 @@ class CarryingStrips:
     strips: Strips
     closing: ClosingLag
     turned: TurnedForces
-    """Motions of the bodies by turned forces, of all candidates."""
+    """Changes of the bodies' displacements by turned forces, at all candidates."""
     following: FollowingPatches | None
     """Motions of the load patches, of all candidates; None where patches stay."""
     normal: float
@@ -45,7 +45,7 @@ class CarryingStrips:
 
     @classmethod
     def of(cls, pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution) -> CarryingStrips:
-        """Return the carrying strips of a solution of a problem."""
+        """Return the strips under load in a solution of a problem."""
         weights = adjoint(pair, problem, solution)
         at = np.nonzero(weights.weight)
         turned = TurnedForces.of(pair, problem, solution.force)
@@ -60,7 +60,10 @@ class CarryingStrips:
         return cls._at(pair, problem.candidates, at, (turned, following), *strips)
 
     def at_edges(self, candidates: Candidates, at: tuple[IntArray, ...], half: float) -> CarryingStrips:
-        """Return strips without weight, `half` m long, at positions, loads and candidates of the same."""
+        """Return strips of the half length `half` in m, at other positions, loads and candidates.
+
+        They add nothing to sums: their `weight` and `arm_weight` are zero.
+        """
         zero = np.zeros(at[0].size)
         strips = zero, zero + half, zero, zero, self.added_arm
         return self._at(self.strips.pair, candidates, at, (self.turned, self.following), *strips)
@@ -80,13 +83,13 @@ class CarryingStrips:
     ) -> CarryingStrips:
         p, _, m = at
         touch, shape = candidates.touch, (*added_arm.shape, candidates.pair.size)
-        places = touch.s_1[p, m], touch.s_2[p, m], touch.roll_1[p, m], candidates.face_position[m]
-        under = Strips(pair, *places, middle, half)
+        touching = touch.s_1[p, m], touch.s_2[p, m], touch.roll_1[p, m], candidates.face_position[m]
+        strips = Strips(pair, *touching, middle, half)
         return cls(
             shape,
             np.ravel_multi_index(at, shape),
-            under,
-            ClosingLag.of(under, candidates, (p, m)),
+            strips,
+            ClosingLag.of(strips, candidates, (p, m)),
             *bodies,
             math.cos(candidates.base_helix_angle),
             weight,
@@ -100,12 +103,12 @@ class CarryingStrips:
         return self.index // self.shape[2]
 
     def opened(self, gap: GapTerm, over: GapTerm) -> FloatArray:
-        """Return the normal approach (k,) in m that a gap takes away over another near it.
+        """Return the normal approach (k,) in m that a gap takes away, less that of another near it.
 
-        Linear in their difference. Between its breaks a gap counts as a parabola over each strip.
+        It is linear in their difference. Between its breaks a gap counts as a parabola over each strip.
         """
-        mean, under = self.strips.removed(gap), self.strips.removed(over)
-        opened = self.normal * (mean - under) + self.closing.opened(gap, over)
+        depth = self.strips.removed(gap) - self.strips.removed(over)
+        opened = self.normal * depth + self.closing.opened(gap, over)
         if gap.along_profile or over.along_profile:
             opened = opened + self.turned.opened(gap, over).ravel()[self.index]
         if self.following is not None and (gap.along_profile or over.along_profile):
@@ -115,11 +118,14 @@ class CarryingStrips:
         return np.asarray(opened)
 
     def change(self, opened: FloatArray) -> FloatArray:
-        """Return the change of the transmission error by normal approach taken away (k,), (P, L); m."""
+        """Return the change (P, L) of the transmission error by normal approach (k,) taken away, m."""
         return self._by_row(self.weight * opened)
 
     def arm_change(self, opened: FloatArray) -> FloatArray:
-        """Return the change of the load arm, (P, L) in m; places and shares of the contacts stay."""
+        """Return the change of the load arm (P, L) by normal approach (k,) taken away, both in m.
+
+        The contacts keep their positions on the flank and their shares of the load.
+        """
         return self._by_row(self.arm_weight * opened)
 
     def _by_row(self, values: FloatArray) -> FloatArray:
@@ -136,10 +142,10 @@ class CarryingStrips:
         gear : int
             0 is the pinion, 1 the wheel.
         roll_length, face_position : ndarray, shapes (R,), (Z,)
-            Increasing, m; face positions count from the gear's own mid-face. What is beyond the outer nodes
-            counts to them.
+            Increasing, m; face positions count from the gear's own mid-face. Material beyond the outer nodes
+            counts as removed at them.
         rows : ndarray, shape (Q, P, L)
-            Quantities as sums over positions and loads of the transmission error.
+            Factors of the transmission errors at positions and loads, whose weighted sums are the quantities.
 
         Returns
         -------
@@ -148,8 +154,8 @@ class CarryingStrips:
 
         Notes
         -----
-        Material removed at a place opens the gap there, and tilts it to either side. Patches follow the
-        tilt: this part is a dipole, of either sign.
+        Material removed at a point opens the gap there, and tilts it on both sides of the point. Patches move
+        with the tilt: the derivative by that is a dipole, positive on one side and negative on the other.
         """
         angle = np.pi * ((np.arange(_POINTS) + 0.5) / _POINTS - 0.5)
         x = self.strips.middle + self.strips.half * np.sin(angle)[:, None]

@@ -8,7 +8,7 @@ from host.loops import inner
 
 @inner(fastmath={"reassoc", "contract"})
 def dot(x: FloatArray, y: FloatArray, n: int) -> float:
-    """Sum of products of the first `n` entries."""
+    """Return the sum of products of the first `n` entries."""
     total = 0.0
     for i in range(n):
         total += x[i] * y[i]
@@ -19,7 +19,7 @@ def dot(x: FloatArray, y: FloatArray, n: int) -> float:
 def eliminate(a: FloatArray, right: FloatArray, n: int) -> bool:
     """Solve a x = right for the leading n x n block; `right` (k, n) holds k right-hand sides, then solutions.
 
-    Returns False, and leaves neither as it was, if the matrix is singular or not finite.
+    Both arrays are overwritten. The result is False if the matrix is singular or not finite.
     """
     for j in range(n):
         pivot = j
@@ -46,7 +46,7 @@ def eliminate(a: FloatArray, right: FloatArray, n: int) -> bool:
 
 @inner(error_model="numpy")
 def subtract(x: FloatArray, y: FloatArray, part: float) -> None:
-    """Take a part of `y` off `x`."""
+    """Subtract `part` times `y` from `x`."""
     for k in range(x.size):
         x[k] -= part * y[k]
 

@@ -10,17 +10,25 @@ import numpy as np
 
 from fe_contact.compliance import FlankCompliance3D
 from fe_contact.contact.assembly import NEAR, half_planes, share_of_pinion
-from fe_contact.contact.face_patch import FaceGrid, FaceLoads, add_compliance, face_loads
+from fe_contact.contact.face_patch import (
+    FaceGrid,
+    FaceLoads,
+    add_compliance,
+    face_loads,
+    means_and_differences,
+)
 from fe_contact.contact.patch import Patches
 from fe_contact.contact.problem import Candidates, ContactProblem, LoadedSlices
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
 TOGETHER = 8
-"""Number of positions that are assembled together. Groups are always the same, since the rounding of sums
-depends on the other members.
+"""Number of positions that are assembled together.
+
+The groups are always the same, since the rounding of a sum depends on the other positions of its group.
 """
 
 _DOUBLED = ("lever", "teeth", "low", "high", "present")
+"""Arrays of `_FaceGear` that have two entries for each slice in `_DisplacedGear`."""
 
 
 def face_contact_problem(
@@ -29,18 +37,20 @@ def face_contact_problem(
     axial_offset: float = 0.0,
     couple_teeth: bool = True,
 ) -> ContactProblem:
-    """Assemble the compliance between slices from condensed flanks; pairs, teeth as in `contact_problem`.
+    """Assemble the compliance between slices from condensed flanks.
+
+    Pairs and teeth are numbered as in `contact_problem`.
 
     Parameters
     ----------
     candidates : Candidates
-        Pressing on n slices of the tooth pairs.
+        Candidates that press on n slices of the tooth pairs.
     compliances : (FlankCompliance3D, FlankCompliance3D)
         Driving and driven gear.
     axial_offset : float
         Distance of the driven gear's mid-face from the driving gear's, m.
     couple_teeth : bool
-        False drops what the load on one tooth moves on another.
+        False neglects the motion of one tooth by the load on another.
     """
     compliance = np.zeros((*candidates.slices.present.shape, candidates.slices.pair.size))
     diagonals = []
@@ -58,7 +68,7 @@ def with_face_tilt(
     axial_offset: float = 0.0,
     couple_teeth: bool = True,
 ) -> ContactProblem:
-    """Add how the compliance changes along the flanks; parameters as of `face_contact_problem`."""
+    """Add the `tilt` of the flanks to a problem; for the parameters see `face_contact_problem`."""
     tilt = np.zeros(problem.compliance.shape)
     for gear in _face_gears(problem.candidates.slices, compliances, axial_offset, couple_teeth):
         for rows, added in gear.displaced().compliances():
@@ -67,14 +77,17 @@ def with_face_tilt(
 
 
 class KeyedFlanks(NamedTuple):
-    """Contribution of a keyed bore: rows (2 s + 1, q, f) by tooth from -s to s, core (q, q)."""
+    """Additional compliance by a keyed bore: r' C r of the rows r of two teeth and the core C."""
 
     rows: FloatArray
+    """Rows by tooth from -s to s. Shape (2 s + 1, q, f)."""
     core: FloatArray
+    """Shape (q, q)."""
     couple_teeth: bool
+    """Whether the load on one tooth moves another."""
 
     def compliance(self, tooth: IntArray, loads: FaceLoads) -> FloatArray:
-        """Return the compliance between patches on the teeth (n,), (n, n) in m/N."""
+        """Return the compliance (n, n) between unit loads on the teeth (n,), m/N."""
         rows = self.rows[tooth + len(self.rows) // 2]
         motion = np.empty((len(tooth), rows.shape[1]))
         for i, (row, nodes, forces, used) in enumerate(
@@ -87,7 +100,7 @@ class KeyedFlanks(NamedTuple):
 
 @dataclass(frozen=True)
 class _FaceGear:
-    """One gear over the face; `tip` is +1 on gear 1 and -1 on gear 2, other names as of `add_compliance`."""
+    """One gear over the face. `tip` is +1 on gear 1 and -1 on gear 2; see `add_compliance`."""
 
     grid: FaceGrid
     blocks: FloatArray
@@ -101,7 +114,7 @@ class _FaceGear:
     present: BoolArray
 
     def compliances(self) -> Iterator[tuple[IntArray, FloatArray]]:
-        """Yield positions and its compliance there (P, n, n)."""
+        """Yield groups of positions, and the compliance of the gear (P, n, n) at each group."""
         planes = self.grid.freedom.ravel()
         order = planes[planes >= 0]
         for rows in together(len(self.present)):
@@ -117,7 +130,7 @@ class _FaceGear:
             yield rows, added
 
     def displaced(self) -> _DisplacedGear:
-        """Return the loads with two on each slice: the patches, and their derivatives by displacement."""
+        """Return the gear with two loads on each slice: the patch, and its derivative by a displacement."""
         doubled = {name: np.repeat(getattr(self, name), 2, axis=-1) for name in _DOUBLED}
         return _DisplacedGear(**(vars(self) | doubled))
 
@@ -126,9 +139,10 @@ class _FaceGear:
 
 
 class _DisplacedGear(_FaceGear):
-    """The same with loads in turn: of the patches as plain ones, and their change per m towards tip 1.
+    """A gear whose loads are alternately a patch and its change per m towards tip 1.
 
-    Beside an edge patches give way more than a strip there does: here they count as if they were plain.
+    Patches near an edge would yield more than a strip there does. Here all patches count as plain ones that
+    do not reach an edge.
     """
 
     def _loads(self, position: IntArray, on: IntArray) -> FaceLoads:
@@ -138,11 +152,7 @@ class _DisplacedGear(_FaceGear):
         center = np.minimum(center, self.grid.s[-1] - widest - near)
         alike = np.full(center.shape, widest), np.zeros(center.shape), self.low[on[::2]], self.high[on[::2]]
         above, below = (face_loads(self.grid, center + way, *alike) for way in (near, -near))
-        steep = 0.5 * self.tip / near
-        plain, change = above.plus(0.5, below, 0.5), above.plus(steep, below, -steep)
-        in_turn = (np.stack(values, axis=1) for values in zip(plain, change, strict=True))
-        nodes, forces, used = (values.reshape(on.size, *values.shape[2:]) for values in in_turn)
-        return FaceLoads(nodes, forces, used)
+        return means_and_differences(above, below, 0.5 * self.tip / near)
 
 
 def _face_gears(
@@ -151,24 +161,24 @@ def _face_gears(
     axial_offset: float,
     couple_teeth: bool,
 ) -> Iterator[_FaceGear]:
-    """Yield both gears."""
+    """Yield the driving and the driven gear over the face."""
     touch, face = slices.touch, slices.face_position
     sides = (
         (slices.patch_1, touch.lever_1, -slices.pair, face, 1.0),
         (slices.patch_2, touch.lever_2, slices.pair, face - axial_offset, -1.0),
     )
-    for flank, (patches, lever, teeth, along, tip) in zip(compliances, sides, strict=True):
+    for flank, (patches, lever, teeth, middle, tip) in zip(compliances, sides, strict=True):
         blocks = flank.blocks if couple_teeth else flank.blocks[:1]
         grid = FaceGrid(flank.s, flank.z, flank.index)
-        low = np.maximum(along - 0.5 * slices.slice_width, flank.z[0])
-        high = np.minimum(along + 0.5 * slices.slice_width, flank.z[-1])
+        low = np.maximum(middle - 0.5 * slices.slice_width, flank.z[0])
+        high = np.minimum(middle + 0.5 * slices.slice_width, flank.z[-1])
         key = KeyedFlanks(flank.key_rows, flank.key_core, couple_teeth)
         yield _FaceGear(grid, blocks, key, patches, lever, teeth, low, high, tip, slices.present)
 
 
 def together(count: int) -> list[IntArray]:
-    """Return the rows of so many positions that are assembled together.
+    """Return the groups of positions, `count` in all, that are assembled together.
 
-    A single row is not left by itself: it cannot be laid out in memory as many are.
+    No group has one position alone, unless it is the only one: its arrays would differ in memory order.
     """
     return np.split(np.arange(count), np.arange(TOGETHER, count - 1, TOGETHER))

@@ -1,9 +1,9 @@
 """Loads on slices of a flank of finite width: their nodal forces, and the compliance between them.
 
-The load of a slice follows the contact line: patches side by side, each the plane patch of
-`fe_contact.contact.patch` along the profile times a box along the face. The flank is a grid of 8-node
-faces whose shape functions are sums of products of one-dimensional terms, so their integrals come from
-three moments of either factor.
+The load of a slice follows the contact line, as patches side by side. Each has the pressure of the plane
+patch of `fe_contact.contact.patch` along the profile, and is uniform along the face. The flank is a grid of
+8-node faces. Their shape functions are sums of products of one-dimensional terms, so that three moments of
+the load in either direction give the nodal forces.
 """
 
 from __future__ import annotations
@@ -22,33 +22,28 @@ class FaceGrid(NamedTuple):
     """Nodes of one flank."""
 
     s: FloatArray
-    """Flank coordinates, corner and mid-side nodes in turn, m. Shape (k,)."""
+    """Flank coordinates, alternately of corner and of mid-side nodes, m. Shape (k,)."""
     z: FloatArray
     """Ends of the layers along the face, m. Shape (L + 1,)."""
     freedom: IntArray
-    """Freedom at each plane (layer ends and middles in turn) and profile node; -1 at the centers of faces.
-    Shape (2 L + 1, k).
+    """Degree of freedom of each node of the flank; -1 at the centers of faces. The rows are planes across the
+    face, alternately ends and middles of layers. Shape (2 L + 1, k).
     """
 
 
 class FaceLoads(NamedTuple):
-    """Nodal forces of n unit patches: freedoms and forces (n, w); the first `used` (n,) of each count."""
+    """Nodal forces of n unit loads."""
 
     nodes: IntArray
     forces: FloatArray
+    """`nodes`, `forces`: Degrees of freedom that each load acts on, and its forces there. Shape (n, w) each.
+    """
     used: IntArray
+    """Number of entries of each row that count, from the first on. Shape (n,)."""
 
     def rows(self, keep: BoolArray) -> FaceLoads:
         """Return the loads selected by `keep`."""
         return FaceLoads(self.nodes[keep], self.forces[keep], self.used[keep])
-
-    def plus(self, part: float, other: FaceLoads, times: float) -> FaceLoads:
-        """Return `part` of these loads and `times` others, as many, behind each other."""
-        count, others = self.used.max(), other.used.max()
-        nodes = np.concatenate([self.nodes[:, :count], other.nodes[:, :others]], axis=1)
-        nodes = np.where(nodes < 0, nodes[:, :1], nodes)
-        forces = np.concatenate([part * self.forces[:, :count], times * other.forces[:, :others]], axis=1)
-        return FaceLoads(nodes, forces, np.full(len(nodes), nodes.shape[1]))
 
 
 @njit(cache=True)
@@ -60,7 +55,7 @@ def face_loads(
     low: FloatArray,
     high: FloatArray,
 ) -> FaceLoads:
-    """Nodal forces of unit loads on slices, each of Q equal patches side by side along its contact line.
+    """Return nodal forces of unit loads on slices, each of Q equal patches along its contact line.
 
     Parameters
     ----------
@@ -105,11 +100,28 @@ def face_loads(
     return FaceLoads(nodes, forces, used)
 
 
+@njit(cache=True)
+def means_and_differences(first: FaceLoads, second: FaceLoads, half: float) -> FaceLoads:
+    """Return for each slice the mean of two loads, and `half` times their difference: 2 n loads in turn."""
+    n, count, others = first.used.size, first.used.max(), second.used.max()
+    nodes = np.empty((2 * n, count + others), dtype=np.int64)
+    forces = np.empty((2 * n, count + others))
+    for p in range(n):
+        for k in range(count + others):
+            loads, i, sign = (first, k, 1.0) if k < count else (second, k - count, -1.0)
+            node = loads.nodes[p, i]
+            # numbers beyond the used ones are no forces, on any node
+            nodes[2 * p : 2 * p + 2, k] = first.nodes[p, 0] if node < 0 else node
+            forces[2 * p, k] = 0.5 * loads.forces[p, i]
+            forces[2 * p + 1, k] = sign * half * loads.forces[p, i]
+    return FaceLoads(nodes, forces, np.full(2 * n, count + others))
+
+
 @inner()
 def _max_nodes(
     grid: FaceGrid, center: FloatArray, half_width: FloatArray, low: FloatArray, high: FloatArray
 ) -> int:
-    """Return the most nodes that a slice loads, those that its patches share counted for each."""
+    """Return an upper bound of the nodes that a slice loads: nodes that patches share count for each."""
     n, count = center.shape
     maximum = 0
     for p in range(n):
@@ -131,7 +143,7 @@ def _part(low: float, high: float, q: int, count: int) -> tuple[float, float]:
 
 @inner()
 def _overlaps(left: float, right: float, low: float, high: float) -> bool:
-    """Whether two intervals share more than a point."""
+    """Return whether two intervals have more than a point in common."""
     return right > low and left < high
 
 
@@ -146,7 +158,7 @@ def _touched(ends: FloatArray, low: float, high: float) -> int:
 
 @inner()
 def _box_moments(left: float, right: float, low: float, high: float, out: FloatArray) -> None:
-    """Moments 0 to 2 of a unit box load on one layer, in its coordinate from -1 to 1."""
+    """Fill `out` with moments 0 to 2 of a uniform unit load on one layer, in its coordinate from -1 to 1."""
     start = 2.0 * (max(left, low) - left) / (right - left) - 1.0
     stop = 2.0 * (min(right, high) - left) / (right - left) - 1.0
     density = 0.5 * (right - left) / (high - low)
@@ -167,7 +179,10 @@ def _add_face(
     slot: IntArray,
     count: int,
 ) -> int:
-    """Add the eight nodal forces of one face; `slot` knows the nodes already there, return how many are."""
+    """Add the eight nodal forces of one face to `nodes` and `forces`; return how many entries are used then.
+
+    Before, `count` entries are used. `slot` has the entry of each node, or -1 where the node has none.
+    """
     for i in range(3):
         for j in range(3):
             if i == 1 and j == 1:
@@ -212,7 +227,7 @@ def add_compliance(
     blocks : ndarray, shape (r + 1, f, f)
         blocks[m]: displacement on tooth j + m per force on tooth j; its transpose for -m.
     order : ndarray of int, shape (f,)
-        The freedoms plane by plane along the face.
+        The degrees of freedom plane by plane along the face.
     tooth : ndarray of int, shape (n,)
         Tooth of each slice, counted counter-clockwise; slices of one tooth stand together.
     loads : FaceLoads
@@ -222,34 +237,34 @@ def add_compliance(
 
     Notes
     -----
-    A number of a block is needed once or twice at a position, and fetching it takes longer than using it. So
-    what the positions need of a block, all of it at most, is gathered once, and weighed by the forces of a
-    slice at all of them.
+    At each position an entry of a block is used once or twice only, and to fetch it from memory takes longer
+    than to use it. Therefore the rows and columns that any of the positions needs are gathered once, and
+    multiplied by the forces of a slice at all positions together.
     """
     ends = _ends(tooth)
     needed, rank = _needed(order, loads, at[1], ends)
     slices = _slice_forces(loads, at, lever, rank, ends)
-    room = np.empty(needed[:, 0].max() ** 2)
+    buffer = np.empty(needed[:, 0].max() ** 2)
     for a in range(ends.size - 1):
         for b in range(ends.size - 1):
             distance = tooth[ends[a]] - tooth[ends[b]]
             if 0 <= distance < blocks.shape[0] and (distance > 0 or a == b):
                 rows, columns = needed[a, 1 : needed[a, 0] + 1], needed[b, 1 : needed[b, 0] + 1]
-                _add_teeth(_gathered(blocks[distance], rows, columns, room), slices, ends, a, b, out)
+                _add_teeth(_gathered(blocks[distance], rows, columns, buffer), slices, ends, a, b, out)
 
 
 class _SliceForces(NamedTuple):
-    """Forces of n slices at P positions on the freedoms that their teeth need."""
+    """Forces of n slices at P positions on the degrees of freedom of their teeth that are loaded at all."""
 
     low: IntArray
     width: IntArray
-    """`low`, `width`: First needed freedom that each slice loads, and number of freedoms from there on. Shape
-    (n,) each.
+    """`low`, `width`: Range of the loaded degrees of freedom of its tooth on which each slice acts: the
+    first, and their number. Shape (n,) each.
     """
     start: IntArray
     """Sum of the widths of all slices before each slice. Shape (n + 1,)."""
     force: FloatArray
-    """Forces of the slices one after the other: those of slice i, (P, width), begin at P start[i]."""
+    """Forces of all slices one after the other; those of slice i, (P, width), begin at entry P start[i]."""
     lever: FloatArray
     """Lever of the load of each slice. Shape (P, n)."""
 
@@ -258,7 +273,10 @@ class _SliceForces(NamedTuple):
 def _slice_forces(
     loads: FaceLoads, at: IntArray, lever: FloatArray, rank: IntArray, ends: IntArray
 ) -> _SliceForces:
-    """Lay the forces of all slices out one after the other."""
+    """Return the forces of all slices one after the other; for the arguments see `add_compliance`.
+
+    `rank` and `ends` are those of `_needed` and `_ends`.
+    """
     low, width, start = _ranges(loads, at[1], rank, ends)
     count = lever.shape[0]
     force = np.zeros(start[-1] * count)
@@ -271,9 +289,9 @@ def _slice_forces(
 
 
 @inner()
-def _gathered(block: FloatArray, rows: IntArray, columns: IntArray, room: FloatArray) -> FloatArray:
-    """Return the rows and columns of a block side by side in memory, within `room`."""
-    gathered = room[: rows.size * columns.size].reshape(rows.size, columns.size)
+def _gathered(block: FloatArray, rows: IntArray, columns: IntArray, buffer: FloatArray) -> FloatArray:
+    """Return rows and columns of a block side by side in memory, in a part of `buffer`."""
+    gathered = buffer[: rows.size * columns.size].reshape(rows.size, columns.size)
     for k in range(rows.size):
         row = block[rows[k]]
         for m in range(columns.size):
@@ -285,7 +303,7 @@ def _gathered(block: FloatArray, rows: IntArray, columns: IntArray, room: FloatA
 def _add_teeth(
     block: FloatArray, slices: _SliceForces, ends: IntArray, a: int, b: int, out: FloatArray
 ) -> None:
-    """Add the displacements at the slices of tooth a by those of tooth b, and the reverse."""
+    """Add the displacements at slices of tooth a by forces on slices of tooth b, and those the other way."""
     low, width, start, forces, lever = slices
     count = lever.shape[0]
     motion = np.empty((count, block.shape[1]))
@@ -303,26 +321,31 @@ def _add_teeth(
 
 @inner()
 def _ends(tooth: IntArray) -> IntArray:
-    """Return where the slices of each tooth begin, and where the last ones end."""
-    inner = np.flatnonzero(np.diff(tooth)) + 1
-    ends = np.zeros(inner.size + 2, dtype=np.int64)
-    ends[1:-1], ends[-1] = inner, tooth.size
+    """Return the index of the first slice of each tooth, and behind it the number of all slices."""
+    changes = np.flatnonzero(np.diff(tooth)) + 1
+    ends = np.zeros(changes.size + 2, dtype=np.int64)
+    ends[1:-1], ends[-1] = changes, tooth.size
     return ends
 
 
 @inner()
 def _needed(order: IntArray, loads: FaceLoads, on: IntArray, ends: IntArray) -> tuple[IntArray, IntArray]:
-    """Return how many freedoms of each tooth are loaded and which, and the place of each by slice."""
+    """Return the loaded degrees of freedom of each tooth, and the rank of each among them.
+
+    A row of the first array is a tooth: the number of these degrees of freedom, then their indices. The
+    second array (n, f) has the rank on the tooth of each slice, -1 where a degree of freedom is not loaded.
+    `on`: Slice of each load.
+    """
     needed = np.zeros((ends.size - 1, order.size + 1), dtype=np.int64)
     rank = np.full((ends[-1], order.size), -1, dtype=np.int64)
     for a in range(ends.size - 1):
-        seen = np.zeros(order.size, dtype=np.bool_)
+        loaded = np.zeros(order.size, dtype=np.bool_)
         for r in range(on.size):
             if ends[a] <= on[r] < ends[a + 1]:
                 for k in range(loads.used[r]):
-                    seen[loads.nodes[r, k]] = True
+                    loaded[loads.nodes[r, k]] = True
         for node in order:
-            if seen[node]:
+            if loaded[node]:
                 rank[ends[a] : ends[a + 1], node] = needed[a, 0]
                 needed[a, 0] += 1
                 needed[a, needed[a, 0]] = node
@@ -333,7 +356,7 @@ def _needed(order: IntArray, loads: FaceLoads, on: IntArray, ends: IntArray) -> 
 def _ranges(
     loads: FaceLoads, on: IntArray, rank: IntArray, ends: IntArray
 ) -> tuple[IntArray, IntArray, IntArray]:
-    """Return the first place that each slice loads, how many from there on, and the sums of those before."""
+    """Return `low`, `width` and `start` of `_SliceForces`."""
     low, high = np.full(ends[-1], rank.shape[1]), np.zeros(ends[-1], dtype=np.int64)
     for r in range(on.size):
         for k in range(loads.used[r]):

@@ -32,7 +32,7 @@ class _FaceNodes(_ProfileNodes, Protocol):
 
     @property
     def index(self) -> IntArray:
-        """Freedom at plane and profile node, -1 at the centers."""
+        """Degree of freedom by plane across the face and profile node; -1 at the centers of faces."""
 
 
 def plane_flank_forces(
@@ -46,17 +46,17 @@ def plane_flank_forces(
     Parameters
     ----------
     force : ndarray, shape (P, m)
-        Of the candidates, N.
+        Forces of the candidates, N.
     position : int
         Index of the position.
     flanks : (ProfileNodes, ProfileNodes)
-        Driving and driven gear: their flank nodes.
+        Flank nodes of the driving and the driven gear.
 
     Returns
     -------
     dict, dict
-        Tooth number to inward nodal forces (k,) per unit face width, N/m. A force at a tip edge acts along
-        the mating flank's normal, so it counts by its lever (see `contact_problem`).
+        Inward nodal forces (k,) per unit face width by tooth number, N/m. A force at a tip edge acts along
+        the mating flank's normal, so that it is multiplied by its lever (see `contact_problem`).
     """
     forces: list[ByTooth] = []
     slices, pressed, row = _pressed(candidates, force, position)
@@ -87,19 +87,19 @@ def face_flank_forces(
     Returns
     -------
     dict, dict
-        Tooth number to inward nodal forces (nf,) in the freedoms of the compliance, N.
+        Inward nodal forces (nf,) on the degrees of freedom of the compliance by tooth number, N.
     """
     forces: list[ByTooth] = []
     slices, pressed, row = _pressed(candidates, force, position)
     carrying = np.flatnonzero(pressed)
     sides = zip(flanks, _sides(slices), (0.0, axial_offset), strict=True)
     for flank, (patches, lever, direction), offset in sides:
-        along = slices.face_position[carrying] - offset
+        middle = slices.face_position[carrying] - offset
         loads = face_loads(
             FaceGrid(flank.s, flank.z, flank.index),
             *patches.by_slice(row, carrying),
-            np.maximum(along - 0.5 * slices.slice_width, flank.z[0]),
-            np.minimum(along + 0.5 * slices.slice_width, flank.z[-1]),
+            np.maximum(middle - 0.5 * slices.slice_width, flank.z[0]),
+            np.minimum(middle + 0.5 * slices.slice_width, flank.z[-1]),
         )
         by_tooth: ByTooth = {}
         for k, i in enumerate(carrying):
@@ -121,7 +121,7 @@ def _pressed(
 
 
 def _sides(slices: LoadedSlices) -> tuple[Side, Side]:
-    """Return patches, lever and direction of counting of both gears: pair j is tooth -j of gear 1."""
+    """Return patches, lever and sign of tooth numbers of both gears: pair j is on tooth -j of gear 1."""
     touch = slices.touch
     return (slices.patch_1, touch.lever_1, -1), (slices.patch_2, touch.lever_2, 1)
 

@@ -1,16 +1,18 @@
 r"""Additional approach of a body near its free end beyond that of an endless half plane.
 
-A line load that runs to the free end of a body presses on a quarter space. Its mirror image in the end plane
-frees that plane of shear; the normal stress that is left there is freed by loads that amplify the image by a
-factor psi [1]_. On a half space the load would go on, which is an image of the factor 1. So the surface at
-the distance z from the end gives way more, by k p e with k = 2 (1 - nu^2)/(pi E), p the line load and
+A line load that reaches the free end of a body acts on a quarter space. With its mirror image in the end
+plane there is no shear in that plane; the normal stress that remains there is removed by further loads, which
+amplify the image by a factor psi [1]_. On a half space the load would go on past the end, which is an image
+of the factor 1. Hence the surface at the distance z from the end yields more by k p e, with
+k = 2 (1 - nu^2)/(pi E), the line load p and
 
     e(z, h) = (psi - 1)/2 (constant - ln[z + sqrt(z^2 + (c h)^2)]),
 
-h half the strip: the potential of the image, with c = exp(-1/4)/2 from the mean of ln|x - x'| over a
-semi-elliptic pressure twice. The factor is fitted to finite elements of a quarter space under an even
-semi-elliptic load (`benchmarks/quarter_space.py`): without lateral contraction it is 1. Up to 5 strips from
-the end the form is within 0.02 of them for nu = 0.3, within 0.09 for 0.45, and most at the end itself.
+where h is half the strip. It is the potential of the image, with c = exp(-1/4)/2 from the mean of ln|x - x'|
+where x and x' are both distributed as a semi-elliptic pressure. The factor psi is fitted to finite elements
+of a quarter space under a semi-elliptic load that is uniform along the strip (`benchmarks/quarter_space.py`);
+without lateral contraction it is 1. Up to 5 strips from the end e differs from them by up to 0.02 for
+nu = 0.3 and by up to 0.09 for 0.45, most at the end itself.
 
 References
 ----------
@@ -28,11 +30,14 @@ import numpy as np
 from fe_contact.types import FloatArray
 
 _MEAN_DISTANCE = 0.5 * math.exp(-0.25)
-"""exp of the mean of ln|x - x'| over a semi-elliptic pressure twice, over half its strip."""
+"""The constant c: exp of the mean of ln|x - x'| under a semi-elliptic pressure, over half its strip."""
 _NARROWEST = 1e-9
-"""Least strip over the distance from the end: of no load."""
+"""Least strip over the distance from the end, in place of that of no load."""
 SMOOTH = 2.0
-"""Reference length of the ends over that of the local law: as far as slices do not follow a free end."""
+"""Reference length near ends over that of the local law.
+
+Over this distance the finite elements of slices do not describe a free end.
+"""
 
 
 class FreeEnds(NamedTuple):
@@ -58,14 +63,14 @@ def end_softness(poissons_ratio: float) -> float:
 def end_excess(
     ends: FreeEnds, face: FloatArray, length: float, narrow: FloatArray, wide: FloatArray | float
 ) -> FloatArray:
-    """Return e of `narrow` less that of `wide` strips, (P, m), means over stretches of the face.
+    """Return e of narrow strips less that of wide ones (P, m), as means over sections of the face.
 
     Parameters
     ----------
     face : ndarray, shape (m,)
-        Middles of the stretches, m.
+        Middles of the sections, m.
     length : float
-        Of a stretch along the face, m.
+        Length of a section along the face, m.
     narrow, wide : ndarray, shape (P, m), or broadcasting to it
         Half strips, m.
     """

@@ -37,13 +37,14 @@ def least_gap(
     x, of : ndarray, shape (k,)
         Samples in m and their contacts, ordered by contact and way; each contact has one at least.
     allowed : ndarray, shape (n,)
-        What the gap may be above its least value about the lowest sample, m.
+        Allowed difference of the returned gap from the least value about the lowest sample, m.
 
     Notes
     -----
-    Between the neighbors of a sample that is lower than both the gap is followed downwards, first where the
-    parabola through the three is lowest, then where another one is lower than what was found. A place is
-    taken by the gap there alone.
+    A valley is the range between the neighbors of a sample that is lower than both. The gap is followed
+    downwards in the valley in which the parabola through these three points is lowest, then in each further
+    valley whose parabola is lower than the least gap so far. Parabolas only propose points; the true gap at a
+    point decides.
     """
     value = gap(x, of)
     first = np.searchsorted(of, np.arange(allowed.size + 1))
@@ -62,21 +63,25 @@ def least_gap(
 def _follow(
     gap: TrueGap, contact: IntArray, ways: FloatArray, values: FloatArray, allowed: FloatArray
 ) -> None:
-    """Follow gaps of contacts (n,) down between three points (3, n), the middle the lowest or an end."""
+    """Follow gaps of contacts (n,) down between three points (3, n), in place.
+
+    The middle point is the lowest of the three, or at an end of the window the same as an outer one.
+    """
     on: IntArray = np.arange(allowed.size)
     for k in range(_STEPS):
-        position, gained = _refinements(ways, values, on, k % _HALVED == _HALVED - 1)
+        halving, always = k % _HALVED == _HALVED - 1, k < _MIN_STEPS
+        position, gain = _refinements(ways, values, on, halving)
         height = gap(position, contact[on])
-        on = _narrow(ways, values, (on, position, height, gained), allowed, k < _MIN_STEPS)
+        on = _narrow(ways, values, (on, position, height, gain), allowed, always)
         if not on.size:
             break
 
 
 @inner(error_model="numpy")
 def _parabola(ways: FloatArray, values: FloatArray, i: int) -> tuple[float, float]:
-    """Return the lowest place of the parabola through three points, and how far it is below the middle.
+    """Return the lowest point of the parabola through three points, and its depth below the middle one.
 
-    Where the middle is not the lowest of the three it is the place, and nothing is gained.
+    Where the middle point is not the lowest of the three, it is returned itself, with a depth of 0.
     """
     before, after = ways[1, i] - ways[0, i], ways[2, i] - ways[1, i]
     up, down = values[0, i] - values[1, i], values[2, i] - values[1, i]
@@ -96,7 +101,7 @@ def _about(x: FloatArray, at: int, first: int, last: int, triple: FloatArray, i:
 
 @njit(cache=True, error_model="numpy")
 def _promises(x: FloatArray, value: FloatArray, first: IntArray) -> FloatArray:
-    """Return how low the gap may be about each sample; contact n has those from first[n] to first[n + 1]."""
+    """Return the lowest possible gap about each sample; contact n has samples first[n] to first[n + 1]."""
     promise = np.empty(x.size)
     ways, values = np.empty((3, 1)), np.empty((3, 1))
     for n in range(first.size - 1):
@@ -111,9 +116,10 @@ def _promises(x: FloatArray, value: FloatArray, first: IntArray) -> FloatArray:
 def _lowest_valleys(
     x: FloatArray, value: FloatArray, promise: FloatArray, first: IntArray, bound: FloatArray
 ) -> tuple[IntArray, FloatArray, FloatArray]:
-    """Take the most promising sample of each contact where it promises less than `bound` (n,), once.
+    """Return contacts with a promise below `bound` (n,), and points and gaps about their best sample.
 
-    Returns those contacts (m,), and samples and gaps about there (3, m).
+    Contacts are (m,), points and gaps (3, m).
+    The sample with the lowest promise of a contact is taken, and not again by a later call.
     """
     on = np.empty(bound.size, dtype=np.int64)
     ways, values = np.empty((3, bound.size)), np.empty((3, bound.size))
@@ -137,19 +143,19 @@ def _refinements(
     ways: FloatArray, values: FloatArray, on: IntArray, halving: bool
 ) -> tuple[FloatArray, FloatArray]:
     """Return the next points between points (3, n) of contacts `on` (m,), and the gain by a parabola."""
-    places, gains = np.empty(on.size), np.empty(on.size)
+    positions, gains = np.empty(on.size), np.empty(on.size)
     for m in range(on.size):
         i = on[m]
         low, middle, high = ways[0, i], ways[1, i], ways[2, i]
         position, gains[m] = _parabola(ways, values, i)
         longer = high if high - middle > middle - low else low
         if halving or middle in (low, high):
-            places[m] = 0.5 * (middle + longer)
+            positions[m] = 0.5 * (middle + longer)
         else:
-            towards = longer - middle if position == middle else position - middle
-            way = max(abs(position - middle), _NEAREST * (high - low))
-            places[m] = min(max(middle + math.copysign(way, towards), low), high)
-    return places, gains
+            direction = longer - middle if position == middle else position - middle
+            distance = max(abs(position - middle), _NEAREST * (high - low))
+            positions[m] = min(max(middle + math.copysign(distance, direction), low), high)
+    return positions, gains
 
 
 @njit(cache=True, error_model="numpy")
@@ -160,14 +166,15 @@ def _narrow(
     allowed: FloatArray,
     always: bool,
 ) -> IntArray:
-    """Narrow points (3, n) about the lowest of three and a new one, and return which contacts go on.
+    """Replace points (3, n) by the lowest of them and a new one with its neighbors; return contacts to go on.
 
-    `new` has contacts, places, gaps there, and what was gained by the parabola, (m,).
+    `new` has contacts, new points, their gaps, and the depths of the parabolas, (m,) each. A contact goes on
+    while a gap or a parabola is lower by more than `allowed`, or `always`.
     """
-    on, places, heights, gains = new
+    on, positions, heights, gains = new
     more, count = np.empty(on.size, dtype=np.int64), 0
     for m in range(on.size):
-        i, position, height = on[m], places[m], heights[m]
+        i, position, height = on[m], positions[m], heights[m]
         lower, outer = height < values[1, i], 2 if position > ways[1, i] else 0
         if always or gains[m] > allowed[i] or values[1, i] - height > allowed[i]:
             more[count] = i
@@ -203,8 +210,8 @@ def samples(
 ) -> tuple[FloatArray, IntArray]:
     """Return ways in m at which gaps are sampled, and their contacts, ordered by contact and way.
 
-    Within windows (n,): a place (n,) to begin at, `parts` (k,) of the window, and nodes. Of those that are no
-    further from the one below than `alike` (n,) in m there is none.
+    The samples of a window (n,) are `begin` (n,), points at the `parts` (k,) of the window, and nodes. A
+    sample within `alike` (n,) m of the next lower one is left out.
     """
     low, high = window
     nearest, beyond = _nodes_within(window, nodes)
@@ -249,7 +256,7 @@ def _nodes_within(window: tuple[FloatArray, FloatArray], nodes: Nodes) -> tuple[
 
 @inner(error_model="numpy")
 def _insert(x: FloatArray, value: float, first: int, last: int) -> int:
-    """Put a value in its place among those from `first` to `last`, which increase; return the new `last`."""
+    """Insert a value into the increasing values from `first` to `last`; return the new `last`."""
     at = last
     while at > first and x[at - 1] > value:
         x[at] = x[at - 1]

@@ -20,14 +20,17 @@ from fe_contact.types import FloatArray
 from host.loops import inner
 
 SMALLEST_STRIP = 1e-4
-"""Half length of the contact strip over the reference length below which the law is straight."""
+"""Half length of the contact strip over the reference length below which approach is linear in load."""
 
 LARGEST_STRIP = 0.66
-"""Half length of the contact strip over the reference length above which the law goes on straight."""
+"""Half length of the contact strip over the reference length above which approach grows linearly with load.
+"""
 
 _TOLERANCE, _PLAIN_TOLERANCE = 1e-9, 1e-6
+"""Relative steps at which the searches of `half_strip_at` and `plain_strip` end."""
 
 _STEPS = 100
+"""Most steps of either search."""
 
 _WIDTH, _FREE, MODULUS, MIDDLE, HALF_STRIP, REFERENCE_LENGTH = range(6)
 """Columns of `LocalLaw.strip`."""
@@ -39,10 +42,14 @@ class LocalLaw(NamedTuple):
     gap: FloatArray
     """Gaps about the touching points, a `gap_table`. Shape (m, 4 + 3 B)."""
     strip: FloatArray
-    """Length of contact line of each in m; half strip in m up to which its gap is a parabola alone; contact
-    modulus E* in Pa, less where a tip corner yields; middle and half length of the strip found last, from
-    which the next one is searched, m: a half length of zero is none yet; reference length in m, greater near
-    free ends. Shape (m, 6).
+    """One row a contact. Shape (m, 6), with the columns
+
+    0. length of its contact line, m,
+    1. half strip up to which its gap is a parabola, without break or edge, m,
+    2. contact modulus E* in Pa, less where a tip corner yields,
+    3. and 4. middle and half length in m of the strip at its last load, from which the next search begins; a
+       half length of zero before the first,
+    5. reference length in m, greater near free ends.
     """
     length: float
     """Reference length away from free ends, m."""
@@ -50,7 +57,7 @@ class LocalLaw(NamedTuple):
 
 @inner(error_model="numpy")
 def local_law(gap: FloatArray, width: FloatArray, modulus: FloatArray, length: float) -> LocalLaw:
-    """Return the law of a table of gaps under which no strip is known yet."""
+    """Return the law of contacts (m,) from the table of their gaps, before any strip is known."""
     strip = np.zeros((width.size, 6))
     for i in range(width.size):
         strip[i, _WIDTH], strip[i, _FREE], strip[i, MODULUS] = width[i], free_strip(gap, i), modulus[i]
@@ -60,12 +67,12 @@ def local_law(gap: FloatArray, width: FloatArray, modulus: FloatArray, length: f
 
 @inner(error_model="numpy")
 def approach(law: LocalLaw, i: int, force: float) -> tuple[float, float, bool]:
-    """Local approach of contact `i` under `force` in N.
+    """Return the local approach of contact `i` under `force` in N.
 
     Returns
     -------
     value, slope : float
-        Approach in m and its derivative in m/N; both straight on below zero force.
+        Approach in m and its derivative in m/N. Below zero force the approach goes on linearly.
     beyond : bool
         Whether the strip has outgrown the reference length.
     """
@@ -117,9 +124,9 @@ def carrying_strip(law: LocalLaw, i: int, force: float) -> tuple[float, float]:
 
 @inner(error_model="numpy")
 def force_at(law: LocalLaw, i: int, value: float) -> tuple[float, float]:
-    """Force of contact `i` in N at a local approach in m, and its derivative in N/m; zero where flanks part.
+    """Return the force of contact `i` in N at a local approach in m, and its derivative in N/m.
 
-    The inverse of `approach`.
+    It is the inverse of `approach`, and zero where the flanks part.
     """
     if value <= 0.0:
         return 0.0, 0.0
@@ -150,10 +157,9 @@ def force_at(law: LocalLaw, i: int, value: float) -> tuple[float, float]:
 def _load_on(
     half: float, carried: float, rigid: float, length: float, modulus: float, value: float
 ) -> tuple[float, float]:
-    """Line load in N/m at an approach in m, and its derivative in N/m^2, from the strip that carries it.
+    """Return the line load in N/m at an approach in m, and its derivative in N/m^2, from its strip.
 
-    At a given strip the load follows from the approach, which is stationary in the strip, so that an error of
-    the strip enters squared.
+    The approach is stationary in the strip, so that an error of the strip changes the load by its square.
     """
     slope = 2.0 / (math.pi * modulus) * (math.log(length / half) - 0.25)
     if half <= SMALLEST_STRIP * length and value < rigid + slope * carried:
@@ -171,10 +177,11 @@ def _limits(law: LocalLaw, i: int) -> tuple[float, float, float]:
 
 @inner(error_model="numpy")
 def plain_strip(curvature: float, length: float, value: float, guess: float) -> float:
-    """Half strip in m of a parabola at an approach in m: y (1/4 - ln(y)/2) = 2 approach/(q l^2), y = (h/l)^2.
+    """Return the half strip h in m of a parabola at an approach `value` in m, at most `LARGEST_STRIP` l.
 
-    Not above `LARGEST_STRIP` reference lengths. `guess`: half strip to begin with in m, or zero. The last
-    step leaves its square.
+    It solves y (1/4 - ln(y)/2) = 2 approach/(q l^2) for y = (h/l)^2, with the curvature q and the reference
+    length l. `guess`: Half strip in m from which Newton's method begins, or zero. The remaining error is of
+    the order of the square of the last step.
     """
     scaled = 2.0 * value / (curvature * length * length)
     maximum = LARGEST_STRIP * LARGEST_STRIP
@@ -196,7 +203,10 @@ def plain_strip(curvature: float, length: float, value: float, guess: float) -> 
 def plain_load(
     curvature: float, length: float, modulus: float, half: float, value: float
 ) -> tuple[float, float]:
-    """Line load in N/m of a parabola at an approach in m, its derivative in N/m^2; `half` is its strip."""
+    """Return the line load in N/m of a parabola at an approach in m, and its derivative in N/m^2.
+
+    `half`: Half strip at that approach, m.
+    """
     half = max(half, SMALLEST_STRIP * length)
     rise = 0.25 * curvature * half * half
     return _load_on(half, math.pi * modulus * rise, rise, length, modulus, value)
@@ -204,7 +214,10 @@ def plain_load(
 
 @inner(error_model="numpy")
 def half_strip_at(law: LocalLaw, i: int, value: float, half: float) -> float:
-    """Half strip in m at an approach in m, from a guess on; at the limits where it would be beyond them."""
+    """Return the half strip in m at an approach `value` in m, searched from the guess `half` on.
+
+    Where it would be outside the limits of the law, or longer than the flank, that limit is returned.
+    """
     k, low, high = _limits(law, i)
     high = min(high, widest_strip(law.gap, i))
     if high <= low:

@@ -15,28 +15,28 @@ from fe_contact.types import FloatArray, IntArray
 
 @dataclass(frozen=True)
 class Break:
-    """Begin of a modification of one gear along its profile, to a depth of jump d + bend d^2/2."""
+    """Point of a profile from which on a modification removes jump d + bend d^2/2 at the distance d."""
 
     gear: int
     """0 is the pinion, 1 the wheel."""
     position: FloatArray
-    """Flank coordinate on that gear, m; of no dimension, or one per touching point."""
+    """Flank coordinate on that gear, m; a scalar, or one per touching point."""
     side: int
-    """+1 where it runs towards the pinion's tip (the wheel's root), else -1."""
+    """+1 where the modification is towards the pinion's tip (the wheel's root) from here, else -1."""
     jump: FloatArray | float
     bend: FloatArray | float
-    """`jump`, `bend`: 1 and 1/m; arrays where `position` is one."""
+    """`jump`, `bend`: Slope and curvature of the removed depth; 1 and 1/m. Arrays where `position` is one."""
     ends_flank: bool = False
     """Whether the usable flank ends there: a rounded or chamfered tip."""
 
     def distance(self, s_1: FloatArray, s_2: FloatArray) -> FloatArray:
-        """Return how far it is from touching points at these coordinates, m towards the pinion's tip."""
+        """Return its distance in m from points at flank coordinates, positive towards the pinion's tip."""
         return self.position - s_1 if self.gear == 0 else s_2 - self.position
 
-    def height(self, beyond: FloatArray) -> FloatArray:
-        """Return the material removed at distances towards the pinion's tip, m; distances in m."""
-        depth = np.maximum(self.side * beyond, 0.0)
-        return np.asarray(depth * (self.jump + 0.5 * self.bend * depth))
+    def height(self, distance: FloatArray) -> FloatArray:
+        """Return the material removed in m at distances in m from the break, as those of `distance`."""
+        beyond = np.maximum(self.side * distance, 0.0)
+        return np.asarray(beyond * (self.jump + 0.5 * self.bend * beyond))
 
 
 class GapTerm(Protocol):
@@ -51,40 +51,44 @@ class GapTerm(Protocol):
 
     @property
     def only_removes(self) -> bool:
-        """Whether it is nowhere below zero."""
+        """Whether the gap is nowhere below zero."""
 
     @property
     def grids(self) -> tuple[FlankGrid | None, FlankGrid | None]:
-        """Surfaces of pinion and wheel that are in it: they may be rough, and have no breaks."""
+        """Surfaces of pinion and wheel that it contains, which may be rough; they have no breaks."""
 
     def breaks(self, pair: ParallelAxes, face: FloatArray) -> tuple[Break, ...]:
-        """Return where the gap's slope or curvature along the profile jumps.
+        """Return the breaks: where the gap's slope or curvature along the profile jumps.
 
-        At `face`, as many distances (n,) from the pinion's mid-face in m as there are touching points.
+        `face`: Distance of each touching point from the pinion's mid-face (n,), m.
         """
 
     def extent(self, pair: ParallelAxes) -> Extent:
-        """Return bounds of the gap all over the usable flanks."""
+        """Return bounds of the gap over the whole usable flanks."""
 
     def __call__(
         self, pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, face: FloatArray
     ) -> FloatArray:
-        """Gap in m, > 0 where material is missing.
+        """Return the gap in m, > 0 where material is removed.
 
-        Taken at the touching roll lengths of the two flanks, of a gap that does not vary along them at those
-        on the line of action, and at `face`, the distance from the pinion's mid-face, in m; the three
-        broadcast.
+        Parameters
+        ----------
+        roll_1, roll_2 : ndarray
+            Roll lengths at which the two flanks touch, m; those on the line of action for a gap that does not
+            vary along the flanks.
+        face : ndarray
+            Distance from the pinion's mid-face, m. The three arrays broadcast.
         """
 
 
 @dataclass(frozen=True)
 class MeetingTeeth:
-    """Pairs of teeth where they touch; arrays that broadcast."""
+    """Pairs of teeth and the points where they touch; arrays that broadcast."""
 
     pair: ParallelAxes
     meeting: IntArray
-    """Number of the pair that meets, counted from position 0. Meeting 0 is pair 0 at position 0. Meeting k
-    touches at the pitch point at position k, with the k-th next teeth of both gears.
+    """Number of the meeting, counted from position 0: in meeting k, the pair of teeth k after those of
+    meeting 0 on both gears is in contact. It touches at the pitch point at position k.
     """
     roll_1: FloatArray
     roll_2: FloatArray
@@ -104,63 +108,64 @@ class ToothGap(Protocol):
 
     @property
     def gear(self) -> int:
-        """0 of the pinion, 1 of the wheel: its teeth come again after a revolution of that gear."""
+        """The gear: 0 is the pinion, 1 the wheel. Its teeth meet again after a revolution of that gear."""
 
     @property
     def period(self) -> int:
-        """Number of base pitches after which it repeats, also below 0."""
+        """Number of base pitches after which the gap repeats, forwards and backwards."""
 
     @property
     def largest(self) -> float:
-        """Bound of the gap in m, of whichever tooth."""
+        """Bound of the gap of all teeth, m."""
 
     @property
     def extents(self) -> Extent:
-        """Bounds of the gap all over the usable flanks, arrays over the teeth of the gear, or numbers."""
+        """Bounds of the gap over the whole usable flanks: arrays over the teeth of the gear, or scalars."""
 
     def tooth(self, meeting: IntArray) -> IntArray:
-        """Return the numbers of the gear's teeth that meet, the first is 0."""
+        """Return the number of the gear's tooth in each meeting, from 0 on."""
 
     def nodes(self, pair: ParallelAxes, tooth: int) -> FloatArray:
-        """Return roll lengths in m, between two of which the profile of a tooth turns back once at most."""
+        """Return roll lengths in m; the profile of a tooth has at most one extremum between neighbors."""
 
     def __call__(self, teeth: MeetingTeeth) -> FloatArray:
-        """Gap in m, > 0 where material is missing."""
+        """Return the gap in m, > 0 where material is removed."""
 
 
 class ComplianceTerm(Protocol):
     """Compliance of shafts and seats that carry the gears, added to that of teeth and bodies.
 
-    Hashable, so that an assembled problem can be kept with the terms that are in it.
+    A term is hashable, so that assembled problems can be stored under the terms that they contain.
     """
 
     def __call__(
         self, pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, face: FloatArray
     ) -> FloatArray:
-        """Return the normal approach (P, n, n) in m of each candidate per N at each other.
+        """Return the normal approach of each candidate per force on each other (P, n, n), m/N.
 
-        Symmetric and positive semidefinite; taken at the touching roll lengths (P, n) of the two flanks and
-        at `face` (n,), the distance from the pinion's mid-face, in m.
+        It is symmetric and positive semidefinite. `roll_1`, `roll_2`: Roll lengths (P, n) at which the two
+        flanks touch, m. `face`: Distance (n,) from the pinion's mid-face, m.
         """
 
 
 @dataclass(frozen=True)
 class ContactModel:
-    """The composed model; neutral as constructed."""
+    """The composed model; without arguments it has no effect at all."""
 
     couple_teeth: bool = False
-    """Load on one tooth moves its neighbors."""
+    """Whether the load on one tooth moves its neighbors."""
     corner_contact: bool = False
-    """Tip edges may touch off the line of action, before A and after E."""
+    """Whether tip edges may touch off the line of action, before A and after E."""
     across_face: bool = False
-    """Load distributes over the face width: three dimensions instead of the plane."""
+    """Whether the model has the load's distribution over the face width: three dimensions instead of a plane.
+    """
     finite_width: bool = False
     """Whether the plane is corrected for the finite width: the compliance is that of plane strain plus that
     of the free ends. In three dimensions the compliance has both anyway.
     """
     parts: tuple[str, ...] = ()
-    """Parts of the gears' bodies that are in their compliance (`Toothing.with_parts`); without any they are
-    solid, their bores fixed all over.
+    """Parts of the gears' bodies that their compliance includes (`Toothing.with_parts`). Without any the
+    bodies are solid, and their bores fixed all over.
     """
     gaps: tuple[GapTerm, ...] = ()
     tooth_gaps: tuple[ToothGap, ...] = ()
@@ -168,19 +173,19 @@ class ContactModel:
 
     @property
     def sloped(self) -> bool:
-        """Whether flanks slope along their profiles, so that they press off the place of plain involutes."""
+        """Whether gaps vary along the profiles, so that flanks touch elsewhere than plain involutes."""
         return any(term.along_profile for term in self.gaps)
 
     def gap_of_teeth(self, teeth: MeetingTeeth) -> FloatArray:
-        """Sum of the gaps that differ from tooth to tooth, m."""
+        """Return the sum of the gaps that differ from tooth to tooth, m."""
         return np.asarray(sum((term(teeth) for term in self.tooth_gaps), np.zeros(())))
 
     def extent(self, pair: ParallelAxes, meeting: IntArray) -> Extent:
         """Return bounds of all gaps of the pairs of teeth that meet, arrays as `meeting`."""
-        alike = sum((term.extent(pair) for term in self.gaps), Extent())
-        of_teeth = sum((term.extents.at(term.tooth(meeting)) for term in self.tooth_gaps), alike)
-        none = np.zeros(meeting.shape)
-        return of_teeth + Extent(none, none, none)
+        common = sum((term.extent(pair) for term in self.gaps), Extent())
+        of_teeth = sum((term.extents.at(term.tooth(meeting)) for term in self.tooth_gaps), common)
+        zero = np.zeros(meeting.shape)
+        return of_teeth + Extent(zero, zero, zero)
 
     @property
     def period(self) -> int:

@@ -2,9 +2,9 @@
 
 Terms: a contact is a short length of a contact line; q counts the m of them. A curve is a shape of force over
 the face of a tooth pair; the bodies know n of them, and the force of a contact is spread over a few curves
-beside each other. The parts of that spreading are N (m, n). The strip is the width over which a contact is
-pressed flat; the local law takes what lies nearer to it than the reference length. The motion arm a_q is
-the normal approach of contact q per unit deflection, the torque arm b_q its share of the load per unit force.
+beside each other, in the shares N (m, n). The strip is the width over which a contact is pressed flat; the
+local law describes the compliance nearer to it than the reference length. The motion arm a_q is the normal
+approach of contact q per unit deflection, the torque arm b_q its share of the load per unit force.
 
 Find the forces on the curves h (n,) and the deflection d that satisfy
 
@@ -19,7 +19,7 @@ have rows in it. If a = b, the equations are those of the least energy
 
     h'u - W(h) + sum_q Phi_q(a_q d - g_q - (N u)_q) - T d,    dPhi_q = phi_q;
 
-off the line of action a and b differ by a per cent. A whole step may go too far where contacts begin to
+off the line of action a and b differ by one per cent. A whole step may go too far where contacts begin to
 touch; it is then shortened to where the energy along it is least (docs/theory/contact.md).
 """
 
@@ -50,21 +50,27 @@ CONVERGED, ITERATION_LIMIT, SINGULAR, OUT_OF_MODEL = 0, 1, 2, 3
 
 MAX_ITERATIONS = 100
 STEP_TOLERANCE = 1e-11
-"""Largest motion of the last step over the deflection, at which the iteration ends. The error after a Newton
-step goes with the square of the step, so the motions are then exact to rounding.
+"""Largest motion of a step over the deflection, at which the iteration ends.
+
+The error after a step of Newton's method is of the order of the square of the step, so that the motions are
+then exact to rounding.
 """
 STRAIGHT = 1e-8
-"""Largest motion of a step over the deflection, below which `_settle` tries to follow the tangents of the
-local laws and to save their last evaluation.
+"""Largest motion of a step over the deflection, below which `_settle` tries to end the iteration.
+
+It then follows the tangents of the local laws instead of evaluating them once more.
 """
 ROUNDING = 1e-7
 """Largest motion of a step over the deflection, below which steps that no longer shrink count as rounding.
-Bodies with a large tilt reach no smaller steps.
+
+Where bodies have a large tilt the steps do not become smaller than this.
 """
-_CUTS = 30  # trials of a step's length; the last one is taken as it is
+_CUTS = 30
+"""Most trials of a step's length; the last one is accepted in any case."""
 _LEVEL = 0.3
 """Slope of the energy at the end of a step over its slope at the beginning, above which the step is cut."""
-_SHRINKS = 0.1  # a step above this part of the previous one does not shrink as Newton's do
+_SHRINKS = 0.1
+"""Size of a step over the previous one, above which it does not shrink as steps of Newton's method do."""
 
 
 class NewtonSystem(NamedTuple):
@@ -75,10 +81,10 @@ class NewtonSystem(NamedTuple):
     """
 
     member: IntArray
-    """Numbers of the members among all curves, rising. Shape (n,)."""
+    """Indices of the members among all curves, increasing. Shape (n,)."""
     touching: FloatArray
-    """The band of the symmetric N'DN: column c holds the entries of each curve with the one c before it, N/m.
-    A contact spreads over w curves, so that the band is w wide. Shape (n, w).
+    """The band of the symmetric N'DN in N/m: entry (k, c) is that of curves k and k - c. The band has the
+    width w, the number of curves over which a contact spreads. Shape (n, w).
     """
     matrix: FloatArray
     compliance: FloatArray
@@ -89,7 +95,7 @@ class NewtonSystem(NamedTuple):
     """
     shares: FloatArray
     """N'D b of all curves, N/m. Shape (n,)."""
-    left: FloatArray
+    parted_load: FloatArray
     """Forces h - N'F that remain on curves whose contacts have parted, N; zero of members. Shape (n,)."""
 
 
@@ -101,8 +107,8 @@ def empty_system(problem: PointProblem) -> NewtonSystem:
     touching = np.empty((n, problem.curve.shape[1]))
     matrix, compliance = np.empty((n, n)), np.empty((n, n))
     right = np.empty((2, n))
-    shares, left = np.empty(n), np.empty(n)
-    return NewtonSystem(member, touching, matrix, compliance, right, shares, left)
+    shares, parted_load = np.empty(n), np.empty(n)
+    return NewtonSystem(member, touching, matrix, compliance, right, shares, parted_load)
 
 
 @inner(error_model="numpy")
@@ -190,9 +196,9 @@ def _guess(problem: PointProblem, total: float, gap: FloatArray, force: FloatArr
 
 @inner(error_model="numpy")
 def _softness(problem: PointProblem, q: int) -> float:
-    """Return the motion of the bodies at a contact per unit force on it, m/N, an upper bound.
+    """Return an upper bound of the motion of the bodies at a contact per unit force on it, m/N.
 
-    The terms of the sum are taken by their size, as curves may have either sign.
+    It adds the absolute values of all terms, as curves may have either sign.
     """
     first, curve = problem.first[q], problem.curve[q]
     total = 0.0
@@ -208,11 +214,11 @@ def _iterate(
 ) -> tuple[float, float, int, int]:
     """Iterate to the solution; return elastic deflection, tangent, status and iterations.
 
-    Every pass eliminates the forces on the curves, which leaves one equation for the deflection: its
-    stiffness times the step balances the excess of the load and the defect of the curves.
+    Each iteration eliminates the forces on the curves. One equation is left for the deflection: its stiffness
+    times the step balances the excess of the load and the defect of the forces on the curves.
     """
     system = empty_system(problem)
-    change, motion = np.empty((2, state.curve_load.size))  # of a step: forces on the curves, their motions
+    change, motion = np.empty((2, state.curve_load.size))  # changes by a step: of curve loads, of motions
     tangent = math.nan
     last = math.inf  # largest motion of the last step, m
     for iteration in range(1, MAX_ITERATIONS + 1):
@@ -227,7 +233,7 @@ def _iterate(
             return math.nan, math.nan, SINGULAR, iteration
         tangent = 1.0 / stiff
         step = -(excess + residual) * tangent
-        change[:] = state.pressed - state.curve_load  # moves h to N'F, also of curves that nothing touches
+        change[:] = state.pressed - state.curve_load  # to N'F, also on curves whose contacts have parted
         for r in range(size):
             change[system.member[r]] = step * system.right[0, r] + system.right[1, r]
         yield_to(state.yielding, change, motion)
@@ -272,8 +278,8 @@ def _condensed(problem: PointProblem, state: State, system: NewtonSystem, size: 
     """Return stiffness and defect of the load after the curves are eliminated, N/m and N.
 
     The stiffness is that of contacts on rigid bodies, less b'D N K times the solution of the members for a
-    unit step (row 0). The defect is the change of the load by the solution of row 1 and by the forces left on
-    parted curves.
+    unit step (row 0). The defect is the change of the load by the solution of row 1 and by the forces that
+    remain on parted curves.
     """
     stiff = stiffness(problem, state)
     residual = 0.0
@@ -283,7 +289,7 @@ def _condensed(problem: PointProblem, state: State, system: NewtonSystem, size: 
                 yielding = system.shares[r] * state.yielding[r, system.member[s]]
                 stiff -= yielding * system.right[0, s]
                 residual -= yielding * system.right[1, s]
-            residual += system.shares[r] * dot(state.yielding[r], system.left, system.left.size)
+            residual += system.shares[r] * dot(state.yielding[r], system.parted_load, system.parted_load.size)
     return stiff, residual
 
 
@@ -316,15 +322,16 @@ def _advance(
         evaluate(problem, gap, elastic, state)
         rise = (dot(problem.torque_arm, state.force, gap.size) - total) * step
         rise += dot(motion, state.curve_load - state.pressed, motion.size)
-        # Accept the length if the energy does not fall along the step at all (rounding), if it is level
-        # enough there, or if it still falls at the whole step.
+        # Accept the length if the energy does not fall even at the beginning (rounding), if its slope is
+        # small
+        # enough at this length, or if it still falls at the end of the whole step.
         if not fall < 0.0 or abs(rise) <= -_LEVEL * fall or (rise < 0.0 and high == math.inf):
             break
         if rise > 0.0:
             high, at_high = length, rise
         else:
             low, at_low = length, rise
-        # Secant between the two slopes, at least a tenth of the interval away from either end.
+        # Take the zero of the secant through the two slopes, but stay a tenth of the interval from its ends.
         length = low + min(max(at_low / (at_low - at_high), 0.1), 0.9) * (high - low)
     return elastic
 
@@ -332,27 +339,27 @@ def _advance(
 @inner(error_model="numpy")
 def newton_system(problem: PointProblem, state: State, system: NewtonSystem) -> int:
     """Fill in Newton's equations; return the number of curves over contacts that touch."""
-    # By curve: N'D a in N/m, of all curves; motion in m by the forces left on parted curves, of members.
+    # N'D a in N/m of all curves; motion in m of the members by the forces that remain on parted curves
     pulled, pushed = np.zeros((2, state.curve_load.size))
     fill_yielding(problem, state)
     _touching(problem, state, system, pulled)
-    left, member = system.left, system.member
+    parted_load, member = system.parted_load, system.member
     size = 0
-    left[:] = 0.0
-    for k in range(left.size):
+    parted_load[:] = 0.0
+    for k in range(parted_load.size):
         if system.touching[k, 0] > 0.0:
             member[size] = k
             size += 1
         else:
-            left[k] = state.curve_load[k] - state.pressed[k]
-    any_left, width = left.any(), system.touching.shape[1]
+            parted_load[k] = state.curve_load[k] - state.pressed[k]
+    any_parted, width = parted_load.any(), system.touching.shape[1]
     for r in range(size):
         i = member[r]
         for s in range(size):
             system.compliance[r, s] = state.yielding[i, member[s]]
         system.right[0, r] = pulled[i]
         system.right[1, r] = state.pressed[i] - state.curve_load[i]
-        pushed[r] = dot(state.yielding[i], left, left.size) if any_left else 0.0
+        pushed[r] = dot(state.yielding[i], parted_load, parted_load.size) if any_parted else 0.0
     for r in range(size):
         row = system.matrix[r, :size]
         row[:] = 0.0
@@ -371,7 +378,7 @@ def newton_system(problem: PointProblem, state: State, system: NewtonSystem) -> 
 def _touching(problem: PointProblem, state: State, system: NewtonSystem, pulled: FloatArray) -> None:
     """Fill in N'DN by its diagonals, `pulled` = N'D a and `shares` = N'D b, of all curves.
 
-    The axes of `touching` are curve and distance to an earlier curve: N'DN is symmetric, so b runs up to a.
+    `touching` holds one half of the symmetric N'DN, so that b runs up to a only.
     """
     touching, shares = system.touching, system.shares
     touching[:], shares[:] = 0.0, 0.0
@@ -395,9 +402,9 @@ def _residuals(
     state: State,
     residual: FloatArray,
 ) -> bool:
-    """Fill in the four residuals of the solution; return whether any strip outgrew the reference length.
+    """Fill `residual` (4,); return whether any strip is wider than the reference length allows.
 
-    In order: 0 equilibrium, 1 penetration, 2 tension, 3 complementarity.
+    The residuals are those of equilibrium, penetration, tension and complementarity, in this order.
     """
     residual[:] = 0.0
     any_beyond = False

@@ -43,11 +43,11 @@ class Touch:
     offset: FloatArray
     jump: FloatArray
     bend: FloatArray
-    """`offset`, `jump`, `bend`: Breaks of the gap: place, slope and curvature from there on. Shape (P, n, B)
-    each.
+    """`offset`, `jump`, `bend`: Position of each break of the gap, and slope and curvature added beyond it;
+    see `strip.Gap`. Shape (P, n, B) each.
     """
     shift: FloatArray
-    """Way by which modifications move the touching point, or the middle of the strip, towards tip 1, m."""
+    """Distance by which modifications move the touching point, or the strip's middle, towards tip 1, m."""
     approach_error: FloatArray
     """Error of the approach on rough flanks; see `RoughStrip`."""
     lag: FloatArray
@@ -70,7 +70,7 @@ class Touch:
 
     @property
     def offset_2(self) -> FloatArray:
-        """The same at the tip edge of gear 2."""
+        """Arc distance to the tip edge of gear 2, m; negative as `offset_1`."""
         return np.where(self.low < 0.0, -self.low, -np.maximum(self.slope, 0.0) / self.curvature)
 
     @property
@@ -92,52 +92,53 @@ class Touch:
 
 
 def conjugate_touch(pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, corners: bool) -> Touch:
-    """Touching points of plain involutes.
+    """Return the touching points of plain involutes.
 
     Parameters
     ----------
     roll_1, roll_2 : ndarray, shape (P, n)
-        Nominal roll lengths, m; beyond A and E too.
+        Nominal roll lengths, also before A and after E, m.
     corners : bool
         Whether tip edges may touch before A and after E.
     """
     tip_1, tip_2 = pair.pinion.tip_roll_length, pair.wheel.tip_roll_length
     beyond_1, beyond_2 = roll_1 - tip_1, pair.wheel.sign * (roll_2 - tip_2)
     gap = np.where((beyond_1 <= 0.0) & (beyond_2 <= 0.0), 0.0, np.inf)
-    touched_1 = np.clip(roll_1, pair.path_of_contact.start, tip_1)
+    touch_roll_1 = np.clip(roll_1, pair.path_of_contact.start, tip_1)
     ends_2 = float(pair.mating_roll_length(pair.path_of_contact.end)), tip_2
-    touched_2 = np.clip(roll_2, min(ends_2), max(ends_2))
+    touch_roll_2 = np.clip(roll_2, min(ends_2), max(ends_2))
     lever_1, lever_2 = np.ones((2, *gap.shape))
     opening_1, opening_2 = np.zeros((2, *gap.shape))
     sides: tuple[tuple[Side, FloatArray, FloatArray, FloatArray], ...] = (
-        ("approach", beyond_2, touched_1, opening_2),
-        ("exit", beyond_1, touched_2, opening_1),
+        ("approach", beyond_2, touch_roll_1, opening_2),
+        ("exit", beyond_1, touch_roll_2, opening_1),
     )
-    for side, overshoot, touched, opening in sides if corners else ():
+    for side, overshoot, touch_roll, opening in sides if corners else ():
         at = np.nonzero(overshoot > 0.0)
         corner = corner_contact(pair, side, overshoot[at])
         valid = tuple(index[corner.valid] for index in at)
-        gap[valid], touched[valid] = corner.gap[corner.valid], corner.flank_roll_length[corner.valid]
+        gap[valid], touch_roll[valid] = corner.gap[corner.valid], corner.flank_roll_length[corner.valid]
         opening[valid] = corner.slope_angle[corner.valid]
         lever_1[valid] = corner.lever_arm_ratio_pinion[corner.valid]
         lever_2[valid] = corner.lever_arm_ratio_wheel[corner.valid]
-    radius = _relative_radius(pair, touched_1, touched_2)
-    s_1, s_2 = pair.pinion.flank_coordinate(touched_1), pair.wheel.flank_coordinate(touched_2)
+    radius = _relative_radius(pair, touch_roll_1, touch_roll_2)
+    s_1, s_2 = pair.pinion.flank_coordinate(touch_roll_1), pair.wheel.flank_coordinate(touch_roll_2)
     high = pair.pinion.flank_coordinate(tip_1) - s_1
     low = s_2 - pair.wheel.flank_coordinate(tip_2)
-    none, plain = np.zeros((*gap.shape, 0)), np.zeros(gap.shape)
+    no_breaks, zero = np.zeros((*gap.shape, 0)), np.zeros(gap.shape)
     return Touch(
         s_1, s_2, gap, radius, lever_1, lever_2,
-        opening_2 - opening_1, 1.0 / radius, np.minimum(low, 0.0), np.maximum(high, 0.0), none, none, none,
-        plain, plain, _lag_at_edges(pair, lever_1, lever_2), plain, plain, plain, plain, roll_1,
+        opening_2 - opening_1, 1.0 / radius, np.minimum(low, 0.0), np.maximum(high, 0.0),
+        no_breaks, no_breaks, no_breaks,
+        zero, zero, _lag_at_edges(pair, lever_1, lever_2), zero, zero, zero, zero, roll_1,
     )  # fmt: skip
 
 
 def _lag_at_edges(pair: ParallelAxes, lever_1: FloatArray, lever_2: FloatArray) -> FloatArray:
     """Return the lag of gear 2 (P, n) that closes a depth removed at tip edges, over that depth; 1 elsewhere.
 
-    The edge of a flank is removed along its normal, which the angle between the flanks takes off the normal
-    of the mate; and of a lag of gear 2 its edge closes the part of the lever arm only.
+    An edge is removed along the normal of its own flank, which the angle between the flanks turns from the
+    normal of the mate. A lag of gear 2 closes the gap at an edge times the lever arm only.
     """
     lag = np.ones(lever_2.shape)
     at = np.nonzero((lever_1 != 1.0) | (lever_2 != 1.0))
@@ -148,7 +149,7 @@ def _lag_at_edges(pair: ParallelAxes, lever_1: FloatArray, lever_2: FloatArray) 
 
 
 def _angle_at_edge(gear: Toothing, lever: FloatArray) -> FloatArray:
-    """Return the angle in rad between the normal of a flank at its tip edge and a force of this lever arm."""
+    """Return the angle in rad between a flank's normal at its tip edge and a force of a given lever arm."""
     arm = gear.base_radius / gear.tip_radius
     return np.asarray(np.arccos(lever * arm) - np.arccos(arm))
 
@@ -156,8 +157,8 @@ def _angle_at_edge(gear: Toothing, lever: FloatArray) -> FloatArray:
 def _relative_radius(pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray) -> FloatArray:
     """Return the relative radius of curvature in m, at most `FLAT` base radii of gear 2.
 
-    Off the line of action the edge of a ring gear may meet its pinion where the pinion is the flatter one:
-    flanks that part at the edge would close in again further away. There they count as flat.
+    Off the line of action the edge of a ring gear may touch the pinion where the pinion has less curvature:
+    flanks that open from the edge would approach each other again further away. There they count as flat.
     """
     flattest = FLAT * pair.wheel.base_radius
     radius = relative_radius(roll_1, pair.wheel.sign * roll_2)

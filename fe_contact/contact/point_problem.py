@@ -54,8 +54,8 @@ class PointProblems(NamedTuple):
 def point_problems(problem: ContactProblem) -> PointProblems:
     """Return the positions of a contact problem, row by row in memory.
 
-    Compiled code is made anew for every order of every array: in the order that candidates happen to have,
-    the solver was compiled up to eight times, some four seconds each.
+    The compiler makes new code for every memory order of every array: in the orders that candidates happen to
+    have, it compiled the solver up to eight times, some four seconds each.
     """
     c, rows = problem.candidates, np.ascontiguousarray
     first, second = problem.half_planes
@@ -88,7 +88,7 @@ class PointProblem(NamedTuple):
     (0, 0) where no radius is above zero.
     """
     radius: FloatArray
-    """Way of the strip per tilt of the flanks, m. Shape (n,)."""
+    """Motion of the strip per tilt of the flanks, m. Shape (n,)."""
     edge: FloatArray
     """Tables of `EdgeStrips`. Shape (n, 8)."""
     curve: FloatArray
@@ -110,11 +110,11 @@ class PointProblem(NamedTuple):
 class RowBodies(NamedTuple):
     """Arrays that all problems of one row of bodies have in common."""
 
-    there: BoolArray
+    present: BoolArray
     """Slices that any contact can press on. Shape (n,)."""
     compliance: FloatArray
     tilt: FloatArray
-    """`compliance`, `tilt`: Arrays `bodies` and `tilt` of `PointProblem`, for all slices of `there`."""
+    """`compliance`, `tilt`: Arrays `bodies` and `tilt` of `PointProblem`, for all slices of `present`."""
     curve: FloatArray
     first: IntArray
     """`curve`, `first`: Arrays of `PointProblem` for the points of one pair. Shapes (points, w), (points,).
@@ -122,65 +122,77 @@ class RowBodies(NamedTuple):
 
 
 @inner(error_model="numpy")
-def row_bodies(every: PointProblems, row: int) -> RowBodies:
-    """Return the arrays that all positions of row `row` share, in any base pitch."""
-    there = every.present[row]
-    slices = np.flatnonzero(there)
-    motion, tilt = every.bodies[row][slices][:, slices], np.zeros((0, 0))
-    motion = _turned(every.heights, _turned(every.heights, motion))
-    if every.tilt.size:
-        tilt = _turned(every.heights, _turned(every.heights, every.tilt[row][slices][:, slices]))
-    curve, first = _banded(every.curves)
-    return RowBodies(there, motion, tilt, curve, first)
+def row_bodies(problems: PointProblems, row: int) -> RowBodies:
+    """Return the arrays that positions have in common whose bodies are in row `row`, in any base pitch."""
+    present = problems.present[row]
+    slices = np.flatnonzero(present)
+    motion, tilt = problems.bodies[row][slices][:, slices], np.zeros((0, 0))
+    motion = _by_curves(problems.heights, _by_curves(problems.heights, motion))
+    if problems.tilt.size:
+        tilt = _by_curves(
+            problems.heights, _by_curves(problems.heights, problems.tilt[row][slices][:, slices])
+        )
+    curve, first = _banded(problems.curves)
+    return RowBodies(present, motion, tilt, curve, first)
 
 
 @inner(error_model="numpy")
-def problem_at(every: PointProblems, p: int) -> tuple[PointProblem, IntArray]:
+def problem_at(problems: PointProblems, p: int) -> tuple[PointProblem, IntArray]:
     """Return the problem of a position, and its contacts among all candidates."""
-    return problem_on(every, row_bodies(every, p % every.bodies.shape[0]), p)
+    return problem_on(problems, row_bodies(problems, p % problems.bodies.shape[0]), p)
 
 
 @inner(error_model="numpy")
-def problem_on(every: PointProblems, bodies: RowBodies, p: int) -> tuple[PointProblem, IntArray]:
+def problem_on(problems: PointProblems, bodies: RowBodies, p: int) -> tuple[PointProblem, IntArray]:
     """Return the problem of a position on the bodies of its row, and its contacts among all candidates."""
-    row, (points, count) = p % every.bodies.shape[0], every.curves.shape
-    pairs = np.cumsum(bodies.there[::count]) - 1  # of all pairs among those that are there
-    touching = np.flatnonzero(~(every.gap[p] == np.inf))  # also those that are not a number
-    radius = every.radius[p % every.radius.shape[0]][bodies.there]
+    row, (points, count) = p % problems.bodies.shape[0], problems.curves.shape
+    pairs = np.cumsum(bodies.present[::count]) - 1  # index of each pair among those present
+    touching = np.flatnonzero(~(problems.gap[p] == np.inf))  # NaN counts as touching, so as not to be hidden
+    radius = problems.radius[p % problems.radius.shape[0]][bodies.present]
     law = local_law(
-        every.about[p][touching], every.width[p][touching], every.modulus[row][touching], every.length
+        problems.about[p][touching],
+        problems.width[p][touching],
+        problems.modulus[row][touching],
+        problems.length,
     )
-    law.strip[:, REFERENCE_LENGTH] = every.lengths[row][touching]
+    law.strip[:, REFERENCE_LENGTH] = problems.lengths[row][touching]
     point = touching % points
     first = pairs[touching // points] * count + bodies.first[point]
-    arms = every.motion_arm[p][touching], every.torque_arm[p][touching]
-    edge = every.edge[p % every.edge.shape[0]][bodies.there]
+    arms = problems.motion_arm[p][touching], problems.torque_arm[p][touching]
+    edge = problems.edge[p % problems.edge.shape[0]][bodies.present]
     of_bodies = bodies.compliance, bodies.tilt, radius, edge
-    return PointProblem(*of_bodies, bodies.curve[point], first, every.gap[p][touching], *arms, law), touching
+    gap = problems.gap[p][touching]
+    return PointProblem(*of_bodies, bodies.curve[point], first, gap, *arms, law), touching
 
 
 @inner(error_model="numpy")
-def _turned(heights: FloatArray, motion: FloatArray) -> FloatArray:
-    """Return the heights (r, n) of the curves of all pairs for motions (n, r) of their slices."""
-    count, turned = heights.shape[0], np.empty(motion.shape)
+def _by_curves(heights: FloatArray, motion: FloatArray) -> FloatArray:
+    """Return the heights (r, n) of the curves of all pairs for motions (n, r) of their slices, transposed.
+
+    Twice applied, it turns the compliance of slices into that of curves.
+    """
+    count, curve_heights = heights.shape[0], np.empty(motion.shape)
     for first in range(0, motion.shape[0], count):
-        np.dot(heights, motion[first : first + count], turned[first : first + count])
-    return np.ascontiguousarray(turned.T)
+        np.dot(heights, motion[first : first + count], curve_heights[first : first + count])
+    return np.ascontiguousarray(curve_heights.T)
 
 
 @inner(error_model="numpy")
 def _banded(curves: FloatArray) -> tuple[FloatArray, IntArray]:
-    """Return the curves (points, w) that are not zero at each point, and which is the first of them."""
+    """Return the values of w neighboring curves at each point (points, w), and the index of the first.
+
+    All other curves are zero at the point.
+    """
     points, count = curves.shape
     first, width = np.zeros(points, dtype=np.int64), 1
-    for i in range(points):
-        there = np.flatnonzero(curves[i])
-        first[i], width = there[0], max(width, there[-1] - there[0] + 1)
+    for point in range(points):
+        nonzero = np.flatnonzero(curves[point])
+        first[point], width = nonzero[0], max(width, nonzero[-1] - nonzero[0] + 1)
     first = np.minimum(first, count - width)
-    columns = np.empty((points, width))
-    for i in range(points):
-        columns[i] = curves[i, first[i] : first[i] + width]
-    return columns, first
+    curves_at_points = np.empty((points, width))
+    for point in range(points):
+        curves_at_points[point] = curves[point, first[point] : first[point] + width]
+    return curves_at_points, first
 
 
 class State(NamedTuple):
@@ -203,9 +215,9 @@ class State(NamedTuple):
 
 @inner(error_model="numpy")
 def pressed_state(problem: PointProblem, force: FloatArray) -> State:
-    """Return a state with the forces (m,) of the contacts on the curves; what they move is still missing."""
+    """Return a state with the forces (m,) of the contacts on the curves; displacements are still zero."""
     n, m = problem.bodies.shape[0], force.size
-    yielding = np.zeros((n, n)) if problem.tilt.size else problem.bodies  # it stays where no flank rolls
+    yielding = np.zeros((n, n)) if problem.tilt.size else problem.bodies  # a constant where no flank rolls
     state = State(np.zeros(n), np.zeros(n), yielding, force, np.zeros(m), np.zeros(n))
     press(problem, force, state.pressed)
     state.curve_load[:] = state.pressed
@@ -214,7 +226,10 @@ def pressed_state(problem: PointProblem, force: FloatArray) -> State:
 
 @inner(error_model="numpy")
 def evaluate(problem: PointProblem, gap: FloatArray, elastic: float, state: State) -> None:
-    """Fill in forces and slopes of the contacts, and the forces on the curves, under the motions."""
+    """Fill in forces and slopes of the contacts, and the forces on the curves, at the displacements.
+
+    `gap`: Normal gaps (m,), m. `elastic`: Deflection of the driven gear, m.
+    """
     law, arm, motion = problem.law, problem.motion_arm, motions(problem, state.displacement)
     for q in range(gap.size):
         state.force[q], state.slope[q] = force_at(law, q, arm[q] * elastic - gap[q] - motion[q])
@@ -222,30 +237,30 @@ def evaluate(problem: PointProblem, gap: FloatArray, elastic: float, state: Stat
 
 
 @inner(error_model="numpy")
-def press(problem: PointProblem, force: FloatArray, out: FloatArray) -> None:
-    """Fill in the forces of the contacts on the curves."""
-    out[:] = 0.0
+def press(problem: PointProblem, force: FloatArray, pressed: FloatArray) -> None:
+    """Fill `pressed` (n,) with the forces on the curves under forces (m,) of the contacts, N."""
+    pressed[:] = 0.0
     for q in range(force.size):
         if force[q] != 0.0:
             for a in range(problem.curve.shape[1]):
-                out[problem.first[q] + a] += problem.curve[q, a] * force[q]
+                pressed[problem.first[q] + a] += problem.curve[q, a] * force[q]
 
 
 @inner(error_model="numpy")
-def motions(problem: PointProblem, of_slices: FloatArray) -> FloatArray:
-    """Return the motions of the bodies at the contacts (m,) from those of the curves, m."""
+def motions(problem: PointProblem, curve_heights: FloatArray) -> FloatArray:
+    """Return the motions of the bodies at the contacts (m,) from the heights (n,) of the curves, m."""
     curve, first, out = problem.curve, problem.first, np.empty(problem.first.size)
     for q in range(out.size):
         value = 0.0
         for a in range(curve.shape[1]):
-            value += curve[q, a] * of_slices[first[q] + a]
+            value += curve[q, a] * curve_heights[first[q] + a]
         out[q] = value
     return out
 
 
 @inner(error_model="numpy")
 def stiffness(problem: PointProblem, state: State) -> float:
-    """Return how fast the contacts take load as the gear moves, N/m."""
+    """Return the growth of the load on the contacts per deflection of the driven gear, N/m."""
     value = 0.0
     for q in range(state.slope.size):
         value += problem.torque_arm[q] * state.slope[q] * problem.motion_arm[q]

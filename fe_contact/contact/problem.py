@@ -183,29 +183,29 @@ class Candidates:
         """Gap about the touching points in the normal section, arrays (P, m) and (P, m, B)."""
         return self.gap_at(...)
 
-    def gap_at(self, places: Any) -> Gap:
-        """Return the gap about some of the candidates, by an index of arrays (P, m)."""
+    def gap_at(self, index: Any) -> Gap:
+        """Return the gap about some of the candidates, which `index` selects from arrays (P, m)."""
         normal, touch = math.cos(self.base_helix_angle), self.touch
         return Gap(
-            touch.slope[places] * normal,
-            touch.curvature[places] * normal,
-            touch.low[places],
-            touch.high[places],
-            touch.offset[places],
-            touch.jump[places] * normal,
-            touch.bend[places] * normal,
+            touch.slope[index] * normal,
+            touch.curvature[index] * normal,
+            touch.low[index],
+            touch.high[index],
+            touch.offset[index],
+            touch.jump[index] * normal,
+            touch.bend[index] * normal,
         )
 
     @cached_property
     def strips(self) -> StripMiddles:
-        """Middles of strips under one two-hundredth of the largest load, arrays (P, m)."""
+        """Middles of strips under a load small enough that they hardly depend on it, arrays (P, m)."""
         return StripMiddles(
             *(values.reshape(self.gap.shape) for values in strip_middles(*self._small_strips))
         )
 
     @property
     def rolling_radius(self) -> FloatArray:
-        """Way of the middles of small strips back from tip 1 per tilt of the flanks (P, m), m."""
+        """Motion of the middles of small strips away from tip 1, per tilt of the flanks (P, m), m."""
         return rolling_radii(*self._small_strips).reshape(self.gap.shape)
 
     @cached_property
@@ -226,10 +226,10 @@ class Candidates:
         return self.touch.lever_1
 
     def on_mean(self, values: FloatArray) -> FloatArray:
-        """Return values (P, m) of the candidates on the mean of each slice (P, n), of those that exist."""
-        there = np.isfinite(self.gap).reshape(len(values), self.slices.pair.size, -1)
-        total = np.where(there, values.reshape(there.shape), 0.0).sum(axis=2)
-        return np.asarray(total / np.maximum(there.sum(axis=2), 1))
+        """Return the means (P, n) of values (P, m) over the candidates of each slice that exist."""
+        can_touch = np.isfinite(self.gap).reshape(len(values), self.slices.pair.size, -1)
+        total = np.where(can_touch, values.reshape(can_touch.shape), 0.0).sum(axis=2)
+        return np.asarray(total / np.maximum(can_touch.sum(axis=2), 1))
 
     def on_slices(self, force: FloatArray) -> FloatArray:
         """Return forces (..., m) of the candidates as forces (..., n) on the slices."""
@@ -258,9 +258,12 @@ class Candidates:
         return replace(self, touch=touch)
 
     def following(self, touch: Touch) -> Candidates:
-        """Return the candidates with touching points whose `shift` is that of the middles of strips."""
-        there = self.touching(touch)
-        return self.touching(replace(touch, shift=touch.shift + there.strips.middle - self.strips.middle))
+        """Return the candidates with other touching points, and patches moved with the middles of strips.
+
+        The motion of a middle from this gap to the other adds to the `shift` of `touch`.
+        """
+        moved = self.touching(touch)
+        return self.touching(replace(touch, shift=touch.shift + moved.strips.middle - self.strips.middle))
 
 
 @dataclass(frozen=True)
@@ -282,9 +285,9 @@ class ContactProblem:
     half_plane_2: float
     """`half_plane_1`, `half_plane_2`: 2 (1 - nu^2)/(pi E) of the gears, 1/Pa."""
     tilt: FloatArray = field(default_factory=lambda: np.zeros((0, 0, 0)))
-    """Growth of the compliance per way of the patches of slice i towards tip 1, 1/N: a unit force on slice j
-    tilts the flanks at slice i by it. Patches follow the slope of the flanks by it, and in the plane also
-    their tilt. Ndarray, shape (Q, n, n), or (0, 0, 0) where patches stay.
+    """Tilt of the flanks at slice i per force on slice j, 1/N. It is also the growth of the compliance per
+    motion of the patches of slice i towards tip 1. Patches move with the slope of the flanks, and in the
+    plane also with their tilt. Ndarray, shape (Q, n, n), or (0, 0, 0) where patches stay.
     """
     share_1: FloatArray | float = 0.5
     """Part of gear 1 in the compliance of each slice. Ndarray, shape (Q, n), or float."""
@@ -296,35 +299,39 @@ class ContactProblem:
 
     @cached_property
     def bodies(self) -> FloatArray:
-        """The compliance (Q, n, n) without what load patches move within the reference length, m/N.
+        """The compliance (Q, n, n) without the approach nearer to the strips than the reference length, m/N.
 
-        That is k [ln(l/a) + e(a) - e(l)]/w of each gear on slices of the width w, e that of free ends: in the
-        local law instead. Normals that turn within a strip add to one gear what they take from the other,
-        unless materials are unlike. Patches are displaced to where modified flanks press, by no more than
-        that length; that slope turns forces, lever arms and motions (`turned_by`).
+        The local law has that part. It is k [ln(l/a) + e(a) - e(l)]/w of each gear on slices of the width w,
+        where a is the half width of the load patch, l the reference length and e the excess of
+        `fe_contact.contact.free_end`. Normals that turn within a strip add to one gear as much as they take
+        from the other, unless the materials differ. Patches are displaced to where modified flanks press, by
+        no more than the reference length; the slope there turns forces, lever arms and motions
+        (`turned_by`).
         """
         slices = self.candidates.slices
         k_1, k_2 = self.half_planes
         patch_1, patch_2 = slices.patch_1.law_width, slices.patch_2.law_width
-        near = k_1 * (np.log(slices.law_length / patch_1) + self._end_excess(slices.end_1, patch_1))
-        near = near + k_2 * (np.log(slices.law_length / patch_2) + self._end_excess(slices.end_2, patch_2))
+        local = k_1 * (np.log(slices.law_length / patch_1) + self._end_excess(slices.end_1, patch_1))
+        local = local + k_2 * (np.log(slices.law_length / patch_2) + self._end_excess(slices.end_2, patch_2))
         lateral_1, lateral_2 = slices.lateral_shares
-        near = near - (k_1 * lateral_1 - k_2 * lateral_2) * slices.turned_normals
-        near = slices.mean(near) / slices.width
+        local = local - (k_1 * lateral_1 - k_2 * lateral_2) * slices.turned_normals
+        local = slices.mean(local) / slices.width
         compliance, diagonal = self.compliance.copy(), np.arange(slices.pair.size)
         if self.tilt.size and self.candidates.touch.shift.any():
-            way = np.clip(self.candidates.touch.shift, -slices.law_length, slices.law_length)
-            _displace(compliance, self.tilt, self.candidates.on_mean(way))
-        compliance[:, diagonal, diagonal] -= np.where(slices.present, near, 0.0)
+            shift = np.clip(self.candidates.touch.shift, -slices.law_length, slices.law_length)
+            _displace(compliance, self.tilt, self.candidates.on_mean(shift))
+        compliance[:, diagonal, diagonal] -= np.where(slices.present, local, 0.0)
         touch = self.candidates.touch
         if touch.slope_1.any() or touch.slope_2.any():
-            turned = self.turned_by(*(self.candidates.on_mean(s) for s in (touch.slope_1, touch.slope_2)))
-            turned = turned[: len(compliance)]
-            compliance *= 1.0 + turned[:, :, None] + turned[:, None, :]
+            change = self.turned_by(*(self.candidates.on_mean(s) for s in (touch.slope_1, touch.slope_2)))
+            change = change[: len(compliance)]
+            compliance *= 1.0 + change[:, :, None] + change[:, None, :]
         return compliance
 
     def turned_by(self, slope_1: FloatArray, slope_2: FloatArray) -> FloatArray:
-        """Return the part (P, n) by which slopes of flanks (P, n) change motions of the bodies, either side.
+        """Return the relative change (P, n) that slopes of flanks (P, n) add to the compliance by each slice.
+
+        The compliance between slices i and j changes by the sum of the values at i and at j.
 
         A flank of slope s presses along a normal whose lever arm is 1 - s of that on a plain one: forces grow
         by 1 + s_1 under the same torque, and lags by 1 + s_2 for the same approach. Along that normal a body
@@ -338,18 +345,18 @@ class ContactProblem:
     def law_length(self) -> FloatArray:
         """Reference length of the local law of each candidate (Q, m), m: greater near free ends.
 
-        There the strip gives way more by k p [e(h) - e(l)]: as much as by a longer reference length. Its half
-        width h is a usual one: the length is the same whatever loads are asked together.
+        Near a free end the approach is greater by k p [e(h) - e(l)], as with a longer reference length. h is
+        a usual half strip instead of the real one, so that the length does not depend on the load.
         """
         slices, (first, second) = self.candidates.slices, self.half_planes
         if slices.endless:
             return np.full(first.shape, slices.law_length)
         strip = _USUAL_STRIP * self.candidates.radius[: len(first)]
-        more = self._end_excess(slices.end_1, strip)
+        excess = self._end_excess(slices.end_1, strip)
         if slices.end_2 != slices.end_1:
             of_second = second / (first + second)
-            more = (1.0 - of_second) * more + of_second * self._end_excess(slices.end_2, strip)
-        return np.asarray(slices.law_length * np.exp(more))
+            excess = (1.0 - of_second) * excess + of_second * self._end_excess(slices.end_2, strip)
+        return np.asarray(slices.law_length * np.exp(excess))
 
     def _end_excess(self, ends: FreeEnds, strip: FloatArray) -> FloatArray:
         """Return e of half strips (Q, m) less that of the reference length."""
@@ -363,13 +370,14 @@ class ContactProblem:
     def rolling(self) -> FloatArray:
         """The `tilt` by which flanks roll under load, in the plane; empty over the face.
 
-        Over the face rolling moves STE by up to 0.01 um, and makes a solution half as long again.
+        With several slices along the face rolling changes STE by up to 0.01 um, and a solution takes 1.5
+        times as long.
         """
         return self.tilt if len(self.candidates.heights) == 1 else self.tilt[:0, :0, :0]
 
     @property
     def radius(self) -> FloatArray:
-        """Way of the middles of strips back from tip 1 per tilt of rolling flanks, m.
+        """Motion of the middles of strips away from tip 1 per tilt of rolling flanks, m.
 
         The shape is (P, n), one row a position; zeros (Q, n) where no flank rolls.
         """
@@ -379,11 +387,11 @@ class ContactProblem:
 
     @property
     def edges(self) -> FloatArray:
-        """Table (Q, n, 8) of `EdgeStrips`; (1, n, 8) without any where no flank rolls.
+        """Table (Q, n, 8) of `EdgeStrips`; where no flank rolls, a table (1, n, 8) that has no edge.
 
-        It is that of plain flanks: what modifications displace, they displace with its patch. Flanks that
-        open from an edge in some base pitch press there, not where plain ones touch: the table is (P, n, 8)
-        then.
+        It is that of plain flanks, since modifications displace a strip together with its patch. Modified
+        flanks whose gap opens from an edge at some position press at the edge, and not where plain ones
+        touch: then the table is (P, n, 8).
         """
         slices, touch = self.candidates.slices, self.candidates.slices.touch
         if not self.rolling.size:
@@ -391,29 +399,30 @@ class ContactProblem:
         first = touch.offset_1 < touch.offset_2
         patches, planes = (slices.patch_1, slices.patch_2), (self.half_plane_1, self.half_plane_2)
         corners = planes[0] * (slices.corner_1 - 1.0), planes[1] * (slices.corner_2 - 1.0)
-        near_1, near_2 = self.half_planes
-        at_tip, half, distance, in_law, length = (
+        under_1, under_2 = self.half_planes
+        at_tip, half, distance, at_edge, length = (
             np.where(first, *(getattr(patch, name) for patch in patches))
             for name in ("at_tip", "half_width", "edge_distance", "at_edge", "law_width")
         )
-        away = np.minimum(touch.offset_1, touch.offset_2)
+        nearest = np.minimum(touch.offset_1, touch.offset_2)
         strips = EdgeStrips(
-            side=np.where(away < EDGE_REACH * half, np.where(first, -1.0, 1.0), 0.0),
-            offset=away,
+            side=np.where(nearest < EDGE_REACH * half, np.where(first, -1.0, 1.0), 0.0),
+            offset=nearest,
             radius=touch.radius,
-            softness=2.0 * (near_1 + near_2) / slices.width,
-            patch=np.where(at_tip, distance, away),
-            missing=1.0 - in_law,
+            softness=2.0 * (under_1 + under_2) / slices.width,
+            patch=np.where(at_tip, distance, nearest),
+            missing=1.0 - at_edge,
             corner=np.where(first, *corners) / slices.width,
-            length=np.where(at_tip, length, away),
+            length=np.where(at_tip, length, nearest),
         )
         table = edge_table(strips, slices.present)
-        at_edge = self._opening_from_edge(first)
-        held = (at_edge < 0.0) & (np.resize(away, at_edge.shape) > 0.0)
-        if not held.any():
+        offset = self._opening_from_edge(first)
+        opens_from_edge = (offset < 0.0) & (np.resize(nearest, offset.shape) > 0.0)
+        if not opens_from_edge.any():
             return table
-        table = np.resize(table, (*at_edge.shape, table.shape[2]))
-        table[..., OFFSET] = np.where(held & (table[..., SIDE] != 0.0), at_edge, table[..., OFFSET])
+        table = np.resize(table, (*offset.shape, table.shape[2]))
+        changed = opens_from_edge & (table[..., SIDE] != 0.0)
+        table[..., OFFSET] = np.where(changed, offset, table[..., OFFSET])
         return table
 
     def _opening_from_edge(self, first: BoolArray) -> FloatArray:
@@ -425,7 +434,7 @@ class ContactProblem:
     def displacement(self, force: FloatArray) -> FloatArray:
         """Return how far forces (P, L, m) in N move the flanks apart at every candidate (P, L, m), m.
 
-        Without the local approach of a candidate that carries.
+        The local approach of a loaded candidate is not part of it.
         """
         pressed = self.candidates.on_slices(force)
         radius, longest = self.radius, self.candidates.slices.law_length

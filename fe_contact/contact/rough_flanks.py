@@ -37,15 +37,18 @@ class DeviatingTeeth(NamedTuple):
 
     def gap(self, pair: ParallelAxes, rolls: tuple[FloatArray, FloatArray], face: FloatArray) -> FloatArray:
         """Return the sum of the gaps at roll lengths of both gears, m."""
-        there = MeetingTeeth(pair, self.meeting, *rolls, face)
-        return np.asarray(sum((term(there) for term in self.gaps), np.zeros(())))
+        teeth = MeetingTeeth(pair, self.meeting, *rolls, face)
+        return np.asarray(sum((term(teeth) for term in self.gaps), np.zeros(())))
 
     def extents(self) -> list[tuple[int, Extent]]:
-        """Return of each gap its gear and its extent on the teeth that meet."""
+        """Return the gear of each gap, and its extent on the teeth that meet."""
         return [(term.gear, term.extents.at(term.tooth(self.meeting))) for term in self.gaps]
 
     def nodes(self, pair: ParallelAxes) -> list[tuple[int, list[FloatArray], IntArray]]:
-        """Return of each gap its gear, nodes of its teeth as roll lengths in m, and which tooth meets."""
+        """Return the gear of each gap, the nodes of its teeth, and which of these teeth meets.
+
+        Nodes are roll lengths in m, one array a tooth.
+        """
         sets = []
         for term in self.gaps:
             teeth = term.tooth(self.meeting)
@@ -54,15 +57,15 @@ class DeviatingTeeth(NamedTuple):
             sets.append((term.gear, lists, np.searchsorted(numbers, teeth)))
         return sets
 
-    def rows(self, of: IntArray | slice) -> DeviatingTeeth:
+    def rows(self, keep: IntArray | slice) -> DeviatingTeeth:
         """Return the gaps at some of the candidates."""
-        return self._replace(meeting=self.meeting[of])
+        return self._replace(meeting=self.meeting[keep])
 
 
 def curvature_bound(
     pair: ParallelAxes, extents: Iterable[tuple[int, Extent]], rolls: tuple[FloatArray, FloatArray]
 ) -> FloatArray:
-    """Return a bound of the curvature along flanks by gaps of either gear at roll lengths of both, 1/m."""
+    """Return a bound of the curvature along flanks by gaps of both gears at roll lengths of both, 1/m."""
     gears = pair.pinion, pair.wheel
     bounds = (extent.curvature(gears[gear].base_radius, gear, rolls) for gear, extent in extents)
     return np.asarray(sum(bounds, np.zeros(rolls[0].shape)))

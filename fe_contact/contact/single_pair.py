@@ -112,6 +112,7 @@ def _on_line(pair: ParallelAxes, problem: ContactProblem, load: float) -> BoolAr
     on_line = np.isfinite(touch.gap) & (touch.lever_1 == 1.0) & (touch.lever_2 == 1.0)
     roll_2 = pair.mating_roll_length(touch.roll_1)
     usable = on_line & (touch.roll_1 <= pair.pinion.tip_form_roll_length)
+    # along a ring gear (sign -1) the roll length decreases towards the tip
     usable &= pair.wheel.sign * (roll_2 - pair.wheel.tip_form_roll_length) <= 0.0
     width = candidates.width[:count]
     pairs = np.unique(candidates.pair).size

@@ -10,8 +10,8 @@ curvature b_k, a tip edge is an end. On the strip c - h .. c + h, with x = c + h
 -pi/2 < t < pi/2, the half-plane equation gives [1]_
 
     mean(g') = 0                                   pressure vanishes at both ends,
-    p = (pi E*/2) h [mean(g' sin t) + |mean(g')|]  load; a mean other than zero belongs to an end at an edge,
-                                                   where the pressure is singular,
+    p = (pi E*/2) h [mean(g' sin t) + |mean(g')|]  load; mean(g') differs from zero only where the strip ends
+                                                   at an edge, and the pressure is singular there,
     approach = mean(g) + k p [ln(a/h) - 1/4]       beyond a patch of half-width a; k = 2/(pi E*).
 
 A strip between two edges is a flat punch. The approach is stationary in c and h, so that its slope in the
@@ -34,22 +34,33 @@ from fe_contact.types import FloatArray
 from host.loops import inner, njit
 
 _TOLERANCE = 1e-9
-"""Error of strip and middle over the strip that ends an iteration. The approach is stationary in both."""
+"""Error of the strip's half length and of its middle, over the half length, at which an iteration ends.
+
+The approach is stationary in both, so that its own error is of the order of the square.
+"""
 _STEPS = 100
+"""Most steps of a search between bounds."""
 _NEWTON_STEPS, _EDGE_STEPS, _NEWTON_TOLERANCE = 8, 12, 1e-8
-"""Most steps of Newton's method for strip and middle together, without and with an edge, and the last step
-over the strip that ends it. The error left is of the order of the square of that step.
+"""Most steps of Newton's method for half length and middle together, without and with an edge, and the step
+over the half length that is small enough to be the last one. The remaining error is of the order of the
+square of that step.
 """
 _TILTED = 0.1
-"""Way of the middle by which its response to tilt is found, over half the strip."""
+"""Motion of the strip's middle for which `rolling_radii` chooses its tilts, over half the strip."""
 _NEAR = 1e-6
-"""Step of differences along the flank over half a strip."""
+"""Step along the flank for numerical derivatives, over half a strip."""
 _BLUNTEST = 0.05
-"""Least cosine at a break in derivatives: they are infinite where a break is at the end of the strip."""
+"""Least value of cos t at a break that derivatives divide by.
+
+Without it they would be infinite where a break is at the end of the strip.
+"""
 
 _SLOPE, CURVATURE, _LOW, _HIGH, _BREAKS = range(5)
 _OFFSET, _JUMP, _BEND, _WIDTH = range(4)
-"""Columns of a table of gaps, and of each of its breaks. A loop passes on one array faster than seven."""
+"""Columns of a `gap_table`, and of each break in it from column `_BREAKS` on.
+
+Compiled loops pass on one array faster than the seven of a `Gap`.
+"""
 
 
 class Gap(NamedTuple):
@@ -72,8 +83,8 @@ class Gap(NamedTuple):
 
 def with_breaks(gap: Gap, count: int) -> Gap:
     """Return gaps (...,) with at least `count` breaks; added ones are at infinity."""
-    more = max(count - gap.offset.shape[-1], 0)
-    width = [(0, 0)] * (gap.offset.ndim - 1) + [(0, more)]
+    missing_breaks = max(count - gap.offset.shape[-1], 0)
+    width = [(0, 0)] * (gap.offset.ndim - 1) + [(0, missing_breaks)]
     offset = np.pad(gap.offset, width, constant_values=np.inf)
     return gap._replace(offset=offset, jump=np.pad(gap.jump, width), bend=np.pad(gap.bend, width))
 
@@ -112,7 +123,7 @@ def gap_table(gap: Gap) -> FloatArray:
 
 @inner(error_model="numpy")
 def free_strip(gap: FloatArray, i: int) -> float:
-    """Half strip in m up to which a gap is a parabola: to the nearest edge or break; 0 on a slope."""
+    """Return the half strip in m up to which a gap is a parabola, without edge or break; 0 on a slope."""
     if gap[i, _SLOPE] != 0.0:
         return 0.0
     free: float = min(-gap[i, _LOW], gap[i, _HIGH])
@@ -123,7 +134,7 @@ def free_strip(gap: FloatArray, i: int) -> float:
 
 @inner(error_model="numpy")
 def widest_strip(gap: FloatArray, i: int) -> float:
-    """Half strip in m from edge to edge."""
+    """Return half the distance from edge to edge, m: no strip is longer."""
     return 0.5 * float(gap[i, _HIGH] - gap[i, _LOW])
 
 
@@ -131,28 +142,32 @@ def widest_strip(gap: FloatArray, i: int) -> float:
 def half_strip(
     gap: FloatArray, i: int, line_load: float, modulus: float, center: float, guess: float
 ) -> tuple[float, float, float]:
-    """Return middle and half the length of the strip in m, and the mean gap over it in m.
+    """Return middle and half the length of the strip under a load, and the mean gap over it, all in m.
 
-    All from the touching point on; the middle is that of the guess where bounds had to be searched.
+    The middle counts from the touching point. Where Newton's method fails and the half length is searched
+    between bounds, the middle returned is `center` unchanged: a mere guess for the next search.
 
     Parameters
     ----------
+    gap : ndarray
+        A `gap_table`.
     i : int
-        Of the contact.
+        Row of the contact in it.
     line_load : float
         p in N/m, > 0.
     modulus : float
         Contact modulus E* in Pa.
     center, guess : float
-        Middle and half length of a strip near it, m; a half length of zero is none.
+        Middle and half length in m of a strip from which Newton's method begins; where `guess` is zero it
+        begins with the half length of Hertz.
     """
     hertz = math.sqrt(4.0 * line_load / (math.pi * modulus * gap[i, CURVATURE]))
     if hertz <= free_strip(gap, i):
         return 0.0, hertz, 0.25 * gap[i, CURVATURE] * hertz * hertz
     scaled = 2.0 * line_load / (math.pi * modulus)
-    half_width, half, _, rigid = strip_at(gap, i, scaled, 0.0, center, guess if guess > 0.0 else hertz)
+    newton_center, half, _, rigid = strip_at(gap, i, scaled, 0.0, center, guess if guess > 0.0 else hertz)
     if half > 0.0:
-        return half_width, half, rigid
+        return newton_center, half, rigid
     widest = widest_strip(gap, i)
     below, above = 0.0, math.inf
     half, power = min(hertz, widest), 2.0
@@ -186,9 +201,8 @@ def strip_load(gap: FloatArray, i: int, half: float, modulus: float) -> tuple[fl
         return math.pi * modulus * rise, rise
     center = strip_middle(gap, i, half)
     slope, first, mean, _, _, _ = _means(gap, i, center, half)
-    if (
-        gap[i, _LOW] + half < center < gap[i, _HIGH] - half
-    ):  # what is left of the slope is the middle's rounding
+    if gap[i, _LOW] + half < center < gap[i, _HIGH] - half:
+        # the mean of g' is not exactly zero only because the middle is inexact
         first -= slope * _tilting(gap, i, center, half)
     else:
         first += abs(slope)
@@ -199,14 +213,15 @@ def strip_load(gap: FloatArray, i: int, half: float, modulus: float) -> tuple[fl
 def _tilting(gap: FloatArray, i: int, center: float, half: float) -> float:
     """Return how the mean of g' sin t changes with that of g' as the middle moves.
 
-    Where a break is at the end of the strip both go with the root of the distance, so that the middle is
-    never exact enough; to each other they are straight.
+    Where a break is near the end of the strip both change with the root of their distance, so that no middle
+    is exact enough for either of them. One is still a linear function of the other.
     """
     by_slope, by_first = float(gap[i, CURVATURE]), 0.0
     for k in range(_BREAKS, gap.shape[1], _WIDTH):
         side = 1.0 if gap[i, k + _OFFSET] >= 0.0 else -1.0
         sine = side * (gap[i, k + _OFFSET] - center) / half
-        if sine < 1.0 + 4.0 * _TOLERANCE:  # the end may be held at a break, to either side of it by rounding
+        if sine < 1.0 + 4.0 * _TOLERANCE:
+            # a break at the end of the strip counts, on whichever side rounding puts it
             sine = min(max(sine, -1.0), 1.0)
             cosine = max(math.sqrt(1.0 - sine * sine), 1e-12)
             angle = 0.5 * math.pi - math.asin(sine)
@@ -238,7 +253,7 @@ def strip_middle(gap: FloatArray, i: int, half: float) -> float:
             if slope * at_end >= 0.0:
                 return end
             following = 0.5 * (low + high)
-        elif abs(slope) > 0.5 * before:  # Newton runs back and forth over the end of a break
+        elif abs(slope) > 0.5 * before:  # Newton's method jumps back and forth across a break
             following = 0.5 * (low + high)
         if abs(following - center) <= _TOLERANCE * half:
             return following
@@ -254,8 +269,8 @@ class StripMiddles(NamedTuple):
     """`middle`, `half`: Distance of the strip's middle from the touching point, and half its length, m."""
     slope: FloatArray
     curvature: FloatArray
-    """`slope`, `curvature`: Means of g' and g'' over the strip; 1 and 1/m. The slope is zero but where an
-    edge holds the strip.
+    """`slope`, `curvature`: Means of g' and g'' over the strip; 1 and 1/m. The slope differs from zero only
+    where the strip ends at an edge.
     """
 
 
@@ -279,10 +294,10 @@ def strip_middles(gap: FloatArray, half: FloatArray) -> StripMiddles:
 
 @njit(cache=True, error_model="numpy")
 def rolling_radii(gap: FloatArray, half: FloatArray) -> FloatArray:
-    """Return how far the middles of such strips move back as the gap tilts by 1 (n,), m.
+    """Return how far the middles of strips of half lengths (n,) in m move back per slope added to the gap, m.
 
-    On the mean of tilts that move it by `_TILTED` of the half length on plain flanks; none where an edge
-    holds it.
+    It is the mean over a slope added and the same one taken away: those that move the middle by `_TILTED`
+    of the half length on plain flanks. The result (n,) is zero where the strip stays at an edge.
     """
     half, radius = np.minimum(half, 0.5 * (gap[:, _HIGH] - gap[:, _LOW])), 1.0 / gap[:, CURVATURE]
     tilt, back, forth = _TILTED * half * gap[:, CURVATURE], gap.copy(), gap.copy()
@@ -303,6 +318,10 @@ def strip_at(
 
     Parameters
     ----------
+    gap : ndarray
+        A `gap_table`.
+    i : int
+        Row of the contact in it.
     value : float
         The approach, m; or, where `length` is zero, 2 p/(pi E*), m.
     length : float
@@ -313,8 +332,8 @@ def strip_at(
     Returns
     -------
     center, half, first, mean : float
-        Middle and half strip in m, means of g' sin t and of g in m over it, and to the first of them that of
-        g' where an edge holds the strip; zeros where the method does not get there.
+        Middle and half strip in m; means over it of g' sin t, with |mean(g')| added where the strip ends at
+        an edge, and of g in m. Four zeros where the method does not converge.
     """
     for _ in range(_NEWTON_STEPS):
         if not half > 0.0:
@@ -324,18 +343,19 @@ def strip_at(
         if center >= gap[i, _HIGH] - half:
             return _strip_at_edge(gap, i, value, length, half, -1.0)
         slope, first, mean, bend, tilt, bulge = _means(gap, i, center, half)
-        law, off, across = 1.0, half * first - value, half * tilt
+        law, residual, by_center = 1.0, half * first - value, half * tilt
         if length > 0.0:
             law = math.log(length / half) - 0.25
-            off, across = mean + half * first * law - value, slope + half * tilt * law
-        along = law * (first + half * bulge)
-        determinant = bend * along - tilt * across
-        aside, wider = (tilt * off - along * slope) / determinant, (across * slope - bend * off) / determinant
-        center += aside
-        half += wider
-        if abs(aside) + abs(wider) <= _NEWTON_TOLERANCE * half:
-            mean += slope * aside + first * wider
-            return center, half, first + tilt * aside + bulge * wider, mean
+            residual, by_center = mean + half * first * law - value, slope + half * tilt * law
+        by_half = law * (first + half * bulge)
+        determinant = bend * by_half - tilt * by_center
+        center_step = (tilt * residual - by_half * slope) / determinant
+        half_step = (by_center * slope - bend * residual) / determinant
+        center += center_step
+        half += half_step
+        if abs(center_step) + abs(half_step) <= _NEWTON_TOLERANCE * half:
+            mean += slope * center_step + first * half_step
+            return center, half, first + tilt * center_step + bulge * half_step, mean
     return 0.0, 0.0, 0.0, 0.0
 
 
@@ -345,7 +365,7 @@ def _strip_at_edge(
 ) -> tuple[float, float, float, float]:
     """Return the values of `strip_at` for a strip from the lower edge on (`side` 1) or to the upper edge.
 
-    The mean of g' then pushes it against the edge; the pressure there is singular.
+    The sign of mean(g') tells that the strip would go on past the edge; the pressure there is singular.
     """
     widest = widest_strip(gap, i)
     for _ in range(_EDGE_STEPS):
@@ -354,52 +374,57 @@ def _strip_at_edge(
         center = gap[i, _LOW] + half if side > 0.0 else gap[i, _HIGH] - half
         slope, first, mean, bend, tilt, bulge = _means(gap, i, center, half)
         law, first, growth = 1.0, first + side * slope, bend + 2.0 * side * tilt + bulge
-        off = half * first - value
+        residual = half * first - value
         if length > 0.0:
             law = math.log(length / half) - 0.25
-            off = mean + half * first * law - value
-        wider = -off / (law * (first + half * growth))
-        if abs(wider) <= _NEWTON_TOLERANCE * half and side * slope >= 0.0:
-            return center + side * wider, half + wider, first + growth * wider, mean + first * wider
-        half = max(half + wider, 0.1 * half)
+            residual = mean + half * first * law - value
+        step = -residual / (law * (first + half * growth))
+        if abs(step) <= _NEWTON_TOLERANCE * half and side * slope >= 0.0:
+            return center + side * step, half + step, first + growth * step, mean + first * step
+        half = max(half + step, 0.1 * half)
     return 0.0, 0.0, 0.0, 0.0
 
 
 @inner(error_model="numpy")
-def past_break(beyond: float, half: float) -> tuple[float, float, float, float, float]:
-    """Return integrals over the angle of a strip of the distance d past a break, from the break on.
+def past_break(from_middle: float, half: float) -> tuple[float, float, float, float, float]:
+    """Return integrals over the angle t of a strip, from a break to the strip's end beyond it.
 
     Parameters
     ----------
-    beyond : float
-        From the middle of the strip to the break, m; less than `half`.
+    from_middle : float
+        Distance from the middle of the strip to the break, m; negative where the middle is past the break,
+        and less than `half`.
     half : float
-        m.
+        Half length of the strip, m.
 
     Returns
     -------
     angle, cosine : float
-        Of the part past the break, and the cosine where it begins.
+        Range of t past the break, and cos t at the break.
     ramp, tilted, square : float
-        Integrals of d, d sin t and d^2.
+        Integrals of d, d sin t and d^2, where d is the distance past the break.
     """
-    sine = max(beyond / half, -1.0)
+    sine = max(from_middle / half, -1.0)
     cosine = math.sqrt(1.0 - sine * sine)
     angle = 0.5 * math.pi - math.asin(sine)
-    ramp = half * cosine - beyond * angle
-    tilted = 0.5 * half * (angle + sine * cosine) - beyond * cosine
-    return angle, cosine, ramp, tilted, half * tilted - beyond * ramp
+    ramp = half * cosine - from_middle * angle
+    tilted = 0.5 * half * (angle + sine * cosine) - from_middle * cosine
+    return angle, cosine, ramp, tilted, half * tilted - from_middle * ramp
 
 
 @njit(cache=True, error_model="numpy")
 def means_past_break(
-    beyond: FloatArray, half: FloatArray, jump: FloatArray, bend: FloatArray
+    from_middle: FloatArray, half: FloatArray, jump: FloatArray, bend: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the means over strips (k,) of jump d + bend d^2/2 past a break in m, and of its slope."""
-    height, slope = np.zeros((2, beyond.size))
-    for i in range(beyond.size):
-        if beyond[i] < half[i]:
-            angle, _, ramp, _, square = past_break(beyond[i], half[i])
+    """Return the means over strips (k,) of jump d + bend d^2/2 in m, and of its derivative in d.
+
+    d is the distance past a break that lies `from_middle` in m from the middle of each strip, and zero before
+    the break. `half`: Half lengths of the strips, m.
+    """
+    height, slope = np.zeros((2, from_middle.size))
+    for i in range(from_middle.size):
+        if from_middle[i] < half[i]:
+            angle, _, ramp, _, square = past_break(from_middle[i], half[i])
             height[i] = (jump[i] * ramp + 0.5 * bend[i] * square) / math.pi
             slope[i] = (jump[i] * angle + bend[i] * ramp) / math.pi
     return height, slope
@@ -417,15 +442,15 @@ def _means(
     bend, tilt, bulge = q, 0.0, 0.5 * q
     for k in range(_BREAKS, gap.shape[1], _WIDTH):
         side = 1.0 if gap[i, k + _OFFSET] >= 0.0 else -1.0
-        beyond = side * (gap[i, k + _OFFSET] - center)  # from the middle to the break
-        if beyond >= half:
+        from_middle = side * (gap[i, k + _OFFSET] - center)
+        if from_middle >= half:
             continue
         a, b = gap[i, k + _JUMP], gap[i, k + _BEND]
-        angle, cosine, ramp, tilted, square = past_break(beyond, half)
+        angle, cosine, ramp, tilted, square = past_break(from_middle, half)
         slope += side * (a * angle + b * ramp) / math.pi
         first += (a * cosine + b * tilted) / math.pi
         mean += (a * ramp + 0.5 * b * square) / math.pi
-        sine, blunt = max(beyond / half, -1.0), a / (half * max(cosine, _BLUNTEST))
+        sine, blunt = max(from_middle / half, -1.0), a / (half * max(cosine, _BLUNTEST))
         bend += (b * angle + blunt) / math.pi
         tilt += side * (b * cosine + blunt * sine) / math.pi
         bulge += (0.5 * b * (angle + sine * cosine) + blunt * sine * sine) / math.pi

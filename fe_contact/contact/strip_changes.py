@@ -1,8 +1,10 @@
-"""Small changes of the flanks under contact strips: depth, lag, places of patches, turn of forces.
+"""Changes of the normal approach of contacts by small changes of the flanks.
 
 A strip is the width over which a loaded contact touches, about its touching point. A depth is material
-removed from a flank. A lag is the turn of gear 2, along the line of action, that closes the rigid flanks.
-Load patches follow the slope of a gap, and forces turn with it.
+removed from a flank. A lag is the turn of gear 2, along the line of action, that closes the rigid flanks. A
+small change of the gap acts in four ways: by its mean depth over the strip (`Strips`), by the lag
+(`ClosingLag`), by the motion of load patches (`FollowingPatches`), and by the turn of forces
+(`TurnedForces`).
 """
 
 from __future__ import annotations
@@ -23,9 +25,9 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
 _NODE = math.sqrt(0.75)
-"""Outer ones of three samples in parts of half a strip, the third in its middle."""
+"""Distance of the two outer samples of a strip from the third one in its middle, over half the strip."""
 _AT_TOUCH = 1e-3
-"""Way of differences by which touching points move, over that by which normals turn."""
+"""Step of the differences that move touching points, over the step of those that turn normals."""
 
 
 @dataclass(frozen=True)
@@ -64,12 +66,15 @@ class Strips:
 
     @cached_property
     def _nodes(self) -> tuple[FloatArray, tuple[FloatArray, FloatArray]]:
-        """Three places of each strip along the flank (3, k), and the roll lengths there."""
+        """Distances of three samples of each strip from its touching point (3, k), m, and rolls there."""
         x = self.middle + self.half * np.array([-_NODE, 0.0, _NODE])[:, None]
         return x, rolls_at(self.pair, self.s_1 + x, self.s_2 - x)
 
     def _parted(self, gap: GapTerm) -> tuple[FloatArray, list[tuple[Break, FloatArray]]]:
-        """Return a gap without its breaks at three places of each strip (3, k); breaks and distances."""
+        """Return a gap without its breaks at the samples of each strip (3, k), and the breaks.
+
+        With each break comes its distance (k,) in m from the touching point.
+        """
         x, rolls = self._nodes
         breaks = [(line, line.distance(self.s_1, self.s_2)) for line in gap.breaks(self.pair, self.face)]
         of_breaks = sum(line.height(x - distance) for line, distance in breaks)
@@ -77,25 +82,31 @@ class Strips:
 
     def _past(self, start: Break, distance: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the means over the strips of the material that a break removes, m, and of its slope."""
-        beyond = start.side * (distance - self.middle)  # from the middle to the break
-        jump, bend = (np.broadcast_to(value, beyond.shape) for value in (start.jump, start.bend))
-        return means_past_break(beyond, self.half, jump, bend)
+        from_middle = start.side * (distance - self.middle)
+        jump, bend = (np.broadcast_to(value, from_middle.shape) for value in (start.jump, start.bend))
+        return means_past_break(from_middle, self.half, jump, bend)
 
     def nodes(
         self, gear: int, roll_length: FloatArray, face_position: FloatArray, x: FloatArray
     ) -> Iterator[tuple[IntArray, FloatArray]]:
-        """Yield the four nodes of a grid about places x (X, k) along the flank, and their parts there."""
+        """Yield the four grid nodes about each point and their weights in a linear interpolation (X, k).
+
+        The points are at distances x (X, k) in m from the touching points along the flank of a gear.
+        """
         roll = rolls_at(self.pair, self.s_1 + x, self.s_2 - x)[gear]
-        along = np.broadcast_to(self.face - gear * self.pair.axial_offset, x.shape)
-        (i, part), (j, other) = _between(roll_length, roll), _between(face_position, along)
-        for a, in_roll in ((0, 1.0 - part), (1, part)):
-            for b, in_face in ((0, 1.0 - other), (1, other)):
-                yield (i + a) * face_position.size + j + b, in_roll * in_face
+        face = np.broadcast_to(self.face - gear * self.pair.axial_offset, x.shape)
+        (i, roll_part), (j, face_part) = _between(roll_length, roll), _between(face_position, face)
+        for a, roll_weight in ((0, 1.0 - roll_part), (1, roll_part)):
+            for b, face_weight in ((0, 1.0 - face_part), (1, face_part)):
+                yield (i + a) * face_position.size + j + b, roll_weight * face_weight
 
 
 @dataclass(frozen=True)
 class ClosingLag:
-    """Change of the lag that closes the rigid flanks, by small gaps, beyond their depth under the strips."""
+    """Normal approach taken away by small gaps, beyond their mean depth over the strips.
+
+    Small gaps change the lag that closes the rigid flanks.
+    """
 
     strips: Strips
     """Strips of k contacts."""
@@ -104,12 +115,15 @@ class ClosingLag:
     lag: FloatArray
     """Lag of gear 2 per slope of its flank (`flank_slope`), m. Shape (k,)."""
     way: FloatArray
-    """Way of the touching point per slope of the gap, m; zero where an edge or a break holds it. Shape (k,).
+    """Motion of the touching point per slope of the gap, m; zero where it stays at an edge or a break. Shape
+    (k,).
     """
     at_break: BoolArray
-    """Whether a break holds the touching point, so that it moves with the break. Shape (k,)."""
+    """Whether the touching point is at a break, and moves with it. Shape (k,)."""
     turns: tuple[FloatArray, FloatArray]
-    """Change of the slope of either flank along that way, 1/m. Tuple of ndarray, shape (k,)."""
+    """Change of the slope of either flank per motion of the touching point, 1/m. Tuple of ndarray, shape
+    (k,).
+    """
 
     @classmethod
     def of(cls, strips: Strips, candidates: Candidates, at: tuple[IntArray, ...]) -> ClosingLag:
@@ -124,7 +138,7 @@ class ClosingLag:
         return cls(strips, excess, lag, way, at_break, (touch.turn_1[at], touch.turn_2[at]))
 
     def opened(self, gap: GapTerm, over: GapTerm) -> FloatArray:
-        """Return the normal approach (k,) in m that a gap takes away so over another near it."""
+        """Return the normal approach (k,) in m that a gap takes away by the lag, less that of another."""
         if gap.along_profile or over.along_profile:
             return self.excess * self._change(gap, over, 0.0) + self.lag * self.slope(1, gap, over)
         roll = self.strips.roll_1
@@ -133,29 +147,29 @@ class ClosingLag:
 
     def slope(self, gear: int, gap: GapTerm, over: GapTerm) -> FloatArray:
         """Return how much steeper the flank of a gear is by a gap than by another near it (k,)."""
-        places, difference = (self.strips.s_1, self.strips.s_2), partial(self._difference, gap, over)
-        steeper = flank_slope(self.strips.pair, gear, difference, places, self._step)
+        coordinates, difference = (self.strips.s_1, self.strips.s_2), partial(self._difference, gap, over)
+        steeper = flank_slope(self.strips.pair, gear, difference, coordinates, self._step)
         return np.asarray(steeper + self.turns[gear] * self._shift(gap, over))
 
     def _shift(self, gap: GapTerm, over: GapTerm) -> FloatArray:
-        """Return the ways of the touching points (k,), m; points at breaks move with these."""
+        """Return the motions of the touching points (k,), m; points at breaks move with these."""
         strips, near = self.strips, _AT_TOUCH * self._step
         slope = (self._change(gap, over, near) - self._change(gap, over, -near)) / (2.0 * near)
         shift = self.way * slope
         breaks = [term.breaks(strips.pair, strips.face) for term in (gap, over)]
         if len(breaks[0]) != len(breaks[1]):
-            return np.asarray(shift)  # a relief that is none yet holds nothing
+            return np.asarray(shift)  # a relief of zero depth has no break at which a point could stay
         for after, before in zip(*breaks, strict=True):
-            there, before_move = (term.distance(strips.s_1, strips.s_2) for term in (after, before))
-            shift = np.where(self.at_break & (np.abs(before_move) < near), there - before_move, shift)
+            after_move, before_move = (term.distance(strips.s_1, strips.s_2) for term in (after, before))
+            shift = np.where(self.at_break & (np.abs(before_move) < near), after_move - before_move, shift)
         return np.asarray(shift)
 
     def nodes(
         self, gear: int, roll_length: FloatArray, face_position: FloatArray
     ) -> Iterator[tuple[IntArray, FloatArray]]:
-        """Yield nodes (k,) of a grid on a gear, and the normal approach that a depth at each takes away."""
-        none = np.zeros(self.excess.size)
-        for node, part in self.strips.nodes(gear, roll_length, face_position, none[None]):
+        """Yield nodes (k,) of a grid on a gear, and the normal approach taken away per depth at each."""
+        at_touching_points = np.zeros((1, self.excess.size))
+        for node, part in self.strips.nodes(gear, roll_length, face_position, at_touching_points):
             yield node[0], self.excess * part[0]
         for node, slope in self.slope_nodes(1, gear, roll_length, face_position):
             yield node, self.lag * slope
@@ -176,12 +190,12 @@ class ClosingLag:
 
     @cached_property
     def _step(self) -> FloatArray:
-        """Way of differences along the flank (k,), m."""
+        """Step along the flank for numerical derivatives (k,), m."""
         strips, path = self.strips, self.strips.pair.path_of_contact
         return STEP / strips.pair.relative_curvature(np.clip(strips.roll_1, path.start, path.end))
 
     def _change(self, gap: GapTerm, over: GapTerm, x: FloatArray | float) -> FloatArray:
-        """Return a gap less another at x (k,) from the touching points, m."""
+        """Return a gap less another at distances x (k,) in m from the touching points, m."""
         strips = self.strips
         return self._difference(gap, over, rolls_at(strips.pair, strips.s_1 + x, strips.s_2 - x))
 
@@ -192,7 +206,7 @@ class ClosingLag:
 
 @dataclass(frozen=True)
 class FollowingPatches:
-    """Motions of load patches that follow slopes of small gaps, and displacements of bodies by them."""
+    """Load patches that move with the slopes of small gaps, and what their motion changes."""
 
     problem: ContactProblem
     slice_force: FloatArray
@@ -214,8 +228,8 @@ class FollowingPatches:
         free = (rest.slope == 0.0) & (np.abs(touch.shift) < c.slices.law_length) & np.isfinite(c.gap)
         loaded = np.repeat(pressed.any(axis=1), c.pair.size // pressed.shape[2], axis=1)
         at = np.nonzero(free & loaded)
-        places = touch.s_1[at], touch.s_2[at], touch.roll_1[at], c.face_position[at[1]]
-        at_rest = Strips(pair, *places, rest.middle[at], rest.half[at])
+        touching = touch.s_1[at], touch.s_2[at], touch.roll_1[at], c.face_position[at[1]]
+        at_rest = Strips(pair, *touching, rest.middle[at], rest.half[at])
         way = -math.cos(c.base_helix_angle) / rest.curvature[at]
         return cls(problem, pressed, at_rest, np.ravel_multi_index(at, c.gap.shape), way)
 
@@ -229,13 +243,14 @@ class FollowingPatches:
 
     @cached_property
     def _tilts(self) -> FloatArray:
-        """Under the forces, (P, L, n)."""
+        """Tilts of the flanks under the forces (P, L, n)."""
         return self._times(self.slice_force)
 
     def by_slope(self, weight: FloatArray, rows: FloatArray) -> FloatArray:
-        """Return the contributions of the gap's slope at each strip (Q, k) to sums `rows` (Q, P, L), m.
+        """Return the changes (Q, k) of Q sums per slope of the gap at each strip, m.
 
-        Of the transmission error, to which motions at the candidates add by their `weight` (P, L, m).
+        A sum adds up transmission errors at positions and loads by its factors in `rows` (Q, P, L); each
+        error is the sum of the motions at the candidates by their `weight` (P, L, m).
         """
         c = self.problem.candidates
         pressed = c.on_slices(weight)
@@ -244,7 +259,7 @@ class FollowingPatches:
         return np.asarray(by_point.reshape(len(rows), -1)[:, self.index] * self.way)
 
     def _times(self, values: FloatArray, *, back: bool = False) -> FloatArray:
-        """Return the tilts by forces (P, L, n); `back`: the motions of the others by what is displaced."""
+        """Return the tilts by forces (P, L, n); with `back`, sums of values by the transposed tilts."""
         return _times(self.problem.tilt, values, back=back)
 
 
@@ -267,15 +282,15 @@ class TurnedForces:
         c, pressed = problem.candidates, problem.candidates.on_slices(force)
         loaded = np.repeat(pressed.any(axis=1), c.pair.size // pressed.shape[2], axis=1)
         at = np.nonzero(loaded & np.isfinite(c.gap))
-        none = np.zeros(at[0].size)
-        places = c.touch.s_1[at], c.touch.s_2[at], c.touch.roll_1[at], c.face_position[at[1]]
-        closing = ClosingLag.of(Strips(pair, *places, none, none), c, at)
+        zero = np.zeros(at[0].size)
+        touching = c.touch.s_1[at], c.touch.s_2[at], c.touch.roll_1[at], c.face_position[at[1]]
+        closing = ClosingLag.of(Strips(pair, *touching, zero, zero), c, at)
         return cls(
             problem, pressed, _times(problem.bodies, pressed), closing, np.ravel_multi_index(at, c.gap.shape)
         )
 
     def opened(self, gap: GapTerm, over: GapTerm) -> FloatArray:
-        """Return the normal approach that a gap takes away so over another near it (P, L, m), m."""
+        """Return the normal approach (P, L, m) in m that a gap takes away, less that of another near it."""
         c, slopes = self.problem.candidates, np.zeros((2, *self.problem.candidates.gap.shape))
         for gear, slope in enumerate(slopes):
             slope.flat[self.index] = self.closing.slope(gear, gap, over)
@@ -284,9 +299,10 @@ class TurnedForces:
         return c.at_points(motion)
 
     def by_slope(self, gear: int, weight: FloatArray, rows: FloatArray) -> FloatArray:
-        """Return the contributions of the slope of a gear's flank (Q, k) to sums `rows` (Q, P, L), m.
+        """Return the changes (Q, k) of Q sums per slope of a gear's flank, m.
 
-        Of the transmission error, to which motions at the candidates add by their `weight` (P, L, m).
+        The k slopes are those at the candidates of `index`; for `weight` and `rows` see
+        `FollowingPatches.by_slope`.
         """
         pressed = self.problem.candidates.on_slices(weight)
         by_slice = pressed * self.displacement + self.slice_force * _times(self.problem.bodies, pressed)
@@ -297,7 +313,7 @@ class TurnedForces:
 
 
 def _at_points(c: Candidates, by_slice: FloatArray) -> FloatArray:
-    """Return sums by slices (Q, P, n) for the candidates of which these take the mean, (Q, P, m)."""
+    """Return each candidate's part (Q, P, m) in values (Q, P, n) for the mean of a slice's candidates."""
     on_slice = np.isfinite(c.gap).reshape(len(c.gap), by_slice.shape[2], -1).sum(axis=2)
     return np.repeat(by_slice / np.maximum(on_slice, 1), c.pair.size // by_slice.shape[2], axis=2)
 
@@ -305,11 +321,14 @@ def _at_points(c: Candidates, by_slice: FloatArray) -> FloatArray:
 def _times(matrices: FloatArray, values: FloatArray, *, back: bool = False) -> FloatArray:
     """Return matrices (Q, n, n), or `back` transposed, times values (P, L, n), P a multiple of Q."""
     by_pitch = values.reshape(-1, len(matrices), *values.shape[1:])
-    how = "qij,tqli->tqlj" if back else "qij,tqlj->tqli"
-    return np.asarray(np.einsum(how, matrices, by_pitch, optimize=True)).reshape(values.shape)
+    subscripts = "qij,tqli->tqlj" if back else "qij,tqlj->tqli"
+    return np.asarray(np.einsum(subscripts, matrices, by_pitch, optimize=True)).reshape(values.shape)
 
 
-def _between(nodes: FloatArray, at: FloatArray) -> tuple[IntArray, FloatArray]:
-    """Return the interval of each place, and the part of it that lies before; outside: at an end."""
-    i = np.clip(np.searchsorted(nodes, at, side="right") - 1, 0, nodes.size - 2)
-    return i, np.clip((at - nodes[i]) / (nodes[i + 1] - nodes[i]), 0.0, 1.0)
+def _between(nodes: FloatArray, coordinate: FloatArray) -> tuple[IntArray, FloatArray]:
+    """Return the interval of nodes around each coordinate, and the part of it before the coordinate, 0 to 1.
+
+    A coordinate outside the nodes counts as the nearest end.
+    """
+    i = np.clip(np.searchsorted(nodes, coordinate, side="right") - 1, 0, nodes.size - 2)
+    return i, np.clip((coordinate - nodes[i]) / (nodes[i + 1] - nodes[i]), 0.0, 1.0)

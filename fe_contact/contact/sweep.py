@@ -73,6 +73,7 @@ def solve_sets(
     """Solve every position at sets of loads, each by itself; see `solve_contact`."""
     every, c = point_problems(problem), problem.candidates
     p, m, solved = c.position.size, c.pair.size, []
+    # forces (P, L, n) to start from; an empty array: none
     first = np.zeros((0, 0, m)) if start is None else np.ascontiguousarray(start.on(c))
     for loads in sets:
         deflection, tangent = np.full((2, p, loads.size), np.nan)
@@ -101,7 +102,9 @@ def _sweep(
     """Fill the result arrays, started from the `first` forces, or each load from the two below it.
 
     Forces of a much smaller load press on too few points: where no solution is found from them, the search
-    begins again from a guess of its own. Positions that repeat one row of bodies follow each other.
+    begins again from zero forces, for which `solve_point` guesses a start. Positions p, p + rows, p + 2 rows
+    and so on have the same compliance of the bodies; they are solved one after another, so that it is
+    prepared once.
     """
     rows = every.bodies.shape[0]
     for row in range(rows):
@@ -112,11 +115,12 @@ def _sweep(
             for k in range(loads.size):
                 if first.shape[0] > 0:
                     start = first[p, k][touching]
-                elif k > 0:
+                elif k > 0:  # extrapolate linearly from the two loads below, the lowest of which is 0
                     below = loads[k - 2] if k > 1 else 0.0
                     part = (loads[k] - loads[k - 1]) / (loads[k - 1] - below)
                     start, last = start + part * (start - last), start
                 guessed = not start.any()
+                # `solve_point` overwrites `start` with the forces of the solution, and fills the residuals
                 d, t, code, count, over = solve_point(point, loads[k], start, residuals[p, k])
                 if code != CONVERGED and not guessed:
                     start = np.zeros(touching.size)

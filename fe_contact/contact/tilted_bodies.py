@@ -13,9 +13,10 @@ from host.loops import inner
 def move(problem: PointProblem, state: State) -> None:
     """Fill in the heights of the curves under the forces on them, u(h).
 
-    It is the gradient of the energy h'K h/2 + sum_j h_j min_y (y t_j + y^2/(2 R_j)) with the tilts t = D h:
-    flanks that tilt press in another place y, no further away than the reference length. Near an edge the
-    place is that of the strip, and what the corner yields comes to it (`fe_contact.contact.edge_strip`).
+    It is the gradient of the energy h'K h/2 + sum_j h_j min_y (y t_j + y^2/(2 R_j)) with the tilts t = D h.
+    Flanks that tilt press at a distance y from where they would touch otherwise, no further away than the
+    reference length. Near an edge y and the motion of the corner are those of
+    `fe_contact.contact.edge_strip`.
     """
     n = state.curve_load.size
     for j in range(n):
@@ -36,7 +37,7 @@ def move(problem: PointProblem, state: State) -> None:
 
 @inner(error_model="numpy")
 def rolled(problem: PointProblem, j: int, pressed: FloatArray) -> tuple[float, float, float]:
-    """Return the tilt of the flanks at a curve, how far it moves their strip in m, and per tilt."""
+    """Return the tilt of the flanks at a curve, the motion of their strip in m, and that per tilt."""
     tilt, radius = dot(problem.tilt[j], pressed, pressed.size), problem.radius[j]
     way = min(max(-radius * tilt, -problem.law.length), problem.law.length)
     return tilt, way, -radius if abs(way) < problem.law.length else 0.0
@@ -44,7 +45,7 @@ def rolled(problem: PointProblem, j: int, pressed: FloatArray) -> tuple[float, f
 
 @inner(error_model="numpy")
 def fill_yielding(problem: PointProblem, state: State) -> None:
-    """Fill in the derivative of the motions: symmetric, and that of the bodies where no flank rolls."""
+    """Fill in the derivative of the displacement in the forces; it is constant where no flank rolls."""
     if not problem.tilt.size:
         return
     n, out = state.curve_load.size, state.yielding
@@ -69,6 +70,6 @@ def fill_yielding(problem: PointProblem, state: State) -> None:
 
 @inner(error_model="numpy")
 def yield_to(yielding: FloatArray, change: FloatArray, out: FloatArray) -> None:
-    """Fill in the change of the heights by small changes of the forces."""
+    """Fill `out` with the change of the heights of the curves by small changes of the forces."""
     for j in range(change.size):
         out[j] = dot(yielding[j], change, change.size)

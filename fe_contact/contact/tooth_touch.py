@@ -26,7 +26,10 @@ _MOVING = ("s_1", "s_2", "gap", "approach_error", *_SLOPES, *Gap._fields)
 
 
 class _Part(NamedTuple):
-    """Candidates of a touch: rows (k,) of touching points that teeth share, and the teeth that meet there."""
+    """Some of the candidates (k,): their touching points on the common flanks, and the teeth that meet there.
+
+    The common flanks are those that all teeth of a gear have, without the gaps of single teeth.
+    """
 
     pair: ParallelAxes
     model: ContactModel
@@ -35,24 +38,26 @@ class _Part(NamedTuple):
     meeting: IntArray
 
     def gap(self, way: FloatArray) -> FloatArray:
-        """Return the gap of the teeth at ways (k,) along the flanks, m."""
+        """Return the gap of the teeth at distances `way` (k,) in m from the touching points, m."""
         rolls = rolls_at(self.pair, self.common.s_1 + way, self.common.s_2 - way)
         return self.model.gap_of_teeth(MeetingTeeth(self.pair, self.meeting, *rolls, self.face))
 
     @property
     def deviating(self) -> DeviatingTeeth:
-        """The teeth that meet there."""
+        """The teeth that meet at the candidates, with their gaps."""
         return DeviatingTeeth(self.model.tooth_gaps, self.meeting)
 
-    def rows(self, of: IntArray) -> _Part:
+    def rows(self, keep: IntArray) -> _Part:
         """Return some of the candidates."""
-        return self._replace(common=self.common.rows(of), face=self.face[of], meeting=self.meeting[of])
+        return self._replace(common=self.common.rows(keep), face=self.face[keep], meeting=self.meeting[keep])
 
 
 def tooth_touch(
     pair: ParallelAxes, touch: Touch, model: ContactModel, meeting: IntArray, face: FloatArray
 ) -> Touch:
-    """Add the gaps of teeth that meet: they slope along the flank, so that the least gap is nearby.
+    """Return the touching points with the gaps of the teeth that meet added.
+
+    These gaps have a slope along the flank, so that the least gap is beside the one of the common flanks.
 
     Parameters
     ----------
@@ -68,9 +73,12 @@ def tooth_touch(
     Load patches stay where the common flanks touch: they define `shift`. Deviations of single teeth count
     as a lag: a pitch error of gear 2 turns its flank, and a lag of the same size closes it on any slope.
     """
-    there = np.nonzero(touch.gap != np.inf)  # more than a third of the candidates cannot touch
+    candidates = np.nonzero(touch.gap != np.inf)  # more than a third of the candidates cannot touch
     parts = list(
-        zip(*(np.array_split(indices, there[0].size // _AT_ONCE + 1) for indices in there), strict=True)
+        zip(
+            *(np.array_split(indices, candidates[0].size // _AT_ONCE + 1) for indices in candidates),
+            strict=True,
+        )
     )
     results = []
     for at in parts:
@@ -79,13 +87,13 @@ def tooth_touch(
     breaks = max((arrays[-1].shape[-1] for arrays in results), default=0)
     changed = _with_breaks(tuple(getattr(touch, name).copy() for name in _MOVING), breaks)
     for at, arrays in zip(parts, results, strict=True):
-        for every, values in zip(changed, _with_breaks(arrays, breaks), strict=True):
-            every[at] = values
+        for all_values, values in zip(changed, _with_breaks(arrays, breaks), strict=True):
+            all_values[at] = values
     return replace(touch, **dict(zip(_MOVING, changed, strict=True)))
 
 
 def _with_breaks(moving: tuple[FloatArray, ...], count: int) -> tuple[FloatArray, ...]:
-    """Return arrays of `_MOVING` with at least so many breaks."""
+    """Return arrays of `_MOVING` with at least `count` breaks."""
     first = len(moving) - len(Gap._fields)
     return *moving[:first], *with_breaks(Gap(*moving[first:]), count)
 
@@ -93,8 +101,9 @@ def _with_breaks(moving: tuple[FloatArray, ...], count: int) -> tuple[FloatArray
 def _touching(part: _Part) -> tuple[FloatArray, ...]:
     """Return the arrays that `_MOVING` names.
 
-    Where the teeth are less hollow than the flanks are round, one parabola leads to the least gap; where
-    they are not, or where the true gap there is another, it is searched for together with the common gap.
+    Where the gap of the teeth is less concave than the common gap is convex, a parabola in its place gives
+    the point of least gap. Elsewhere, and where the true gap differs from the parabola there, the least gap
+    is searched for in the sum of both gaps.
     """
     stepped, poor = _stepped(part)
     rough = np.flatnonzero(poor | _sharp(part))
@@ -107,17 +116,20 @@ def _touching(part: _Part) -> tuple[FloatArray, ...]:
 
 
 def _stepped(part: _Part) -> tuple[tuple[FloatArray, ...], BoolArray]:
-    """Step to the least sum of the common gap and a parabola of the teeth's gap, and mark poor steps."""
-    common, none = part.common, np.zeros(part.face.size)
+    """Return the arrays of `_MOVING` at the least sum of the common gap and a parabola of the teeth's gap.
+
+    With them comes whether the parabola is too inaccurate there (k,).
+    """
+    common, zero = part.common, np.zeros(part.face.size)
     half = np.minimum(STEP / common.curvature, 0.2 * (common.high - common.low))
-    middle = np.clip(none, common.low + half, common.high - half)
-    before, center, after = (part.gap(middle + way) for way in (-half, none, half))
+    middle = np.clip(zero, common.low + half, common.high - half)
+    before, center, after = (part.gap(middle + way) for way in (-half, zero, half))
     bend = (before - 2.0 * center + after) / half**2
     steepness = (after - before) / (2.0 * half) - bend * middle
     level = center - middle * (steepness + 0.5 * bend * middle)
-    gap, way, minimum, far = _free_steps(common.about, steepness, bend)
-    if far.any():
-        _step_on(common, gap, (steepness, bend), (way, minimum), np.flatnonzero(far))
+    gap, way, minimum, needs_more = _free_steps(common.about, steepness, bend)
+    if needs_more.any():
+        _step_on(common, gap, (steepness, bend), (way, minimum), np.flatnonzero(needs_more))
     teeth = part.gap(way)
     remainder = teeth - level - way * (steepness + 0.5 * bend * way)
     poor = (np.abs(way) > half) | (np.abs(remainder) > ALLOWED / common.curvature)
@@ -130,40 +142,52 @@ def _stepped(part: _Part) -> tuple[tuple[FloatArray, ...], BoolArray]:
 def _free_steps(
     gap: Gap, steepness: FloatArray, bend: FloatArray
 ) -> tuple[Gap, FloatArray, FloatArray, BoolArray]:
-    """Step to where gaps (n,) with a slope and a curvature more are least, if no break is on the way.
+    """Step to where gaps (n,) with an added slope and curvature are least, if no break is in between.
 
-    Returns the gaps about there, the ways in m, what the gaps without the teeth are there in m, and which of
-    them need more than such a step: they are left as they were.
+    Returns
+    -------
+    gap : Gap
+        The sums about their least points.
+    way, minimum : ndarray, shape (n,)
+        Step to the least point, and `gap` as given there, without the addition, m.
+    needs_more : ndarray of bool, shape (n,)
+        Whether such a step is not enough, and none is made: an edge or a break is in between, the flanks
+        touch at an edge or a break and leave it, or the sum is nearly concave.
     """
     n, breaks = gap.offset.shape
     slope, curvature, low, high = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
     offset = gap.offset.copy()
-    ways, minimum, far = np.zeros(n), np.zeros(n), np.zeros(n, dtype=np.bool_)
+    ways, minimum, needs_more = np.zeros(n), np.zeros(n), np.zeros(n, dtype=np.bool_)
     for i in range(n):
         slope[i], curvature[i] = gap.slope[i], gap.curvature[i] + bend[i]
         low[i], high[i] = gap.low[i], gap.high[i]
         steep = slope[i] + steepness[i]
-        hollow = 0.0
+        concave = 0.0
         for k in range(breaks):
-            hollow += min(gap.bend[i, k], 0.0)
-        far[i] = curvature[i] + hollow < FLATTEST * gap.curvature[i]
+            concave += min(gap.bend[i, k], 0.0)
+        needs_more[i] = curvature[i] + concave < FLATTEST * gap.curvature[i]
         if slope[i] != 0.0:  # at a tip edge that stays in contact, or at a break
             at_end = (low[i] == 0.0 and steep > 0.0) or (high[i] == 0.0 and steep < 0.0)
             slope[i] = steep
-            far[i] = far[i] or not at_end
+            needs_more[i] = needs_more[i] or not at_end
             continue
         way = -steepness[i] / curvature[i]
-        far[i] = far[i] or way <= low[i] or way >= high[i]
+        needs_more[i] = needs_more[i] or way <= low[i] or way >= high[i]
         for k in range(breaks):
-            at = offset[i, k]
-            far[i] = far[i] or (way >= at if at >= 0.0 else way <= at)
-        if far[i]:
+            position = offset[i, k]
+            needs_more[i] = needs_more[i] or (way >= position if position >= 0.0 else way <= position)
+        if needs_more[i]:
             continue
         ways[i], minimum[i] = way, 0.5 * gap.curvature[i] * way * way
         low[i], high[i] = low[i] - way, high[i] - way
         for k in range(breaks):
             offset[i, k] -= way
-    return Gap(slope, curvature, low, high, offset, gap.jump.copy(), gap.bend.copy()), ways, minimum, far
+    return (
+        Gap(slope, curvature, low, high, offset, gap.jump.copy(), gap.bend.copy()),
+        ways,
+        minimum,
+        needs_more,
+    )
 
 
 def _step_on(
@@ -171,16 +195,20 @@ def _step_on(
     gap: Gap,
     teeth: tuple[FloatArray, FloatArray],
     stepped: tuple[FloatArray, FloatArray],
-    far: IntArray,
+    candidates: IntArray,
 ) -> None:
-    """Step over breaks and to edges, in the place of what `_free_steps` returned of those candidates."""
-    plain = Gap(*(values[far] for values in common.about))
-    slope, curvature = plain.slope + teeth[0][far], plain.curvature + teeth[1][far]
+    """Step over breaks and to edges at some candidates, and write the results in place.
+
+    `gap` and `stepped`, the steps and minima, are those of `_free_steps`; `teeth` has slope and curvature of
+    the added gaps.
+    """
+    plain = Gap(*(values[candidates] for values in common.about))
+    slope, curvature = plain.slope + teeth[0][candidates], plain.curvature + teeth[1][candidates]
     total = rounded(plain._replace(slope=slope, curvature=curvature), FLATTEST * plain.curvature)
     way = touching_offsets(total, plain.low, plain.high)
-    stepped[0][far], stepped[1][far] = way, shifted_gap(plain, way)[0]
+    stepped[0][candidates], stepped[1][candidates] = way, shifted_gap(plain, way)[0]
     for values, replaced in zip(gap, shifted_gap(total, way)[1], strict=True):
-        values[far] = replaced
+        values[candidates] = replaced
 
 
 def _sharp(part: _Part) -> BoolArray:
@@ -192,7 +220,7 @@ def _sharp(part: _Part) -> BoolArray:
 
 
 def _searched(part: _Part) -> tuple[FloatArray, ...]:
-    """Search for the least gap of common flanks and teeth together, from the plain involutes on."""
+    """Return the arrays of `_MOVING` at the least sum of both gaps, searched from the plain involutes on."""
     pair, roll_1 = part.pair, part.common.roll_1[None]  # candidates of one position
     plain = conjugate_touch(pair, roll_1, pair.mating_roll_length(roll_1), part.model.corner_contact)
     plain = replace(plain, gap=np.where(np.isfinite(plain.gap), plain.gap, 0.0))

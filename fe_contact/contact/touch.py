@@ -27,6 +27,7 @@ from fe_contact.types import BoolArray, FloatArray, IntArray
 from host.loops import njit
 
 _SAMPLES = 17
+"""Number of samples of a gap over the reach of its touching point."""
 _PASSES, _CUT_TIP_PASSES = 2, 4
 """Most passes of the search for the touching point, from the lowest sample on; more where a tip is cut, since
 the sample may be further off.
@@ -68,27 +69,28 @@ def modified_touch(
     gaps: tuple[GapTerm, ...],
     teeth: DeviatingTeeth | None = None,
 ) -> Touch:
-    """Touching points of modified flanks, and the gap about them.
+    """Return the touching points of modified flanks, and the gap about them.
 
-    Sloping modifications move the touching point off the line of action: over the distance x along the flank
-    the gap is x^2/(2R) plus the modifications, and its least value counts. On a relief of slope m' it is less
-    than the modification on the line of action by R m'^2/2, some tenths of a micrometer. About the touching
-    point of plain involutes the modifications are parabolas, from one break of theirs to the next.
+    Sloping modifications move the touching point off the line of action. Over the distance x along the flank
+    the gap is x^2/(2R) plus the modifications, and the flanks touch where it is least. On a relief of slope
+    m' the least gap is smaller than the modification on the line of action by R m'^2/2, some tenths of a
+    micrometer. Between their breaks, the modifications are parabolas about the touching point of plain
+    involutes.
 
-    As gear 2 lags, its flank turns back and meets the mate with a part that lies as much further out: the lag
-    that closes what is removed exceeds it by the slope of that flank, at a tip edge by the lever arm
-    (`docs/theory/contact.md`).
+    As gear 2 lags, its flank turns back, and a part of it further out meets the mate. So the lag that closes
+    a gap by removed material is larger than the gap: by the slope of that flank, at a tip edge by the lever
+    arm (`docs/theory/contact.md`).
 
     Parameters
     ----------
     touch : Touch
-        Of plain involutes.
+        Touching points of plain involutes.
     face : ndarray, shape (n,)
         Distance of each candidate from the pinion's mid-face, m.
     gaps : tuple of GapTerm
         At least one, or teeth that differ.
     teeth : DeviatingTeeth or None
-        Gaps that differ from tooth to tooth, of the teeth that meet at each candidate.
+        Gaps that differ from tooth to tooth, for the teeth that meet at each candidate.
     """
     moving = tuple(term for term in gaps if term.along_profile)
     steady = tuple(term for term in gaps if not term.along_profile)
@@ -123,87 +125,98 @@ def _shifted(
     flanks = _Flanks(pair, near, faces, gaps, teeth, surfaces)
     touching = _touching(flanks)
     shift, about = touching.shift, touching.about
-    places = {"s_1": near.s_1 + shift, "s_2": near.s_2 - shift}
-    places |= {"shift": shift + touching.off, "approach_error": touching.approach_error}
-    places |= flanks.closed(shift, touching.gap) | about._asdict()
+    changed = {"s_1": near.s_1 + shift, "s_2": near.s_2 - shift}
+    changed |= {"shift": shift + touching.off, "approach_error": touching.approach_error}
+    changed |= flanks.closed(shift, touching.gap) | about._asdict()
     result = {}
-    for name, values in places.items():
-        alike = plain[name].shape[1:] == values.shape[1:]
-        every = plain[name].copy() if alike else np.zeros((touch.gap.size, *values.shape[1:]))
-        every[possible] = values
-        result[name] = every.reshape(*shape, *values.shape[1:])
+    for name, values in changed.items():
+        same_shape = plain[name].shape[1:] == values.shape[1:]
+        all_values = plain[name].copy() if same_shape else np.zeros((touch.gap.size, *values.shape[1:]))
+        all_values[possible] = values
+        result[name] = all_values.reshape(*shape, *values.shape[1:])
     return replace(touch, **result)
 
 
 class _Touching(NamedTuple):
-    """Touching points of n flanks: their shift, true gap and offset of the load, all in m; see `Touch`."""
+    """Touching points of n flanks."""
 
     shift: FloatArray
+    """Distance from the touching point of plain involutes, m."""
     gap: FloatArray
+    """True gap, m."""
     off: FloatArray
+    """Distance of the load's centroid from the touching point, m."""
     approach_error: FloatArray
+    """Error of the approach, as in `Touch`."""
     about: Gap
+    """Gap about the touching points."""
 
 
 def _touching(flanks: _Flanks) -> _Touching:
     """Return where flanks touch.
 
-    Gaps of few parabolas are solved from the lowest of a few samples on. Where the flanks are rougher than
-    they are round, or the true gap is not what the parabolas say, it is followed downwards from many samples.
+    Gaps of few parabolas are solved from the lowest of a few samples. The true gap is searched from many
+    samples where the deviations are more curved than `ROUGH`, or where the true gap differs from the
+    parabolas.
     """
     sharp, wavy = flanks.rougher(ROUGH), flanks.rougher(WAVY)
-    shift, now, poor, about = _by_parabolas(
+    shift, gap, poor, about = _by_parabolas(
         flanks if not sharp.any() else flanks.rows(np.flatnonzero(~sharp))
     )
-    none = np.zeros(shift.size)
+    zero = np.zeros(shift.size)
     if not wavy.any() and not poor.any():
-        return _Touching(shift, now, none, none, about)
+        return _Touching(shift, gap, zero, zero, about)
     rough = sharp.copy()
     rough[~sharp] = poor
     about = with_breaks(about, BREAKS) if wavy.any() else about
-    arrays: _Arrays = (shift, now, none, none.copy(), *about)
+    arrays: _Arrays = (shift, gap, zero, zero.copy(), *about)
     if sharp.any():
         every = tuple(np.zeros((sharp.size, *values.shape[1:])) for values in arrays)
         arrays = _replaced(every, np.flatnonzero(~sharp), arrays)
-    at = np.flatnonzero(rough | wavy)
-    for part in np.array_split(at, at.size // _AT_ONCE + 1):
-        near, searched = flanks.rows(part), np.flatnonzero(rough[part])
+    uncertain = np.flatnonzero(rough | wavy)
+    for part in np.array_split(uncertain, uncertain.size // _AT_ONCE + 1):
+        flanks_of_part, searched = flanks.rows(part), np.flatnonzero(rough[part])
         position, minimum = arrays[0][part], arrays[1][part]
         if searched.size:
-            position[searched], minimum[searched] = near.rows(searched).minimum(position[searched])
-        off, error, local_gap = near.loaded_gap(position, wavy=wavy[part])
+            position[searched], minimum[searched] = flanks_of_part.rows(searched).minimum(position[searched])
+        off, error, local_gap = flanks_of_part.loaded_gap(position, wavy=wavy[part])
         local_gap = with_breaks(local_gap, about.offset.shape[1])
         arrays = _replaced(arrays, part, (position, minimum, off, error, *local_gap))
-    shift, now, off, error, *local_gaps = arrays
-    return _Touching(shift, now, off, error, Gap(*local_gaps))
+    shift, gap, off, error, *local_gaps = arrays
+    return _Touching(shift, gap, off, error, Gap(*local_gaps))
 
 
 def _by_parabolas(flanks: _Flanks) -> tuple[FloatArray, FloatArray, BoolArray, Gap]:
-    """Return touching points of gaps made of parabolas, the true gap there, where it is poor, that about."""
-    shift, now = flanks.lowest_sample()
-    of: IntArray = np.arange(now.size)
-    poor, arrays = np.zeros(now.size, dtype=bool), ()  # type: BoolArray, _Arrays
+    """Return touching points by gaps of parabolas.
+
+    Returns their shift, the true gap at them, where it differs from the parabolas, and the gap about them.
+    """
+    shift, gap_at_shift = flanks.lowest_sample()
+    of: IntArray = np.arange(gap_at_shift.size)
+    poor, arrays = np.zeros(gap_at_shift.size, dtype=bool), ()  # type: BoolArray, _Arrays
     step: FloatArray = np.zeros(0)
     for _ in range(_CUT_TIP_PASSES if flanks.cut_tips else _PASSES):
-        if arrays:  # where there was no step, the next is none either
+        if arrays:  # a flank without a step has found its touching point
             on = np.flatnonzero(step)
             flanks, of = flanks.rows(on), of[on]
         x = shift[of]
         about = flanks.about(x)
         step = touching_offsets(about, flanks.first - x, flanks.last - x)
         # bumps of a measured flank are no parabolas: the step must lead down, unless it is next to nothing
-        ahead = flanks.gap(x + step)
-        down = (ahead <= now[of]) | (np.abs(step) < 1e-3 * flanks.step)
-        step = np.where(down, step, 0.0)
+        next_gap = flanks.gap(x + step)
+        leads_down = (next_gap <= gap_at_shift[of]) | (np.abs(step) < 1e-3 * flanks.step)
+        step = np.where(leads_down, step, 0.0)
         minimum, local_gap = shifted_gap(about, step)
         arrays = _replaced(arrays, of, tuple(local_gap))
-        poor[of] = ~down | (np.abs(now[of] + minimum - ahead) > _STEP_ERROR * flanks.allowed)
-        shift[of], now[of] = x + step, np.where(down, ahead, now[of])
-    return shift, now, poor, Gap(*arrays)
+        poor[of] = ~leads_down | (
+            np.abs(gap_at_shift[of] + minimum - next_gap) > _STEP_ERROR * flanks.allowed
+        )
+        shift[of], gap_at_shift[of] = x + step, np.where(leads_down, next_gap, gap_at_shift[of])
+    return shift, gap_at_shift, poor, Gap(*arrays)
 
 
 def _replaced(arrays: _Arrays, of: IntArray, part: _Arrays) -> _Arrays:
-    """Return arrays with new values of some of their entries, or of all."""
+    """Return arrays in which the entries `of` have the values of `part`; all entries if they are empty."""
     if not arrays or len(of) == len(arrays[0]):
         return part
     for every, values in zip(arrays, part, strict=True):
@@ -237,7 +250,7 @@ class _Flanks:
         self._tilt = {side: self._excess_slope(side) for side in self.cut_tips}
 
     def rows(self, of: IntArray) -> _Flanks:
-        """Return some of the touching points."""
+        """Return the flanks of some of the touching points."""
         teeth = None if self._teeth is None else self._teeth.rows(of)
         return _Flanks(self._pair, self._touch.rows(of), self._face[of], self._gaps, teeth, self._surfaces)
 
@@ -257,7 +270,7 @@ class _Flanks:
         return plain + self._removed_at((rolls[0], rolls[1]), of)
 
     def rougher(self, part: float) -> BoolArray:
-        """Return where the flanks may be that much as hollow as they are round, or more."""
+        """Return where deviations may have more than this part of the curvature of plain flanks."""
         touch = self._touch
         if not self._surfaces and self._teeth is None:
             return np.zeros(touch.s_1.size, dtype=bool)
@@ -270,9 +283,10 @@ class _Flanks:
         return surfaces if self._teeth is None else surfaces + self._teeth.extents()
 
     def minimum(self, start: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return where the gap is least (n,), and the gap there, m; `start`: where it is low.
+        """Return where the gap is least (n,), and the gap there, m; `start` is a point with a low gap.
 
-        Off the window the conjugate gap is larger than all that the deviations can fall.
+        The search covers a window. Outside it the gap of plain flanks exceeds the largest fall of the
+        deviations.
         """
         touch, fall = self._touch, self._largest_fall()
         steepness = np.abs(touch.slope)
@@ -284,7 +298,7 @@ class _Flanks:
         return least_gap(self.gap_of, x, of, self.allowed)
 
     def _largest_fall(self) -> FloatArray:
-        """Return a bound of how much less may be removed within the reach than at the touching points, m."""
+        """Return a bound of the fall of removed material from the touching points within their reach, m."""
         fall = np.zeros(self.step.size)
         for _, extent in self._extents():
             fall = fall + extent.spread
@@ -314,45 +328,49 @@ class _Flanks:
         return Nodes(np.concatenate(along), start, list_of, np.where(gears, -touch.s_2, touch.s_1))
 
     def lowest_sample(self) -> tuple[FloatArray, FloatArray]:
-        """Return where the gap is least among samples all over the reach and at 0, and the gap there, m.
+        """Return where the gap is least among samples over the whole reach and at 0, and the gap there, m.
 
-        Flanks from which material is only removed are nowhere nearer than plain ones: most samples are too
-        far off to be lower than the one at 0.
+        Removed material only widens the gap of plain flanks. So where modifications only remove material,
+        most samples need not be computed: their plain gap alone is larger than the gap at 0.
         """
         lowest = np.zeros(self.step.size)
         minimum = self.gap(lowest)
-        alike = self._teeth is None
-        bounded = alike and not self.cut_tips and all(term.only_removes for term in self._gaps)
-        may = np.flatnonzero(minimum > 0.0) if bounded else np.arange(lowest.size)
-        part, near = np.linspace(0.0, 1.0, _SAMPLES)[:, None], self.rows(may)
+        are_alike = self._teeth is None
+        bounded = are_alike and not self.cut_tips and all(term.only_removes for term in self._gaps)
+        uncertain = np.flatnonzero(minimum > 0.0) if bounded else np.arange(lowest.size)
+        part, near = np.linspace(0.0, 1.0, _SAMPLES)[:, None], self.rows(uncertain)
         x = near.first + (near.last - near.first) * part
         if bounded:
             gap = near._plain(x)
         else:
             gap = np.array([near.gap(way) for way in x]) if self.cut_tips else near.gap(x)
         if bounded:
-            below = gap < minimum[may]
+            below = gap < minimum[uncertain]
             gap[below] += near._removed(x[below], np.nonzero(below)[1])
-        best, columns = gap.argmin(axis=0), np.arange(may.size)
-        lower = gap[best, columns] < minimum[may]
-        lowest[may[lower]], minimum[may[lower]] = x[best, columns][lower], gap[best, columns][lower]
+        lowest_row, columns = gap.argmin(axis=0), np.arange(uncertain.size)
+        lower = gap[lowest_row, columns] < minimum[uncertain]
+        lowest[uncertain[lower]], minimum[uncertain[lower]] = (
+            x[lowest_row, columns][lower],
+            gap[lowest_row, columns][lower],
+        )
         return lowest, minimum
 
     def about(self, x: FloatArray) -> Gap:
         """Return the gap about x.
 
-        Between their breaks modifications are smooth: slope and curvature by differences of what is left
-        without the breaks, over the length of a strip within the flanks.
+        Slope and curvature follow from differences over the length of a strip within the flanks. They are
+        taken of the removed material without the parts beyond breaks, which is smooth.
         """
         touch, step = self._touch, self.step
         breaks = [(line, line.distance(touch.s_1, touch.s_2) - x) for line in self._breaks]
         middle = np.clip(x, self.first + step, self.last - step)
-        at = []
+        smooth = []
         for position in (middle - step, middle, middle + step):
-            beyond = sum(line.height(position - x - distance) for line, distance in breaks)
-            at.append(self._removed(position) - beyond)
-        bend = (at[2] - 2.0 * at[1] + at[0]) / step**2
-        slope = touch.slope + touch.curvature * x + (at[2] - at[0]) / (2.0 * step) + bend * (x - middle)
+            beyond_breaks = sum(line.height(position - x - distance) for line, distance in breaks)
+            smooth.append(self._removed(position) - beyond_breaks)
+        below, center, above = smooth
+        bend = (above - 2.0 * center + below) / step**2
+        slope = touch.slope + touch.curvature * x + (above - below) / (2.0 * step) + bend * (x - middle)
         near = _NEAR * step
         for side in self.cut_tips:
             slope = slope + (self._excess(side, x + near) - self._excess(side, x - near)) / (2.0 * near)
@@ -366,13 +384,14 @@ class _Flanks:
             position[:, k], jump[:, k] = distance, line.jump
             bends[:, k] = np.where(inside, -line.bend, line.bend)
         ends = touch.low - x, touch.high - x
-        # flanks hollowed out more than they are round would touch at several places
+        # a flank that is more hollow than its mate is round would touch at several points
         return rounded(Gap(slope, curvature, *ends, position, jump, bends), FLATTEST * touch.curvature)
 
     def loaded_gap(self, x: FloatArray, wavy: BoolArray) -> tuple[FloatArray, FloatArray, Gap]:
-        """Return how far the load lies from touching points at x (n,), m, what is missed, and the gap there.
+        """Return the offset of the load at touching points x (n,), m, the error, and the gap about them.
 
-        That of `wavy` flanks is the one that gives way as they do; not where an edge touches.
+        For `wavy` flanks it is the even gap with the same approach under load (`rough_strip`), except where
+        an edge touches.
         """
         touch = self._touch
         (off, error), (_, gap) = np.zeros((2, x.size)), shifted_gap(self.about(x), np.zeros(x.size))
@@ -381,13 +400,13 @@ class _Flanks:
             return off, error, gap
 
         def within_flanks(way: FloatArray, of: IntArray) -> FloatArray:
-            """Return the gap, no nearer than plain flanks where bodies have ended: strips end there."""
-            at, gap = inside[of], self.gap_of(way, inside[of])
-            beyond = np.maximum(touch.low[at] - way, way - touch.high[at])
-            plain = now[at] + 0.5 * touch.curvature[at] * (way - x[at]) ** 2
+            """Return the gap; beyond the ends of the flanks it is at least that of plain flanks."""
+            contacts, gap = inside[of], self.gap_of(way, inside[of])
+            beyond = np.maximum(touch.low[contacts] - way, way - touch.high[contacts])
+            plain = touching_gap[contacts] + 0.5 * touch.curvature[contacts] * (way - x[contacts]) ** 2
             return np.where(beyond > 0.0, np.maximum(gap, plain), gap)
 
-        now = self.gap(x)
+        touching_gap = self.gap(x)
         strip = rough_strip(
             within_flanks,
             x[inside],
@@ -395,32 +414,32 @@ class _Flanks:
             self._largest_fall()[inside],
         )
         gap = with_breaks(gap, BREAKS)
-        felt = strip.gap._replace(low=gap.low[inside], high=gap.high[inside])
-        felt = with_breaks(felt, gap.offset.shape[1])
+        even_gap = strip.gap._replace(low=gap.low[inside], high=gap.high[inside])
+        even_gap = with_breaks(even_gap, gap.offset.shape[1])
         off[inside], error[inside] = strip.center, strip.approach_error
-        return off, error, Gap(*_replaced(tuple(gap), inside, tuple(felt)))
+        return off, error, Gap(*_replaced(tuple(gap), inside, tuple(even_gap)))
 
-    def closed(self, x: FloatArray, now: FloatArray) -> dict[str, FloatArray]:
+    def closed(self, x: FloatArray, gap: FloatArray) -> dict[str, FloatArray]:
         """Return gap, lag, slopes and turns of a `Touch` at x.
 
-        `now` is the gap at x less that of plain flanks at 0, m. On the flank of gear 2 its slope turns the
-        normal, at an edge the normal is that of the mate. Gaps of teeth count as lags.
+        `gap` is the gap at x less that of plain flanks at 0, m. On the flank of gear 2 the slope of that
+        flank turns the normal; at an edge the normal is that of the mate. Gaps of single teeth count as lags.
         """
         touch, (s_1, s_2), (end_1, end_2) = self._touch, self._places(x), self._ends
         slope_1, turn_1 = self._slope_of(0, x, s_1 >= end_1)
         slope_2, turn_2 = self._slope_of(1, x, s_2 >= end_2)
-        turned = 1.0 / (1.0 - slope_2)
+        turn_factor = 1.0 / (1.0 - slope_2)
         at_edge = (s_1 >= end_1) | (s_2 >= end_2)
         rolls = rolls_at(self._pair, s_1, s_2)
-        depth = now + np.where(at_edge, self._designed(rolls) * (touch.lag - 1.0), 0.0)
+        depth = gap + np.where(at_edge, self._designed(rolls) * (touch.lag - 1.0), 0.0)
         of_teeth = self._of_teeth(rolls)
-        # by a relief, off the line of action
+        # a relief moved the touching point off the line of action, clear of the edge of gear 2
         clear_of_edge_2 = ~at_edge & (touch.lever_2 != 1.0) & (slope_2 != 0.0)
-        plain = touch.gap * np.where(clear_of_edge_2, touch.lever_2 * turned, 1.0)
+        plain = touch.gap * np.where(clear_of_edge_2, touch.lever_2 * turn_factor, 1.0)
         return {
-            "gap": plain + (depth - of_teeth) * turned + of_teeth,
-            "lag": np.where(at_edge, touch.lag, 1.0) * turned,
-            # off the line of action the lever arms of the edge have a part of it, at the edge all
+            "gap": plain + (depth - of_teeth) * turn_factor + of_teeth,
+            "lag": np.where(at_edge, touch.lag, 1.0) * turn_factor,
+            # the lever arms contain part of the slope off the line of action, and all of it at the edge
             "slope_1": np.where(s_1 >= end_1, 0.0, slope_1 - (1.0 - touch.lever_1)),
             "slope_2": np.where(s_2 >= end_2, 0.0, slope_2 - (1.0 - touch.lever_2)),
             "turn_1": turn_1,
@@ -438,9 +457,10 @@ class _Flanks:
         return [float(gear.flank_coordinate(gear.tip_form_roll_length)) - _AT_EDGE for gear in gears]
 
     def _slope_of(self, gear: int, x: FloatArray, at_edge: BoolArray) -> tuple[FloatArray, FloatArray]:
-        """Return the slope of what is removed from all flanks of a gear at x, and its change along them.
+        """Return the slope of the material removed from all flanks of a gear at x, and its change along them.
 
-        Up to `STEEPEST`: a steeper flank falls back nearly as fast as it is turned, and nothing touches it.
+        Slopes are limited to `STEEPEST`. A steeper flank recedes nearly as fast as the gear turns, so that
+        the mate does not touch it.
         """
         near = _NEAR * self.step
         slope, next_slope = (
@@ -464,7 +484,7 @@ class _Flanks:
     def _of_teeth(
         self, rolls: tuple[FloatArray, FloatArray], of: IntArray | slice = slice(None)
     ) -> FloatArray | float:
-        """Return the part of it that differs from tooth to tooth, at roll lengths of both gears."""
+        """Return the removed material that differs from tooth to tooth, at roll lengths of both gears, m."""
         if self._teeth is None:
             return 0.0
         return self._teeth.rows(of).gap(self._pair, rolls, self._face[of])
@@ -472,15 +492,16 @@ class _Flanks:
     def _designed(
         self, rolls: tuple[FloatArray, FloatArray], of: IntArray | slice = slice(None)
     ) -> FloatArray:
-        """Return the part of it that all teeth have in common, at roll lengths of both gears."""
+        """Return the removed material that all teeth have in common, at roll lengths of both gears, m."""
         terms = (term(self._pair, *rolls, self._face[of]) for term in self._gaps)
         return np.asarray(sum(terms, np.zeros(())))
 
     def _excess(self, side: Side, x: FloatArray) -> FloatArray:
-        """Return how much further apart than their parabola plain flanks are behind a cut tip, m.
+        """Return the gap of plain flanks behind a cut tip less their parabola, m.
 
-        A rounding or chamfer takes touching points off the line of action by up to its own length, further
-        than a relief does. Next to the touching point of plain flanks the parabola holds.
+        A rounding or chamfer moves touching points off the line of action by up to its length, further than a
+        relief does. The excess has no slope at the touching point of plain flanks, next to which the parabola
+        is exact.
         """
         return self._beyond_parabola(side, x) - np.where(self._behind(side, x), self._tilt[side] * x, 0.0)
 
@@ -505,7 +526,7 @@ class _Flanks:
         return excess
 
     def _behind(self, side: Side, x: FloatArray) -> BoolArray:
-        """Return where x is to the root of the gear whose tip leaves on that side, on round flanks."""
+        """Return where x lies towards the root of the gear whose tip leaves on that side, on round flanks."""
         flattest = FLAT * self._pair.wheel.base_radius
         return np.asarray((x < 0.0 if side == "exit" else x > 0.0) & (self._touch.radius < flattest))
 
@@ -518,10 +539,10 @@ def _plain_at_ways(
     doubled: tuple[float, float],
     sign: float,
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the gap of plain flanks at ways x (k,) from some of the touching points (k,), and where it is.
+    """Return the gap of plain flanks at ways x (k,) of touching points `of` (k,), and both roll lengths, m.
 
-    In m: the gap, and roll lengths of both gears. `flanks` are flank coordinates, slope and curvature of the
-    touching points; `doubled` two base radii of each gear, `sign` that of the wheel.
+    `flanks` are both flank coordinates, slope and curvature at the touching points; `doubled` are twice the
+    base radii, and `sign` is that of the wheel.
     """
     s_1, s_2, slope, curvature = flanks
     plain, roll_1, roll_2 = np.empty(x.size), np.empty(x.size), np.empty(x.size)

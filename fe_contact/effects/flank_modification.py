@@ -1,4 +1,8 @@
-"""Gap of modified flanks, for the effects that modify along the profile and along the face."""
+"""Gap of modified flanks, for the effects that modify along the profile and along the face.
+
+A modification is a sum of parts (tip relief, crowning, a free-form grid and others), each of which removes
+material over the flank. Positive gaps are removed material, m.
+"""
 
 from __future__ import annotations
 
@@ -17,9 +21,13 @@ from fe_contact.geometry import FlankGrid, FlankModification, ParallelAxes
 from fe_contact.types import FloatArray
 
 _ALONG_PROFILE, _ALONG_FACE = 65, 33
-"""Points of the lattice, ends and middles among them, over which the parts of a modification are smooth."""
+"""Numbers of points, along roll length and face, of the lattice by which parts are bounded. They are odd, so
+that the middles are points.
+"""
 _BETWEEN = 0.25
-"""A smooth course leaves its lattice by an eighth of the second difference, a kinked one by twice that."""
+"""Largest departure of a part from its lattice over the second difference. A smooth part departs from the
+linear interpolant by an eighth, a part with a kink by up to a quarter.
+"""
 
 
 @dataclass(frozen=True)
@@ -46,18 +54,22 @@ class ModificationGap:
         return self.pinion.flank_grid, self.wheel.flank_grid
 
     def extent(self, pair: ParallelAxes) -> Extent:
-        """Sum of the bounds of both flanks."""
+        """Return the bounds of the gap, the sum of those of both flanks."""
         return _modification_extent(
             self.pinion, pair.pinion, pair.pinion.tip_form_roll_length
         ) + _modification_extent(self.wheel, pair.wheel, pair.wheel.tip_form_roll_length)
 
     def breaks(self, pair: ParallelAxes, face: FloatArray) -> tuple[Break, ...]:
-        """Roll lengths at which reliefs and the edges of rounded or chamfered tips begin on either flank."""
+        """Return the breaks of the gap: the beginnings of reliefs and of rounded or chamfered tips.
+
+        `face` are positions from mid-face of the pinion, m.
+        """
         sides = ((pair.pinion, self.pinion, face), (pair.wheel, self.wheel, face - pair.axial_offset))
         return tuple(
             Break(
                 index,
                 gear.flank_coordinate(start.roll_length),
+                # the tip of the pinion and the root of the wheel lie on the same side of the contact
                 1 if start.towards_tip == (index == 0) else -1,
                 start.jump,
                 start.bend,
@@ -70,7 +82,10 @@ class ModificationGap:
     def __call__(
         self, pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, face: FloatArray
     ) -> FloatArray:
-        """Sum over both flanks in m; each gear's face position counts from its own mid-face."""
+        """Return the material removed from both flanks, m, at roll lengths and positions from mid-face, m.
+
+        `face` counts from mid-face of the pinion.
+        """
         return self.pinion.material_removed(pair.pinion, roll_1, face) + self.wheel.material_removed(
             pair.wheel, roll_2, face - pair.axial_offset
         )
@@ -79,7 +94,7 @@ class ModificationGap:
 def _modification_extent(modification: FlankModification, gear: Tooth, tip_form: float) -> Extent:
     """Return the extent of the material that a modification removes from the usable flank of a gear.
 
-    Parts count one by one, as if all of them were deepest at one place.
+    It is the sum of the extents of the parts, as if all of them were deepest at one point.
 
     Parameters
     ----------
@@ -171,7 +186,7 @@ class LeadModification(Effect):
         return replace(model, gaps=(*model.gaps, term))
 
     def across_face(self, scene: ContactScene) -> str | None:
-        """Say so where there is one."""
+        """Return the reason for a model over the face, a lead modification; None: there is none."""
         return (
             "lead modification"
             if any(gear.modification.varies_along_face for gear in scene.gears.values())

@@ -19,13 +19,16 @@ from fe_contact.types import FloatArray, IntArray
 class PitchGap:
     """Gap of every tooth of a gear along the line of action, m, in the order of meshing.
 
-    It has as many entries as teeth, or one for all of them; after `period` base pitches it is taken to show
-    the same teeth again.
+    A positive gap is a flank that stands back from its nominal place. The table repeats after `period` base
+    pitches, also where the teeth would not.
     """
 
     gear: int
+    """Index of the gear in the pair: 0 or 1."""
     teeth: tuple[float, ...]
+    """Gaps of the teeth, m; one entry: the gap of all teeth."""
     period: int
+    """Base pitches after which the same teeth meet again, in the table."""
 
     @property
     def largest(self) -> float:
@@ -47,7 +50,7 @@ class PitchGap:
         return meeting % self.period % len(self.teeth)
 
     def nodes(self, _pair: ParallelAxes, _tooth: int) -> FloatArray:
-        """Return none: the gap is the same all over a flank."""
+        """Return an empty array: a gap that is the same all over a flank needs no nodes."""
         return np.zeros(0)
 
 
@@ -81,6 +84,7 @@ class PitchError(Effect):
         """Add the gap of both gears' teeth."""
         if all(gear.pitch_deviation.neutral for gear in scene.gears.values()):
             return model
+        # a tooth that is ahead by its deviation touches earlier: its gap is negative
         late = (
             -gear.pitch_deviation.on_line_of_action(gear.transverse_pressure_angle)
             for gear in scene.gears.values()

@@ -37,7 +37,7 @@ class FlankProfile:
 
         @property
         def gear(self) -> Toothing:
-            """The gear, a field of the kinds."""
+            """The gear; a field of the classes that inherit."""
 
     @property
     def pitch_angle(self) -> float:
@@ -142,7 +142,7 @@ class FlankProfile:
     def _checked(self, s: ArrayLike) -> FloatArray:
         """Return `s` as an array, its rounding errors at both ends removed."""
         where = np.asarray(s, dtype=float)
-        slack = 1e-9 * self.gear.normal_module
+        slack = 1e-9 * self.gear.normal_module  # rounding of coordinates
         if not np.all((where >= self.s_space - slack) & (where <= self.s_tip + slack)):
             bound = from_to(self.s_space, self.s_tip, "m")
             raise InputError("s", s, bound, "Flank coordinates run from s_space to s_tip.")

@@ -11,9 +11,17 @@ from fe_contact.body import CLAMPED, GearBlank
 from fe_contact.errors import InfeasibleGeometry
 from fe_contact.geometry.toothing import Toothing
 
-THINNEST_RIM = 0.5  # in normal modules
+THINNEST_RIM = 0.5
+"""Least thickness of a rim under the root circle, in normal modules."""
 
-THINNEST_WEB = 0.02  # in face widths
+THINNEST_WEB = 0.02
+"""Least thickness of a web, in face widths."""
+
+_ROUNDING = 1e-9
+"""Fraction of the face width by which a web may exceed the face: rounding of units."""
+
+_FILLET_POINTS = 65
+"""Points of the trochoid at which the thickness of an undercut root is checked."""
 
 SMALLEST_SECTOR = 5
 """Fewest teeth of a sector: three that may be loaded, and one beside each cut plane."""
@@ -55,12 +63,12 @@ def refuse_rim(gear: Toothing, blank: GearBlank) -> None:
 def refuse_web(gear: Toothing, blank: GearBlank) -> None:
     """Refuse a web that is a foil, or that leaves the face."""
     minimum = THINNEST_WEB * gear.face_width
-    if not minimum * (1.0 - LIMIT_SLACK) <= blank.web_thickness <= (1.0 + 1e-9) * gear.face_width:
+    if not minimum * (1.0 - LIMIT_SLACK) <= blank.web_thickness <= (1.0 + _ROUNDING) * gear.face_width:
         bound = from_to(minimum, gear.face_width, "m", "the face width")
         remedy = "A web as thick as the face is wide is a solid gear."
         raise InfeasibleGeometry("web", "blank.web_thickness", blank.web_thickness, bound, remedy)
     room = 0.5 * (gear.face_width - blank.web_thickness)
-    if abs(blank.web_offset) > room + 1e-9 * gear.face_width:
+    if abs(blank.web_offset) > room + _ROUNDING * gear.face_width:
         bound = from_to(-room, room, "m", note=", so that the web stays within the face")
         remedy = "Lower the offset or the web thickness."
         raise InfeasibleGeometry("web", "blank.web_offset", blank.web_offset, bound, remedy)
@@ -85,7 +93,8 @@ def refuse_undercut(gear: Toothing) -> None:
         name = "undercut" if gear.form_point.undercut else "tip diameter"
         bound = above(2.0 * gear.form_radius, "m", "the form diameter", ", where the fillet ends")
         raise InfeasibleGeometry(name, "tip_diameter", 2.0 * gear.tip_radius, bound, remedy)
-    angles = np.linspace(gear.form_point.tool_angle, 0.5 * math.pi, 65)
+    angles = np.linspace(gear.form_point.tool_angle, 0.5 * math.pi, _FILLET_POINTS)
+    # the first coordinate is the distance from the middle line of the tooth
     if gear.form_point.undercut and np.min(gear.trochoid.point(angles)[:, 0]) <= 0.0:
         larger = "larger: the fillets of both flanks cut the tooth off"
         raise InfeasibleGeometry(

@@ -30,7 +30,7 @@ _SAME_HAND = "A ring gear and its pinion mesh with equal module, pressure angle 
 
 
 def refuse_strangers(pinion: Toothing, wheel: Toothing) -> None:
-    """Refuse gears that differ in module, pressure or helix angle, and a ring gear that is too small."""
+    """Refuse gears of a pair that differ in module, pressure or helix angle, and a ring gear too small."""
     compared = (
         ("normal module", "normal_module", wheel.normal_module, pinion.normal_module),
         (
@@ -42,7 +42,7 @@ def refuse_strangers(pinion: Toothing, wheel: Toothing) -> None:
         ("helix angle", "helix_angle", wheel.helix_angle, -wheel.sign * pinion.helix_angle),
     )
     for name, field, value, expected in compared:
-        if not math.isclose(value, expected, rel_tol=1e-9, abs_tol=1e-12):
+        if not math.isclose(value, expected, rel_tol=1e-9, abs_tol=1e-12):  # equal but for rounding of units
             remedy = _OPPOSITE_HANDS if wheel.sign > 0 else _SAME_HAND
             bound = exactly(expected, ", to fit the pinion")
             raise InfeasibleGeometry(name, f"wheel.{field}", value, bound, remedy)

@@ -1,10 +1,11 @@
 """Printed digits of data sheets, and the change of backlash by their rounding (docs/theory/geometry.md).
 
-Nominal gears have no backlash: their profile shifts follow from the center distance, or it from them. A sheet
-prints both rounded, and the printed ones may jam. Each printed value is off by at most half its last digit,
-and backlash by at most the sum of what those halves do to it, to first order.
+Nominal gears have no backlash: the center distance follows from their profile shifts, or the sum of the
+shifts from the center distance. A sheet prints rounded values of both, with which the teeth may overlap. Each
+printed value is off by at most half its last digit. To first order, backlash is off by at most the sum of its
+changes by these halves.
 
-A value tells its last digit: it is the first of the customary ones of which the value is a whole multiple.
+The last digit of a value is the first of the customary ones of which the value is a whole multiple.
 A value on the round grid of its kind was chosen, not rounded: a module of ISO 54, a shift of 0, a center
 distance in half millimeters, a helix angle in tenths of a degree.
 Numbers of teeth, pressure angles and thickness allowances are exact.
@@ -17,6 +18,9 @@ from dataclasses import dataclass
 
 from fe_contact.geometry.backlash import working_pressure_angle
 from fe_contact.geometry.toothing import Toothing
+
+CONVERSION = 1e-6
+"""Difference from a whole number of digits that is rounding of the conversion into SI."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +35,7 @@ class _PrintedDigits:
     """Grid of chosen values: its multiples are exact. 0: no grid."""
 
     def rounding(self, *values: float) -> float:
-        """Return the most that printing moved each of the values, which stand on one sheet."""
+        """Return the largest change by printing of each of the values, which stand on one sheet."""
         if all(_is_multiple(value, self.round_grid) for value in values):
             return 0.0
         fits = (digit for digit in self.last if all(_is_multiple(value, digit) for value in values))
@@ -48,7 +52,7 @@ HELIX_ANGLE = _PrintedDigits(
 
 
 def backlash_rounding(pinion: Toothing, wheel: Toothing, center_distance: float) -> float:
-    """Return the most in m that printing x_1, x_2, a, m_n and beta moves the backlash of a pair.
+    """Return the largest change of the backlash of a pair, m, by printing x_1, x_2, a, m_n and beta.
 
     With the base module m_b = m_t cos(alpha_t) and j = 0::
 
@@ -87,8 +91,8 @@ def _by_helix(pinion: Toothing, center_distance: float, working: float) -> float
 
 
 def _is_multiple(value: float, unit: float) -> bool:
-    """Whether a value is a whole number of units, up to rounding of its conversion into SI."""
+    """Return whether a value is a whole number of units, up to rounding of its conversion into SI."""
     if value == 0.0:
         return True
     count = value / unit if unit else math.inf
-    return math.isfinite(count) and abs(count - round(count)) < 1e-6
+    return math.isfinite(count) and abs(count - round(count)) < CONVERSION

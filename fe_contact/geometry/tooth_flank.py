@@ -22,8 +22,9 @@ if TYPE_CHECKING:
 
 _LARGEST = 1e-3  # m; larger deviations are micrometers stated as meters
 MAX_TEETH = 4000
+"""Largest number of a tooth."""
 MAX_NODES = 250_000
-"""Nodes of the surfaces of all teeth of a gear."""
+"""Most nodes of the surfaces of all teeth of a gear."""
 
 _TOOTH = "Number of the tooth in the order of meshing; 1 is that of pair 0 at position 0"
 _SLOPE = "Slope deviation {} over the {}; > 0: half of it in excess at {}, half missing at the other end"
@@ -78,7 +79,7 @@ class ToothFlank:
 
     @property
     def varies_along_face(self) -> bool:
-        """Whether it differs over the face width."""
+        """Whether the deviation differs over the face width."""
         across = bool(self._surface) and self._surface[0].varies_along_face
         return bool(self.helix_slope or self.helix_form or across)
 
@@ -96,12 +97,15 @@ class ToothFlank:
 
     @property
     def hollow(self) -> float:
-        """Largest curvature by which slope and form make the profile hollow, per square of `coordinates`."""
+        """Largest second derivative of slope and form by u of `coordinates` where the profile is hollow, m.
+
+        Slopes are straight; cosine waves have 0.5 (pi waves)^2 times the form, a hollow parabola twice it.
+        """
         waves = math.pi * self.profile_form_waves
         return 0.5 * waves**2 * abs(self.profile_form) if waves else 2.0 * max(-self.profile_form, 0.0)
 
     def excess(self, gear: Tooth, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:
-        """Return how far it stands towards the mate at roll lengths and distances from mid-face, all in m."""
+        """Return the material in excess, m, at roll lengths and distances from mid-face in m."""
         return flanks_excess(gear, (self,), np.array(self.tooth - 1), roll_length, face_position)
 
     @property
@@ -121,7 +125,7 @@ def coordinates(gear: Tooth, roll_length: FloatArray, face_position: FloatArray)
 
 
 def tooth_shapes(gear: Tooth, roll_length: FloatArray, face_position: FloatArray) -> dict[str, FloatArray]:
-    """Return the excess of a unit of each slope and each form without waves, by field of `ToothFlank`."""
+    """Return the excess by 1 m of each slope, and of each form without waves, by field of `ToothFlank`."""
     u, v = np.broadcast_arrays(*coordinates(gear, roll_length, face_position))
     none = np.zeros(u.shape)
     return {
@@ -150,7 +154,7 @@ def flanks_excess(
 def tooth_surfaces(gear: Tooth, flanks: Sequence[ToothFlank]) -> ToothSurfaces:
     """Lay out flanks of a gear; teeth without an entry, also beyond the last one, are as designed."""
     teeth = max((flank.tooth for flank in flanks), default=0)
-    amounts = np.zeros((teeth, 6))
+    amounts = np.zeros((teeth, 6))  # slope, form and waves of the profile, then of the helix
     grids: list[FlankGrid | None] = [None] * teeth
     for flank in flanks:
         amounts[flank.tooth - 1] = (
@@ -162,7 +166,10 @@ def tooth_surfaces(gear: Tooth, flanks: Sequence[ToothFlank]) -> ToothSurfaces:
 
 
 def _form(height: FloatArray, waves: FloatArray, at: FloatArray) -> FloatArray:
-    """Return shapes of this height whose mean line over -1 to 1 is zero: a measurement splits them so."""
+    """Return form deviations of a height at coordinates `at` from -1 to 1.
+
+    The mean of a shape is zero, and so is its slope: a measurement would find the same form and no slope.
+    """
     shape = 1.0 / 3.0 - at**2
     if waves.any():
         shape = np.where(waves == 0.0, shape, 0.5 * np.cos(math.pi * waves * at))
@@ -170,7 +177,7 @@ def _form(height: FloatArray, waves: FloatArray, at: FloatArray) -> FloatArray:
 
 
 def repeats_after(values: tuple[Hashable, ...]) -> int:
-    """Return the least number of entries after which a closed sequence repeats."""
+    """Return the least number of entries after which a closed sequence repeats; 1 for an empty one."""
     count = len(values)
     periods = (n for n in range(1, count) if count % n == 0 and values == values[:n] * (count // n))
     return next(periods, max(count, 1))
@@ -185,7 +192,7 @@ def flanks_period(flanks: Collection[ToothFlank], teeth: int) -> int:
 
 
 def check_flanks(gear: Tooth, flanks: Sequence[ToothFlank], teeth: int) -> None:
-    """Refuse flanks of teeth that the gear does not have or that come twice, and surfaces beside them."""
+    """Refuse entries of teeth that the gear lacks or that come twice, and surfaces that miss the flank."""
     seen: set[int] = set()
     nodes = 0
     for index, flank in enumerate(flanks):
@@ -203,5 +210,5 @@ def check_flanks(gear: Tooth, flanks: Sequence[ToothFlank], teeth: int) -> None:
 
 
 def turned_back(flanks: Sequence[ToothFlank], teeth: int) -> tuple[ToothFlank, ...]:
-    """Return the flanks in the order of the other sense of rotation; the first tooth stays."""
+    """Return the flanks in the order of the other sense of rotation: tooth 1 stays, 2 becomes the last."""
     return tuple(replace(flank, tooth=(1 - flank.tooth) % teeth + 1) for flank in flanks)

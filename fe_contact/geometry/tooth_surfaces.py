@@ -39,18 +39,20 @@ class PackedGrids(NamedTuple):
     @classmethod
     def of(cls, grids: Sequence[FlankGrid | None]) -> PackedGrids:
         """Pack the surfaces of teeth in the order of meshing; None where a tooth has none."""
-        there = [grid for grid in grids if grid is not None]
+        measured = [grid for grid in grids if grid is not None]
         number = np.cumsum([grid is not None for grid in grids]) - 1
         of_tooth = np.where([grid is not None for grid in grids], number, -1)
-        shapes = [(len(grid.roll_length), len(grid.face_position)) for grid in there]
+        shapes = [(len(grid.roll_length), len(grid.face_position)) for grid in measured]
         sizes = np.array([(m, n, m * n) for m, n in shapes], dtype=np.int64).reshape(-1, 3)
         return cls(
             of_tooth=of_tooth.astype(np.int64),
             sizes=sizes,
             starts=np.cumsum(sizes, axis=0) - sizes,
-            roll=np.array([roll for grid in there for roll in grid.roll_length]),
-            face=np.array([face for grid in there for face in grid.face_position]),
-            nodes=np.concatenate([np.zeros((4, 0)), *(grid.nodes.reshape(4, -1) for grid in there)], axis=1),
+            roll=np.array([roll for grid in measured for roll in grid.roll_length]),
+            face=np.array([face for grid in measured for face in grid.face_position]),
+            nodes=np.concatenate(
+                [np.zeros((4, 0)), *(grid.nodes.reshape(4, -1) for grid in measured)], axis=1
+            ),
         )
 
 

@@ -81,7 +81,7 @@ MATING = ("normal_module", "normal_pressure_angle", "helix_angle")
 
 
 def cutter_infeed(thickness_allowance: float, normal_pressure_angle: float) -> float:
-    """Return how much deeper in m a cutter stands that removes a normal tooth thickness in m."""
+    """Return by how much deeper, m, a cutter stands that removes a normal tooth thickness in m."""
     return 0.5 * thickness_allowance / math.tan(normal_pressure_angle)
 
 
@@ -118,7 +118,7 @@ class Toothing:
 
     sign: ClassVar[int] = 1  # of the tooth number in ISO 21771-1: +1 external, -1 internal
 
-    if TYPE_CHECKING:  # what the kinds answer
+    if TYPE_CHECKING:  # properties that `Gear` and `RingGear` define
 
         @property
         def seat_radius(self) -> float:
@@ -184,8 +184,8 @@ class Toothing:
     def generating_shift_coefficient(self) -> float:
         """Addendum modification for generating x_E (ISO 21771-1), in normal modules.
 
-        Where the cutter removes the thickness allowance A, of either kind of gear: a smaller shift thins the
-        teeth of a ring gear too. x_E = x - A / (2 m_n tan(alpha_n)); where the flanks are ground it is x.
+        If the cutter removes the thickness allowance A, x_E = x - A / (2 m_n tan(alpha_n)), also of a ring
+        gear, whose teeth a smaller shift makes thinner too. If the flanks are ground, x_E = x.
         """
         if self.tooth_thinning == FLANK:
             return self.profile_shift_coefficient
@@ -198,9 +198,9 @@ class Toothing:
         return self.thickness_allowance if self.tooth_thinning == FLANK else 0.0
 
     def generated_shape(self, names: Collection[str]) -> Json:
-        """Return fields of the gear as plain numbers, shift and allowance as the cutter leaves them.
+        """Return fields of the gear as plain numbers, x_E as the shift, and the allowance of grinding alone.
 
-        Gears of one x_E and one tip circle have one shape, whatever their nominal shift.
+        So gears of equal shape have equal fields: the shape depends on x_E, not on the nominal shift.
         """
         cut = {
             "profile_shift_coefficient": self.generating_shift_coefficient,
@@ -217,7 +217,7 @@ class Toothing:
 
     @property
     def period(self) -> int:
-        """Number of teeth after which its deviations repeat: 1 where all are alike."""
+        """Number of teeth after which the gear's deviations repeat: 1 where all teeth are alike."""
         turning = deviations_period(self.run_out, self.waves, self.tooth_flanks, self.teeth)
         return math.lcm(self.pitch_deviation.period, turning)
 
@@ -229,7 +229,7 @@ class Toothing:
 
     @property
     def turning_back(self) -> Self:
-        """The gear with its teeth in the order in which they mesh the other way round."""
+        """The gear with its teeth in the order in which they mesh in the other sense of rotation."""
         return replace(
             self,
             pitch_deviation=self.pitch_deviation.reversed,

@@ -1,4 +1,8 @@
-"""The hub of a gear's mesh: the ring below and between the real teeth, down to the bore."""
+"""The hub of a gear's mesh: the ring below and between the real teeth, down to the bore.
+
+Real teeth are meshed as sectors (t of them, each with b nodes on its bottom); the others are left out, and
+the plain rim, a piece of the root circle, replaces them. The hub of a ring gear reaches outwards.
+"""
 
 from __future__ import annotations
 
@@ -43,14 +47,16 @@ class Hub:
 
 @dataclass(frozen=True)
 class _InnerRing:
-    """A region between a boundary and the next circle, and its thickness over the face width."""
+    """A ring of the hub."""
 
     circle: Outline
+    """The end of the ring away from the teeth."""
     thickness: float
+    """Axial thickness over the face width."""
 
 
 def hub_outline(gear: Toothing, sector: ToothSector, teeth: IntArray, recipe: MeshRecipe) -> Outline:
-    """Return the boundary that follows the sectors of `teeth`; that of a ring gear is the inner one."""
+    """Return the boundary of the hub along the sectors of `teeth`; that of a ring gear is the inner one."""
     pitch = 2.0 * np.pi / gear.teeth
     # From the right end of a bottom to its left: counter-clockwise, as the teeth are numbered.
     pieces = [Piece(f"bottom {j}", rotated(sector.points[sector.bottom[::-1]], j * pitch)) for j in teeth]
@@ -65,7 +71,8 @@ def hub_outline(gear: Toothing, sector: ToothSector, teeth: IntArray, recipe: Me
 def _plain_rim(side: Piece, missing: int, pitch: float, inside: float, recipe: MeshRecipe) -> Piece:
     """Return the root circle from the end of `side` counter-clockwise over the missing teeth."""
     x, y = side.nodes[-1]
-    radius, angle, length = float(np.hypot(x, y)), float(np.arctan2(x, y)), missing * pitch
+    radius, length = float(np.hypot(x, y)), missing * pitch
+    angle = float(np.arctan2(x, y))  # from the y axis, the middle of tooth 0, clockwise
     largest = min(HALF * abs(1.0 - inside / radius), LARGEST_ARC)
 
     def size(turned: FloatArray) -> FloatArray:
@@ -87,9 +94,10 @@ def inner_rings(gear: Toothing, bottom_radius: float, recipe: MeshRecipe) -> tup
         if web.inner_radius > seat_radius:
             radii, thickness = [*radii, seat_radius], [*thickness, 1.0]
     depths = [*(abs(a - b) for a, b in pairwise(radii)), np.inf]
+    # a circle lies between two rings; none lies behind the last circle
     return tuple(
-        _InnerRing(_divided_circle(r, min(near), abs(bottom_radius - r), recipe), part)
-        for r, near, part in zip(radii[1:], pairwise(depths), thickness, strict=True)
+        _InnerRing(_divided_circle(radius, min(neighbors), abs(bottom_radius - radius), recipe), part)
+        for radius, neighbors, part in zip(radii[1:], pairwise(depths), thickness, strict=True)
     )
 
 
@@ -135,11 +143,15 @@ def joined_hub(
 
 
 def _joined(outside: QuadraticMesh, inside: QuadraticMesh) -> QuadraticMesh:
-    """Join two meshes along the inner boundary of one and the outer one of the other, its reverse."""
+    """Join two meshes along the inner boundary of `outside` and the outer boundary of `inside`.
+
+    The boundaries have the same nodes, `added` are the nodes of `inside` that are on none of them.
+    """
     added = np.ones(len(inside.points), dtype=bool)
     added[inside.boundary[0]] = False
     number = np.empty(len(added), dtype=np.int64)
     number[added] = len(outside.points) + np.arange(int(added.sum()))
+    # the two run in opposite senses from the same node, which reversal makes the last and `roll` the first
     number[inside.boundary[0]] = np.roll(outside.boundary[1][::-1], 1)
     return QuadraticMesh(
         points=np.concatenate([outside.points, inside.points[added]]),

@@ -2,8 +2,10 @@
 
 Every layer is a copy of the section, turned along the helix. Freedoms are components in each node's own
 cylindrical frame (radial, tangential, axial), so layers and sectors share element matrices. Deep in the
-body two layers become one; nodes left hanging on the finer side do not exist: their displacement is that of
-the coarser face. A web has the layers between its faces only.
+body two layers are merged into one, and two of these again further down: the level of a cell is the number of
+such mergers. Nodes left hanging on the finer side of a merger do not exist: their displacement is that of the
+coarser face. A web has the layers between its faces only. The left and the right cut bound the sector. A
+held freedom is fixed to zero.
 """
 
 from __future__ import annotations
@@ -22,6 +24,11 @@ from fe_contact.mesh.face_layers import Layers, layers_across, layers_to_mid_fac
 from fe_contact.mesh.sector_grid import SectorGrid
 from fe_contact.mesh.sector_recipe import SectorRecipe
 from fe_contact.types import BoolArray, FloatArray, IntArray
+
+ELEMENT_FREEDOMS = 60
+"""Freedoms of an element: three at each of its 20 nodes."""
+CELL_NODES = 8
+"""Nodes of a quadrilateral of the section: four corners, four middles of sides."""
 
 
 @dataclass(frozen=True)
@@ -61,17 +68,17 @@ class SweptSector:
     @cached_property
     def element_freedoms(self) -> IntArray:
         """Freedoms of each element, (e, 60), node by node; -1 where held."""
-        return self.freedoms[self.elements].reshape(len(self.elements), 60)
+        return self.freedoms[self.elements].reshape(len(self.elements), ELEMENT_FREEDOMS)
 
     @cached_property
     def flank_index(self) -> IntArray:
         """Number of each flank node among the flank freedoms, (2 L + 1, k), -1 at the centers of faces."""
-        exists = self.nodes[:, self.grid.flank] >= 0
+        exists = self.nodes[:, self.grid.flank] >= 0  # element faces have nodes at corners and side middles
         return np.where(exists, np.cumsum(exists).reshape(exists.shape) - 1, -1)
 
     @property
     def flank(self) -> IntArray:
-        """Freedoms along the flank normal, plane by plane; the first of the three of a flank node."""
+        """Freedoms along the flank normal, plane by plane: the first of the three of each flank node."""
         nodes = self.nodes[:, self.grid.flank]
         return np.asarray(self.freedoms[nodes[nodes >= 0], 0])
 
@@ -137,8 +144,8 @@ def swept_sector(
     layers = _layers(face_width, recipe, web, support.seat)
     planes = 2 * len(layers.kind) + 1
     level = np.sum(grid.cells[:, 1, None] < np.array(recipe.merge_rows, dtype=int), axis=1)
-    node_level = np.zeros(grid.nodes, dtype=np.int64)
-    np.maximum.at(node_level, grid.quads.ravel(), np.repeat(level, 8))
+    node_level = np.zeros(grid.nodes, dtype=np.int64)  # the largest level of the cells that share a node
+    np.maximum.at(node_level, grid.quads.ravel(), np.repeat(level, CELL_NODES))
     extent = _extents(grid, layers, web)
     exists = _existing(grid, node_level, extent, planes)
     nodes = np.where(exists, np.cumsum(exists).reshape(exists.shape) - 1, -1)
@@ -147,7 +154,7 @@ def swept_sector(
         grid, layers, (batches, elements, position), support.seat.ends(face_width), support.seat.elastic
     )
     fixed = support.constrained(grid, between_ends(layers.ends))
-    fixed[0, :, 2] |= recipe.half_face
+    fixed[0, :, 2] |= recipe.half_face  # the first plane of a half face is mid-face, which moves in its plane
     free = ~fixed[exists]
     freedoms = np.where(free, np.cumsum(free).reshape(free.shape) - 1, -1)
     return SweptSector(grid, layers, nodes, elements, position, batches, freedoms, support.seat)
@@ -161,7 +168,7 @@ def between_ends(ends: FloatArray) -> FloatArray:
 
 
 def _layers(face_width: float, recipe: SectorRecipe, web: Web | None, seat: BoreSeat) -> Layers:
-    """Divide the face, or its half above mid-face; groups of layers end where web and seat end."""
+    """Divide the face, or its half above mid-face, into layers; web and seat end at the ends of layers."""
     faces: tuple[float, ...] = () if web is None else (web.low, web.high)
     if seat.width is not None:
         faces = (*faces, *seat.ends(face_width))
@@ -176,7 +183,7 @@ def _layers(face_width: float, recipe: SectorRecipe, web: Web | None, seat: Bore
 
 
 def inner_breaks(positions: Sequence[float], face_width: float) -> tuple[float, ...]:
-    """Return the different axial positions inside the face, increasing."""
+    """Return the axial positions inside the face, increasing; those closer than `ROUNDING` are one."""
     close, breaks = ROUNDING * face_width, [-0.5 * face_width]
     for z in sorted(positions):
         if z > breaks[-1] + close and z < 0.5 * face_width - close:
@@ -185,7 +192,7 @@ def inner_breaks(positions: Sequence[float], face_width: float) -> tuple[float, 
 
 
 def _extents(grid: SectorGrid, layers: Layers, web: Web | None) -> IntArray:
-    """Return the first layer of each quadrilateral, and the first one above it, (m, 2)."""
+    """Return the first layer of elements above each quadrilateral, and the one after the last, (m, 2)."""
     extent = np.tile([0, len(layers.kind)], (len(grid.quads), 1))
     if web is not None:
         extent[grid.web] = [np.abs(layers.ends - z).argmin() for z in (web.low, web.high)]
@@ -193,10 +200,14 @@ def _extents(grid: SectorGrid, layers: Layers, web: Web | None) -> IntArray:
 
 
 def _existing(grid: SectorGrid, node_level: IntArray, extent: IntArray, planes: int) -> BoolArray:
-    """Return where a section node has a node above it: corners also between bottom and top of an element."""
+    """Return the planes in which a section node has a node, (planes, nodes).
+
+    A corner of the section has nodes at bottom, middle and top of an element, a middle of a side at bottom
+    and top only. Each merger of layers doubles the distance of these planes.
+    """
     step = np.where(grid.corner, 1, 2) * 2**node_level
     low, high = np.full(grid.nodes, planes), np.zeros(grid.nodes, dtype=np.int64)
-    np.minimum.at(low, grid.quads.ravel(), np.repeat(2 * extent[:, 0], 8))
-    np.maximum.at(high, grid.quads.ravel(), np.repeat(2 * extent[:, 1], 8))
+    np.minimum.at(low, grid.quads.ravel(), np.repeat(2 * extent[:, 0], CELL_NODES))
+    np.maximum.at(high, grid.quads.ravel(), np.repeat(2 * extent[:, 1], CELL_NODES))
     plane = np.arange(planes)[:, None]
     return np.asarray((plane % step == 0) & (plane >= low) & (plane <= high))

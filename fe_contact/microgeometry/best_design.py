@@ -112,8 +112,8 @@ def _refined(
         method=SequentialLinearProgramming(sample=0),
         evaluations=max(1, search.evaluations // REFINED),
     )
-    seen = choice.problem.evaluator.position, choice.optimum.harris_map.position
-    evaluator = choice.problem.evaluator.at(np.union1d(*seen))
+    positions = choice.problem.evaluator.position, choice.optimum.harris_map.position
+    evaluator = choice.problem.evaluator.at(np.union1d(*positions))
     problem = replace(choice.problem, evaluator=evaluator)
     with clock.stage("search"):
         best, workers = choice.run.coordinates, run.workers
@@ -141,8 +141,8 @@ def to_the_end(workers: Workers, cancel: Cancel) -> Workers:
     if cancel() or isinstance(workers, InProcess):
         return InProcess()
 
-    def raise_unless_cancelled(lost: WorkersLost) -> None:
+    def raise_unless_cancelled(error: WorkersLost) -> None:
         if not cancel():
-            raise lost
+            raise error
 
     return OrHere(workers, raise_unless_cancelled)

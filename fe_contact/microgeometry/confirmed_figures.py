@@ -62,7 +62,7 @@ def _changes(
 
     Stations of roots lie below the load patches: wider ones tell nothing of them.
     """
-    contact, made = evaluator.contact, evaluator.contact.plan.discretization
+    contact, discretization = evaluator.contact, evaluator.contact.plan.discretization
     few, others = (evaluator.at(evaluator.position[first::2]) for first in (0, 1))
 
     def on(other: PairContact, roots: RootInfluence | None = None) -> Evaluation:
@@ -71,8 +71,8 @@ def _changes(
     half = few.evaluate(values)
     yield _Change(evaluation, half)
     yield _Change(evaluation, others.evaluate(values))  # without the largest's position if the first has it
-    if made.slices > 1:
-        yield _Change(half, on(contact.in_slices(made.coarse_slices), evaluator.roots))
+    if discretization.slices > 1:
+        yield _Change(half, on(contact.in_slices(discretization.coarse_slices), evaluator.roots))
     plain = contact.in_plane_strain  # as the coarse meshes are
     coarse = pair_contact(contact.pair, contact.plan, cache, coarse=True)
     by_mesh = [half if other is contact else on(other) for other in (plain, plain.in_coarse_patches, coarse)]

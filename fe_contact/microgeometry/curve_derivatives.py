@@ -1,4 +1,9 @@
-"""Derivatives of curves of transmission error and load arm by the flanks, the alignment and the torque."""
+"""Derivatives of curves of transmission error and load arm by the flanks, the alignment and the torque.
+
+A figure is what a curve is differentiated by: a quantity of a gear's flank modification
+("pinion.tip_relief"), the misalignment, the center distance or the torque. The quantities of a curve are its
+mean, its peak-to-peak and its amplitudes (`curve_quantities`).
+"""
 
 from __future__ import annotations
 
@@ -48,12 +53,12 @@ flanks touch.
 
 
 NEAR = 0.8
-"""Least pressure over the largest that is followed."""
+"""Least pressure, over the largest one, of the points whose pressure is differentiated."""
 
 
 @dataclass(frozen=True)
 class FlankDerivatives:
-    """Derivatives by the flank itself: by material removed at the nodes of a grid, bilinear between them."""
+    """Derivatives by material removed at the nodes of a grid over the flank, bilinear between the nodes."""
 
     roll_length: FloatArray
     face_position: FloatArray
@@ -91,20 +96,21 @@ class CurveDerivatives:
     """`mean`, `peak_to_peak`: Derivatives of mean and peak-to-peak STE by the figures. Shape (A, F) each."""
     harmonics: FloatArray
     """Derivatives of the amplitudes of the mesh harmonics by the figures. Shape (A, 20, F)."""
+    # carrying strips of the solutions, and derivatives of the quantities by the curve, (quantities, P, F)
     _strips: CarryingStrips = field(repr=False)
     _quantities: FloatArray = field(repr=False)
 
     def on_flank(self, gear: str, profile: int = 21, face: int = 21) -> FlankDerivatives:
-        """Return the derivatives by the flank of "pinion" or "wheel" on a grid of so many nodes.
+        """Return the derivatives by the flank of "pinion" or "wheel" on a grid of (profile, face) nodes.
 
-        The grid spans the involute and the face width; in the plane the whole face is one.
+        The grid spans the involute and the face width; in the plane all of the face changes together.
         """
         pair = self._strips.strips.pair
         toothing = getattr(pair, gear)
         ends = toothing.form_roll_length, toothing.tip_roll_length
         roll = np.linspace(min(ends), max(ends), profile)
         across = 0.5 * toothing.face_width * np.linspace(-1.0, 1.0, face)
-        levels = np.eye(self.torque.size)
+        levels = np.eye(self.torque.size)  # a quantity at torque g depends on the curve at g alone
         rows = np.einsum("qpf,fg->qgpf", self._quantities, levels).reshape(-1, *self.ste.shape)
         slopes = self._strips.on_flank(GEARS.index(gear), roll, across, rows)
         slopes = slopes.reshape(-1, self.torque.size, profile, face)
@@ -129,7 +135,7 @@ def curve_derivatives(
     pair : GearPair or InternalGearPair
         The same macro geometry with any flank modification.
     torques : sequence of float
-        On the driving gear in N m, increasing, > 0.
+        Torques on the driving gear in N m, increasing, > 0.
     by : sequence of str, optional
         Figures, by name: ``gear.quantity`` of `QUANTITIES`, "misalignment", "center_distance_change" and
         "torque"; default: all figures of the flanks that act, the misalignment where it can, and the torque.
@@ -164,9 +170,20 @@ def curve_derivatives(
     curves, period = solution.deflection.T, checked.model.period
     weights = np.stack([quantity_derivatives(curve, period) for curve in curves], axis=-1)
     changes = np.einsum("qpf,apf->aqf", weights, derivatives)
-    of_quantities = changes[:, MEAN], changes[:, PEAK_TO_PEAK], changes[:, FIRST_HARMONIC:]
-    axes_and_curves = names, loads, problem.candidates.position, solution.deflection, derivatives
-    return CurveDerivatives(*axes_and_curves, arm, of_arm, *of_quantities, strips, weights)
+    return CurveDerivatives(
+        names=names,
+        torque=loads,
+        position=problem.candidates.position,
+        ste=solution.deflection,
+        by=derivatives,
+        load_arm=arm,
+        load_arm_by=of_arm,
+        mean=changes[:, MEAN],
+        peak_to_peak=changes[:, PEAK_TO_PEAK],
+        harmonics=changes[:, FIRST_HARMONIC:],
+        _strips=strips,
+        _quantities=weights,
+    )
 
 
 def _differences(
@@ -180,7 +197,10 @@ def _differences(
 
 
 def _all_names(pair: ParallelAxes, checked: Checked) -> tuple[str, ...]:
-    """Return everything that acts and costs no further curve."""
+    """Return the names of all figures that change the curves, but for the center distance.
+
+    The derivative by the center distance costs a further solution.
+    """
     flanks = [f"{gear}.{quantity}" for gear in GEARS for quantity in QUANTITIES]
     named = (
         *(name for name in flanks if not lacks_length(pair, name.removesuffix("_length"))),
@@ -237,7 +257,7 @@ class Difference:
         return cls(above, below, value + step - low)
 
     def opened(self, strips: CarryingStrips) -> FloatArray:
-        """Return the normal approach that it takes away from each of them, (k,), m/m."""
+        """Return the change of the normal gap of each strip by the figure, (k,), m/m."""
         return strips.opened(self.above, self.below) / self.over
 
 

@@ -1,4 +1,9 @@
-"""The problem that a search solves: points of the unit cube to one number."""
+"""The problem that a search solves: the merit of points of the unit cube.
+
+Each of d variables of a design has a range that is one side of the cube. The objective is to be least; the
+violation is the largest relative excess over a limit; the merit is the objective over its scale plus a
+penalty on the violation.
+"""
 
 from __future__ import annotations
 
@@ -19,16 +24,14 @@ from fe_contact.types import FloatArray
 from model_studies.workers import InProcess, Workers
 
 PENALTY = 10.0
-"""Merit of a limit that is exceeded by its own size, over the scale: an excess of 1 % costs a tenth of the
-scale.
-"""
+"""Merit per violation: an excess of 1 % over a limit costs a tenth of the objective's scale."""
 
 SLACK = 0.005
 """Largest relative excess over a limit that counts as kept. A full analysis has more positions than a search.
 """
 
 USUAL_DESIGNS = 100
-"""Designs of all walks of a usual search. The cost of waking workers is shared among them."""
+"""Designs of all walks of a usual search, over which the cost of starting workers is divided."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +62,7 @@ class _Memory(Protocol):
         """Return the stored evaluation of a design at positions; None if there is none."""
 
     def add(self, values: FloatArray, position: FloatArray, figures: tuple[float, float]) -> None:
-        """Keep the figures of a design."""
+        """Store objective and violation of a design."""
 
 
 @dataclass(frozen=True)
@@ -75,7 +78,7 @@ class SearchProblem(ABC):
     """Memory of designs that were assessed before; None without such a memory."""
 
     def __getstate__(self) -> dict[str, object]:
-        """Leave the memory behind: it is a file of this machine, for one writer."""
+        """Return the fields without the memory, which is a file of this machine for one writer."""
         return vars(self) | {"memory": None}
 
     @property
@@ -100,7 +103,7 @@ class SearchProblem(ABC):
         return np.asarray(np.clip(np.array(fractions), 0.0, 1.0))
 
     def rough(self, positions: int) -> Self:
-        """Return the problem at fewer positions, equally spaced in a base pitch; itself if they are not."""
+        """Return the problem at fewer positions, equally spaced in a base pitch; itself if it has no more."""
         if positions >= self.evaluator.position.size:
             return self
         return replace(self, evaluator=self.evaluator.at(np.arange(positions) / positions))
@@ -110,16 +113,16 @@ class SearchProblem(ABC):
         return self._with_merit(*self._figures(self.values(point)))
 
     def keep(self, point: FloatArray, assessed: Assessed) -> None:
-        """Have the memory learn of an assessed design, whoever assessed it."""
+        """Store an assessed design in the memory, which a worker's copy of the problem does not have."""
         key, position = np.array(list(self.values(point).values())), self.evaluator.position
         if self.memory is not None and self.memory.find(key, position) is None:
             self.memory.add(key, position, (assessed.objective, assessed.violation))
 
     @abstractmethod
     def linearize(self, point: FloatArray, workers: Workers) -> tuple[Assessed, Merit]:
-        """Evaluate the design at a point (d,) with its derivatives, nodes of its scatter by workers.
+        """Evaluate the design at a point (d,), and its merit to first order about it.
 
-        Its merit to first order has NaN where the contact cannot be solved.
+        Workers share the nodes of the scatter. The merit has NaN where the contact cannot be solved.
         """
 
     @abstractmethod
@@ -128,7 +131,7 @@ class SearchProblem(ABC):
 
     @abstractmethod
     def relative(self, objective: float) -> float:
-        """Return the merit of an objective: 1 of the start's."""
+        """Return the merit of an objective: 1 for that of the start design."""
 
     def _with_merit(self, objective: float, violation: float) -> Assessed:
         if not math.isfinite(objective):
@@ -136,7 +139,7 @@ class SearchProblem(ABC):
         return Assessed(objective, violation, self.relative(objective) + PENALTY * violation)
 
     def _figures(self, values: dict[str, float]) -> tuple[float, float]:
-        """Return objective and violation of a design, from the memory if it is there."""
+        """Return objective and violation of a design, from the memory if it has them."""
         key, position = np.array(list(values.values())), self.evaluator.position
         known = None if self.memory is None else self.memory.find(key, position)
         return self.evaluated(values) if known is None else known
@@ -149,19 +152,19 @@ class DesignProblem(SearchProblem):
     objective: Objective = field(kw_only=True)
 
     def linearize(self, point: FloatArray, workers: Workers) -> tuple[Assessed, LinearMerit]:
-        """Evaluate the design at a point (d,), its merit exact over curves that are linear."""
+        """Evaluate the design at a point (d,), and its merit over curves that are linear in the variables."""
         values = self.values(point)
         tasks = [(values, nodes) for nodes in self.evaluator.runs]
-        by = workers if len(tasks) > 1 else InProcess()
-        design = joined(self.evaluator, [*chain(*by.run(_linearized_nodes, self, tasks))])
+        executor = workers if len(tasks) > 1 else InProcess()
+        design = joined(self.evaluator, [*chain(*executor.run(_linearized_nodes, self, tasks))])
         objective, violation = self._assessed(design.evaluation)
         merit = LinearMerit(
-            design.evaluation.ste / self.scale,
-            design.curves * (self.ranges / self.scale),
-            self.evaluator.nodes.weight,
-            self.objective.rows(self.evaluator.load.size),
-            tuple((value, by * self.ranges) for value, by in design.limits),
-            PENALTY,
+            curves=design.evaluation.ste / self.scale,
+            by=design.curves * (self.ranges / self.scale),
+            node_weight=self.evaluator.nodes.weight,
+            load_weight=self.objective.rows(self.evaluator.load.size),
+            limits=tuple((value, by * self.ranges) for value, by in design.limits),
+            penalty=PENALTY,
         )
         return self._with_merit(objective, violation), merit
 
@@ -170,7 +173,7 @@ class DesignProblem(SearchProblem):
         return self._assessed(self.evaluator.evaluate(values))
 
     def relative(self, objective: float) -> float:
-        """Return the objective in parts of the scale."""
+        """Return the objective over the scale."""
         return objective / self.scale
 
     def _assessed(self, evaluated: Evaluation) -> tuple[float, float]:

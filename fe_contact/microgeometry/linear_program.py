@@ -17,7 +17,9 @@ class LinearMerit:
     """Merit of designs to first order in d variables."""
 
     curves: FloatArray
-    """Transmission error at S nodes of the scatter, in parts of the scale of the merit. Shape (S, P, L)."""
+    """Transmission error at S nodes of the scatter, P positions and L loads, over the merit's scale. Shape
+    (S, P, L).
+    """
     by: FloatArray
     """Derivatives of the curves by the variables. Shape (S, P, L, d)."""
     node_weight: FloatArray
@@ -27,31 +29,32 @@ class LinearMerit:
     limits: tuple[Rows, ...]
     """Rows of each limit: its excess at all points; the largest counts if it is above 0."""
     penalty: float
-    """Merit of an excess over a limit by its own size."""
+    """Merit per unit of the excess over a limit."""
 
     def minimum(self, low: FloatArray, high: FloatArray) -> tuple[FloatArray, float]:
         """Return the step (d,) between two ends (d,) at which the merit is least, and that merit."""
-        made = LinearProgram(self.by.shape[-1])
+        program = LinearProgram(self.by.shape[-1])
         nodes, loads = self.by.shape[0], self.by.shape[2]
         reach = np.maximum(np.abs(low), np.abs(high))
-        top, bottom = made.columns(nodes * loads), made.columns(nodes * loads)
+        # bounds of every curve: their sum is its peak-to-peak
+        top, bottom = program.columns(nodes * loads), program.columns(nodes * loads)
         for s in range(nodes):
             for k in range(loads):
                 value, by = self.curves[s, :, k], self.by[s, :, k]
                 middle = 0.5 * (value.max() + value.min())  # numbers near 1, whatever the mean is
-                made.below(value - middle, by, reach, top[s * loads + k])
-                made.below(middle - value, -by, reach, bottom[s * loads + k])
-        (objective,) = made.columns(1)
-        spread = self.node_weight[:, None, None] * self.load_weight.T  # S, L, R
-        made.sums(spread.reshape(nodes * loads, -1).T, (top, bottom), objective)
-        exceeded = made.columns(len(self.limits), minimum=0.0)
+                program.below(value - middle, by, reach, top[s * loads + k])
+                program.below(middle - value, -by, reach, bottom[s * loads + k])
+        (objective,) = program.columns(1)
+        weight = self.node_weight[:, None, None] * self.load_weight.T  # S, L, R
+        program.sums(weight.reshape(nodes * loads, -1).T, (top, bottom), objective)
+        exceeded = program.columns(len(self.limits), minimum=0.0)
         for column, (value, by) in zip(exceeded, self.limits, strict=True):
-            made.below(value, by, reach, column)
-        return made.solve(low, high, objective, exceeded, self.penalty)
+            program.below(value, by, reach, column)
+        return program.solve(low, high, objective, exceeded, self.penalty)
 
 
 class LinearProgram:
-    """A linear program in `count` steps and further columns, row by row."""
+    """A linear program, built row by row; its unknowns (columns) are `count` entries of a step and others."""
 
     def __init__(self, count: int) -> None:
         self._count, self._minimum = count, [-np.inf] * count
@@ -88,7 +91,7 @@ class LinearProgram:
     def solve(
         self, low: FloatArray, high: FloatArray, objective: int, exceeded: list[int], penalty: float
     ) -> tuple[FloatArray, float]:
-        """Return the step of least merit and the merit; no step where none is found."""
+        """Return the step of least merit and the merit; zero and infinity where no solution is found."""
         cost = np.zeros(len(self._minimum))
         cost[objective], cost[exceeded] = 1.0, penalty
         value, row, column = (np.concatenate(parts) for parts in (self._value, self._row, self._column))

@@ -1,4 +1,8 @@
-"""Tables of a design at its loads, with the derivatives of their curves by its variables."""
+"""STE tables of a design at its loads, with the derivatives of their curves by the design's variables.
+
+A node is a point of the manufacturing scatter at which the design is assessed. Shapes: d variables, K
+designs, P positions, F loads.
+"""
 
 from __future__ import annotations
 
@@ -33,14 +37,15 @@ class TabledLoads:
     figures: LoadFigures
     table: SteDatabase
     by: Mapping[str, FloatArray]
-    """Derivatives of fields of the table by d variables (d, P, F), per m, by the name of the field; empty
-    where none are taken. Derivatives of the tangent compliance are differences between the loads.
+    """Derivatives (d, P, F) of fields of the table by the variables, per m, by the name of the field.
+
+    Empty without variables. The derivative of the tangent compliance is a finite difference between loads.
     """
     limits: tuple[Rows, ...]
     """Rows of the limits, as in `LinearizedNode`."""
 
     def at_loads(self, loads: IntArray) -> TabledLoads:
-        """Return the table of some of the loads, by their rising indices; figures and limits are of all."""
+        """Return the table of some loads, by their rising indices; figures and limits stay those of all."""
         along = {name: axes.index(LOAD) for name, axes in self.table.stored.items() if LOAD in axes}
         arrays = {name: getattr(self.table, name).take(loads, axis) for name, axis in along.items()}
         by = {name: derivatives[:, :, loads] for name, derivatives in self.by.items()}
@@ -49,13 +54,15 @@ class TabledLoads:
     def force_tables(self, steps: FloatArray) -> list[ForceTable]:
         """Return the mesh forces, to first order, of designs that differ by steps (K, d), m.
 
-        They are made at once, as a table over as many misalignments: at levels that all of them share.
+        All designs are made at once, as one table in which each design is a misalignment: so all of them have
+        the same grid of force levels.
         """
         table, count = self.table, len(steps)
         along = {name: axes.index(AXIS) for name, axes in table.stored.items() if AXIS in axes}
         stacked = {name: np.repeat(getattr(table, name), count, axis) for name, axis in along.items()}
         for name, by in self.by.items():
-            stacked[name] = stacked[name] + np.moveaxis(np.tensordot(steps, by, 1), 0, 2)[..., None]
+            change = np.moveaxis(np.tensordot(steps, by, 1), 0, 2)  # (K, P, F) as (P, F, K)
+            stacked[name] = stacked[name] + change[..., None]
         stacked_table = force_table(replace(table, **stacked | {AXIS: SPACING * np.arange(count)}))
         return [stacked_table.at_misalignment(k, table.misalignment) for k in range(count)]
 
@@ -74,7 +81,7 @@ def tabled_loads(
     for node in nodes:
         solved = evaluator.solved(values, (node,))
         for group, (pair, problem, solution) in zip(evaluator.groups, solved, strict=True):
-            skew = float(evaluator.misalignments[node, group[0]])
+            skew = float(evaluator.misalignments[node, group[0]])  # one misalignment for all loads of a group
             table = table_of_solution(pair, problem, solution, evaluator.position, skew)
             yield _tabled(pair, problem, solution, table, names, limits, evaluator.roots)
 
@@ -89,7 +96,7 @@ def _tabled(
     roots: RootInfluence | None,
 ) -> TabledLoads:
     if not names:
-        return TabledLoads(LoadFigures.of(problem, solution, roots), table, {}, ())
+        return TabledLoads(figures=LoadFigures.of(problem, solution, roots), table=table, by={}, limits=())
     design = differentiated(pair, problem, solution, names, roots)
     arm = np.stack([design.strips.arm_change(gap) for gap in design.opened])
     by = {
@@ -97,4 +104,4 @@ def _tabled(
         "tangent_compliance": np.gradient(design.ste, solution.load, axis=2),
         "load_arm": arm,
     }
-    return TabledLoads(design.figures, table, by, limit_rows(design, limits))
+    return TabledLoads(figures=design.figures, table=table, by=by, limits=limit_rows(design, limits))

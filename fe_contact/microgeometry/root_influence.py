@@ -1,7 +1,12 @@
 """Stress of the tension roots of both gears as other flanks change the forces of the contact.
 
-Load patches lie where plain involutes touch, so what a force on each slice does to the roots of its tooth and
-of its neighbors follows from unit loads once; the stress is its product with the forces of a solved contact.
+Load patches lie where plain involutes touch, whatever the flanks' modifications. So the stress of the roots
+by a unit force on each slice, on the same tooth and its neighbors, is computed once; the stress under load is
+its product with the forces of a solved contact.
+
+Shapes: P positions of the contact in all pitches, Q positions of the patches (repeated along P), L loads, T
+tooth pairs, Z slices of the face, K nodes of the profile, D distances between teeth, R stations along the
+root (in `rows`: stresses), d changes of the flanks.
 """
 
 from __future__ import annotations
@@ -22,9 +27,9 @@ from fe_contact.contact.patch import Patches
 from fe_contact.types import FloatArray, IntArray
 
 NEAR = 0.8
-"""Stresses from this part of the largest on are followed when flanks change."""
+"""Least stress over the largest that is followed as flanks change: another one may become the largest."""
 FEWEST = 3
-"""Stations along the profile that are left at least, however low the patches reach."""
+"""Least number of stations along the root that count, however low the patches reach."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +42,7 @@ class RootInfluence:
     rough: RootInfluence | None = None
     """Root influence on coarser meshes; None for the coarser meshes themselves."""
     remaining: float = math.nan
-    """Error that is left over the difference to the coarser meshes."""
+    """Error of the stress over its difference to that on the coarser meshes."""
 
     @classmethod
     def of(cls, contact: PairContact, cache: Path | None = None) -> RootInfluence:
@@ -84,13 +89,14 @@ class _GearRoots:
     """Stress of the tension roots of one gear by forces on the slices of T pairs."""
 
     on_nodes: FloatArray
-    """Parts of the force on a slice at each of K nodes of the profile, at Q positions. Shape (Q, T, Z, K)."""
+    """Force at each node of the profile per force on a slice. Shape (Q, T, Z, K)."""
     influence: FloatArray
-    """Stress along the profile, across it and in shear at R stations by a force at a node under a slice, of
-    teeth one after the other, Pa/N. Shape (D, Z, K, 3, R).
+    """Stress at the stations by a force at a node under a slice, by distance of the loaded tooth, Pa/N.
+
+    Its 3 components are along the profile, across it, and shear. Shape (D, Z, K, 3, R).
     """
     row: IntArray
-    """Row of D by which the tooth of the first is loaded by that of the second; -1: not at all. Shape (T, T).
+    """Index of the distance from tooth pair i (stress) to pair j (force); -1: too far to count. Shape (T, T).
     """
 
     @classmethod
@@ -103,7 +109,11 @@ class _GearRoots:
         direction: int,
         offset: float,
     ) -> _GearRoots:
-        """Return the roots of a gear whose teeth count against (-1) or with (1) the pairs."""
+        """Return the roots of a gear.
+
+        `direction`: 1 if tooth numbers grow with those of the pairs, -1 if they fall. `offset`: mid-face of
+        the gear from that of the driving gear, m.
+        """
         slices = candidates.slices
         teeth = np.unique(slices.pair)
         shape = len(slices.present), teeth.size, -1
@@ -115,14 +125,16 @@ class _GearRoots:
         along = slices.face_position.reshape(teeth.size, -1)[0] - offset
         ahead = direction * (teeth[:, None] - teeth) - unit.distance[0]
         known = (ahead >= 0) & (ahead < len(unit.distance))
-        patch = np.concatenate([center - 0.5 * half, center + 0.5 * half], axis=-1)  # its second moment
+        # two points with the second moment of the patch
+        patch = np.concatenate([center - 0.5 * half, center + 0.5 * half], axis=-1)
         on_nodes = _on_profile(unit.s, patch) * factor[..., None]
+        # two points with the second moment of a uniform force on the slice
         ends = (along + end * slices.slice_width / math.sqrt(12.0) for end in (-1.0, 1.0))
         below_contact = [_under_slices(unit, end, below) for end in ends]
         return cls(on_nodes, 0.5 * (below_contact[0] + below_contact[1]), np.where(known, ahead, -1))
 
     def crests(self, pressed: FloatArray) -> tuple[FloatArray, FloatArray, IntArray]:
-        """Return the largest principal stress of each tooth (P, L, T), its components (3, ...) and place."""
+        """Return the largest principal stress of each tooth (P, L, T), its components (3, ...), its place."""
         on_nodes = self._at_rows(pressed)
         rows, (_, slices, nodes, _, stations) = pressed.shape[:2], self.influence.shape
         flat = on_nodes.reshape(-1, len(self.row), slices * nodes)
@@ -146,8 +158,9 @@ class _GearRoots:
         p, load, tooth = near = np.nonzero(crest >= NEAR * crest.max())
         half_difference, shear = 0.5 * (along[near] - across[near]), shear[near]
         radius = np.maximum(np.hypot(half_difference, shear), 1e-300)
+        # derivatives of the principal stress by its components along, across and shear
         turn = 0.5 * half_difference / radius
-        weight = np.stack([0.5 + turn, 0.5 - turn, shear / radius], axis=-1)  # of the components
+        weight = np.stack([0.5 + turn, 0.5 - turn, shear / radius], axis=-1)
         row = self.row[tooth]
         unit = self.influence[np.maximum(row, 0), :, :, :, at[near][:, None]]  # R, T, Z, K, 3
         by_force = np.einsum("rtzkc,rc,rtzk->rtz", unit, weight, self.on_nodes[p % len(self.on_nodes)])
@@ -163,7 +176,10 @@ class _GearRoots:
 
 
 def _on_profile(s: FloatArray, center: FloatArray) -> FloatArray:
-    """Return the parts at nodes `s` (K,) of a force at the mean of some centers (..., c), linear between."""
+    """Return the parts (..., K) at nodes `s` (K,) of a force that acts equally at c centers (..., c).
+
+    The force at a center is divided linearly between the two nodes around it.
+    """
     low = np.clip(np.searchsorted(s, center) - 1, 0, s.size - 2)
     part = np.clip((center - s[low]) / (s[low + 1] - s[low]), 0.0, 1.0)
     hats = (1.0 - part)[..., None] * np.eye(s.size)[low] + part[..., None] * np.eye(s.size)[low + 1]
@@ -171,7 +187,7 @@ def _on_profile(s: FloatArray, center: FloatArray) -> FloatArray:
 
 
 def _under_slices(unit: UnitRootStress, along: FloatArray, below: int) -> FloatArray:
-    """Return the stress (D, Z, K, 3, R) of the lowest stations by forces at `along` (Z,) of the face."""
+    """Return the stress (D, Z, K, 3, R) of the `below` lowest stations by forces at z = `along` (Z,), m."""
     stress = np.moveaxis(unit.stress[:, 0][:, :, :below], -1, 1)
     stress = stress.reshape(*stress.shape[:3], -1)  # D, freedoms, 3, R
     if not unit.across_face:

@@ -1,4 +1,8 @@
-"""Scatter of assembly and manufacture: normal deviations, and the nodes at which designs are assessed."""
+"""Scatter of assembly and manufacture: normal deviations, and the nodes at which designs are assessed.
+
+A quadrature rule replaces the expectation of a quantity over d independent deviations by a weighted sum over
+S nodes, in each of which all d deviations have values.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +20,13 @@ from fe_contact.types import FloatArray, Json
 from model_studies import in_unit
 
 MISALIGNMENT = "misalignment"
+"""Name of the deviation of the misalignment; the others are named ``gear.quantity``."""
 MAX_NODES = 1024
+"""Largest number of nodes of a rule: a design is solved at each of them."""
+MAX_POINTS = 33
+"""Largest number of points of a Gauss-Hermite rule in a dimension."""
+MAX_LOG2_SIZE = 10
+"""Base-2 logarithm of the size of the largest sample, which has `MAX_NODES` points."""
 
 
 class _ScatterRule(Protocol):
@@ -26,7 +36,7 @@ class _ScatterRule(Protocol):
         """Return nodes (S, d) in standard deviations and weights (S,) that sum to 1."""
 
     def finer(self, dimensions: int) -> _ScatterRule:
-        """Return a rule by which the error of this one is estimated."""
+        """Return another rule: the error of this one is the difference of the two expectations."""
 
     def to_json(self) -> Json:
         """Return plain JSON."""
@@ -42,7 +52,7 @@ class GaussHermite:
     points: int = 5
 
     def __post_init__(self) -> None:
-        integer("scatter.rule.points", self.points, 1, 33)
+        integer("scatter.rule.points", self.points, 1, MAX_POINTS)
 
     def nodes(self, dimensions: int) -> tuple[FloatArray, FloatArray]:
         """Return the nodes, the last dimension running fastest."""
@@ -55,14 +65,15 @@ class GaussHermite:
         return np.stack([axis.ravel() for axis in grid], axis=1), np.prod(weights, axis=0).ravel()
 
     def finer(self, dimensions: int) -> _ScatterRule:
-        """Return a rule of one and a half times as many points, or the nearest one that is not too large.
+        """Return a rule of about one and a half times as many points, or the nearest one within `MAX_NODES`.
 
-        That may be a rougher one, which overstates the error, or for a single point a sample.
+        Where no rule with more points fits, it has one point less, which overstates the error. A rule of a
+        single point is then compared with the largest sample.
         """
         for points in (1 + self.points + self.points // 2, self.points + 1, self.points - 1):
             if points > 0 and points**dimensions <= MAX_NODES:
-                return GaussHermite(min(points, 33))
-        return SobolSample(10)
+                return GaussHermite(min(points, MAX_POINTS))
+        return SobolSample(MAX_LOG2_SIZE)
 
     def to_json(self) -> Json:
         """Return plain JSON."""
@@ -79,7 +90,7 @@ class SobolSample:
     """Seed of the scrambling."""
 
     def __post_init__(self) -> None:
-        integer("scatter.rule.log2_size", self.log2_size, 0, 10)
+        integer("scatter.rule.log2_size", self.log2_size, 0, MAX_LOG2_SIZE)
         integer("scatter.rule.seed", self.seed, 0, 2**63 - 1)
 
     def nodes(self, dimensions: int) -> tuple[FloatArray, FloatArray]:
@@ -92,7 +103,7 @@ class SobolSample:
 
     def finer(self, dimensions: int) -> SobolSample:
         """Return the sample of four times the size, of the same sequence."""
-        return SobolSample(min(self.log2_size + 2, 10), self.seed)
+        return SobolSample(min(self.log2_size + 2, MAX_LOG2_SIZE), self.seed)
 
     def to_json(self) -> Json:
         """Return plain JSON."""
@@ -125,15 +136,16 @@ class Scatter:
         return spread | self.rule.to_json()
 
     def nodes(self) -> ScatterNodes:
-        """Return deviations and weights; without any scatter one node."""
+        """Return deviations and weights of the nodes; without any scatter there is one node, the design."""
         spread = {MISALIGNMENT: self.misalignment} if self.misalignment else {}
         spread |= dict(sorted(self.modification.items()))
         if not spread:
             return ONE_NODE
-        return self._of(spread, self.rule, self._of(spread, self.rule.finer(len(spread))))
+        finer = self._rule_nodes(spread, self.rule.finer(len(spread)))
+        return self._rule_nodes(spread, self.rule, finer)
 
     @staticmethod
-    def _of(
+    def _rule_nodes(
         spread: Mapping[str, float], rule: _ScatterRule, finer: ScatterNodes | None = None
     ) -> ScatterNodes:
         point, weight = rule.nodes(len(spread))
@@ -170,4 +182,4 @@ class ScatterNodes:
 
 
 ONE_NODE = ScatterNodes((), np.zeros((1, 0)), np.ones(1))
-"""Nothing scatters."""
+"""Node of a scatter of nothing: the design itself, with weight 1."""

@@ -140,7 +140,7 @@ def search_from(
     workers : Workers
         Who assesses designs, and takes walks, that do not wait for each other.
     """
-    begun = spent(workers)
+    spent_before = spent(workers)
     budget = Budget(search.evaluations, cancel or never, report or unreported)
     merit = CountedMerit(problem, budget, search.evaluations, workers)
     explored = int(EXPLORED * search.evaluations)
@@ -157,7 +157,7 @@ def search_from(
             raise
         ended = Ended.CANCELLED
     assessed, point = _best(problem, merit, rough, start)
-    seconds = spent(workers) - begun
+    seconds = spent(workers) - spent_before
     exploration = len(rough.designs), merit.spread, rough.levels
     return SearchRun(point, assessed, budget.used, ended, seconds, *exploration)
 

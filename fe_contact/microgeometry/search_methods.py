@@ -186,12 +186,12 @@ class StagedLinearProgramming:
             assessed, position = min(rough.ends, key=lambda design: design[0].merit)
             _try_neighbors(rough, _Walk(position, value=assessed.merit), seed)
         known = sorted([*rough.ends, *filter(None, (rough.best,))], key=lambda design: design[0].order)
-        places: list[FloatArray] = []
+        starts: list[FloatArray] = []
         for _, position in known:
-            if all(np.abs(position - other).max() > ASIDE for other in places):
-                places.append(position)
-        ranked = sorted(zip(merit.assessed_in_turn(places), range(len(places)), strict=True))
-        for _ in _following_walks(merit, [_Walk(places[index]) for _, index in ranked[:FINISHED]]):
+            if all(np.abs(position - other).max() > ASIDE for other in starts):
+                starts.append(position)
+        ranked = sorted(zip(merit.assessed_in_turn(starts), range(len(starts)), strict=True))
+        for _ in _following_walks(merit, [_Walk(starts[index]) for _, index in ranked[:FINISHED]]):
             pass  # the merit remembers the best
 
     def to_json(self) -> Json:

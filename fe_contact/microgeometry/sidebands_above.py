@@ -115,14 +115,16 @@ class ToothPassing:
 def _shapes(pair: ParallelAxes, c: Candidates, gear: str) -> dict[str, FloatArray]:
     """Return the gap by a unit of each deviation of a tooth at the candidates, (P, m)."""
     toothing: Toothing = getattr(pair, gear)
-    there = np.isfinite(c.gap)  # elsewhere any point of the flanks, whose shape is set to 0 below
-    rolls = rolls_at(pair, np.where(there, c.touch.s_1, 1.0), np.where(there, c.touch.s_2, toothing.sign))
+    can_touch = np.isfinite(c.gap)  # elsewhere any point of the flanks, whose shape is set to 0 below
+    rolls = rolls_at(
+        pair, np.where(can_touch, c.touch.s_1, 1.0), np.where(can_touch, c.touch.s_2, toothing.sign)
+    )
     wheel = gear == "wheel"
     face = c.face_position - (pair.axial_offset if wheel else 0.0)
     shapes = {FLANK + name: shape for name, shape in tooth_shapes(toothing, rolls[int(wheel)], face).items()}
-    shapes[WOBBLE] = face / toothing.face_width + np.zeros(there.shape)
-    shapes[PITCH] = np.full(there.shape, math.cos(toothing.transverse_pressure_angle))
-    return {name: np.where(there, shape, 0.0) for name, shape in shapes.items()}
+    shapes[WOBBLE] = face / toothing.face_width + np.zeros(can_touch.shape)
+    shapes[PITCH] = np.full(can_touch.shape, math.cos(toothing.transverse_pressure_angle))
+    return {name: np.where(can_touch, shape, 0.0) for name, shape in shapes.items()}
 
 
 @dataclass(frozen=True)

@@ -1,9 +1,9 @@
-"""Curves of pairs within tolerances without a solution each: the least of tangents about pairs solved.
+"""Curves of pairs within tolerances, estimated by tangents about some solved pairs.
 
 At a given load the transmission error is concave in the gaps: where teeth or slices part, others take over.
-Gaps are linear in the deviations of flanks and alignment, so a tangent lies above, and of several the least
-counts. What it is above in the mean is taken off, as further pairs that were solved show it; they also tell
-how far it is off.
+Gaps are linear in the deviations of flanks and alignment. So every tangent is an upper bound, and the minimum
+of several tangents is the estimate. Its mean excess over the solution is measured on further solved pairs and
+subtracted (`correction`); the same pairs show the error that remains.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from fe_contact.ste.curve_quantities import HARMONICS
 from fe_contact.types import FloatArray
 
 AT_ONCE = 4_000_000
-"""Numbers of the curves of pairs that are held in memory together."""
+"""Most numbers of curves that are computed in one batch: bounds the memory."""
 
 
 @dataclass(frozen=True)
@@ -37,18 +37,18 @@ class TangentModel:
 
     @classmethod
     def of(cls, minimum: FloatArray, state: FloatArray, value: FloatArray, by: FloatArray) -> TangentModel:
-        """Return the least of tangents, with nothing taken off."""
+        """Return the minimum of tangents, without a correction."""
         return cls(minimum, np.maximum(state, minimum), value, by, np.zeros(value.shape[1:]))
 
     def with_further(self, other: TangentModel) -> TangentModel:
-        """Return the least of these tangents and others."""
+        """Return the minimum of these tangents and others."""
         state, value, by = (
             np.concatenate([getattr(self, name), getattr(other, name)]) for name in ("state", "value", "by")
         )
-        return TangentModel(self.minimum, state, value, by, self.correction)
+        return TangentModel(minimum=self.minimum, state=state, value=value, by=by, correction=self.correction)
 
     def corrected(self, deviation: FloatArray, ste: FloatArray) -> TangentModel:
-        """Take off what it misses in the mean over pairs (n, d) whose curves (n, P, L) were solved."""
+        """Subtract the mean error over pairs (n, d) whose curves (n, P, L) were solved."""
         error = np.concatenate(list(self.curves(deviation))) - ste
         return replace(self, correction=self.correction + error.mean(axis=0))
 

@@ -163,12 +163,12 @@ def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, 
 
     In as many base pitches as are `solved` of its period.
     """
-    made, loads = plan.discretization, plan.load.size
+    discretization, loads = plan.discretization, plan.load.size
     nodes = expected_positions(pair, plan, period, alignments[0] * alignments[1])
-    work = unit_work(pair, plan, made.slices)
-    rougher = [work, *([work] if made.corrected else [])]
-    if made.slices > 1:
-        rougher.append(unit_work(pair, plan, made.coarse_slices))
+    work = unit_work(pair, plan, discretization.slices)
+    rougher = [work, *([work] if discretization.corrected else [])]
+    if discretization.slices > 1:
+        rougher.append(unit_work(pair, plan, discretization.coarse_slices))
     if plan.coarse_patch != plan.patch:
         rougher.append(work)
     sampled_loads, rows = min(loads, LOADS), sampled_positions(nodes).size
@@ -186,7 +186,7 @@ def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, 
     validation = rows * (validation_loads + WIDE_PROBES * (alignments[0] - 1) * sampled_loads)
     further_rows = rows * (alignments[1] - 1)
     seconds += work.of(further_rows, validation + further_rows * sampled_loads)
-    seconds += _FACE_CHECK if made.slices > 1 else _PLANE_CHECK
+    seconds += _FACE_CHECK if discretization.slices > 1 else _PLANE_CHECK
     return seconds + _TABLE_POINT * nodes * period * alignments[0] * alignments[1] * loads
 
 
@@ -218,12 +218,12 @@ def _candidates(pair: ParallelAxes, slices: int) -> float:
 
 def unit_work(pair: ParallelAxes, plan: Plan, slices: int) -> ContactWork:
     """Return the work of one position and of one point at it, with this number of slices."""
-    made = plan.discretization
+    discretization = plan.discretization
     count, begun = _candidates(pair, slices), _BEGUN * pair.transverse_contact_ratio * slices
-    if not isinstance(made, FaceDiscretization):
+    if not isinstance(discretization, FaceDiscretization):
         point = _PLANE_POINT + _PLANE_CANDIDATE * count
         return ContactWork(_PLANE_POSITION, point, _TOOTH_POINT * count, begun, _TOUCHED * count)
-    elements = max(pair.pinion.normal_module / recipe.flank_size for recipe in made.recipes)
+    elements = max(pair.pinion.normal_module / recipe.flank_size for recipe in discretization.recipes)
     position = (_FACE_POSITION * elements**2 + _FACE_SLICE) * count
     tilted = _FACE_TILT * position if _with_tilt(pair, plan) else position
     at_once = 1.0 + _AT_ONCE * max(1.0 - pair.overlap_ratio, 0.0)
@@ -356,8 +356,8 @@ def predict_run(
     with_errors : bool
         Whether errors are estimated: a minimal receipt has no such stage.
     """
-    made = plan.discretization
-    kind = "face" if isinstance(made, FaceDiscretization) else "plane"
+    discretization = plan.discretization
+    kind = "face" if isinstance(discretization, FaceDiscretization) else "plane"
     fine = _compliance(pair, plan, cache, coarse=False)
     coarse = _compliance(pair, plan, cache, coarse=True) if with_errors else _Cost(0.0, 0.0, 0.0)
     search, solve, check = contact_seconds(pair, plan, model, alignments, with_errors=with_errors)
@@ -380,20 +380,20 @@ def predict_run(
 
 
 def _compliance(pair: ParallelAxes, plan: Plan, cache: Path | None, *, coarse: bool) -> _Cost:
-    made = plan.discretization
+    discretization = plan.discretization
     bodies = plan.bodies(pair)
-    recipes = made.coarse_recipes if coarse else made.recipes
+    recipes = discretization.coarse_recipes if coarse else discretization.recipes
     gears = list(dict.fromkeys(zip((body.right_handed() for body in bodies), recipes, strict=True)))
-    if isinstance(made, FaceDiscretization):
+    if isinstance(discretization, FaceDiscretization):
         solids = [(gear, recipe) for gear, recipe in gears if isinstance(recipe, SectorRecipe)]
         return _Cost.of(_solid(*solid, cache) for solid in solids)
-    hypothesis = made.hypothesis
+    hypothesis = discretization.hypothesis
     costs = [
         _section(pair, gear, recipe, hypothesis, cache)
         for gear, recipe in gears
         if isinstance(recipe, MeshRecipe)
     ]
-    return _Cost.of(costs if coarse else [*costs, *_free_ends(pair, bodies, made, cache)])
+    return _Cost.of(costs if coarse else [*costs, *_free_ends(pair, bodies, discretization, cache)])
 
 
 def _solid(gear: Toothing, recipe: SectorRecipe, cache: Path | None) -> _Cost:
@@ -406,14 +406,14 @@ def _solid(gear: Toothing, recipe: SectorRecipe, cache: Path | None) -> _Cost:
 def _free_ends(
     pair: ParallelAxes,
     bodies: tuple[Toothing, Toothing],
-    made: PlaneDiscretization,
+    discretization: PlaneDiscretization,
     cache: Path | None,
 ) -> Iterator[_Cost]:
     """Yield the cost of the solids that correct the plane: free at their ends, and held along the axis."""
-    if made.finite_width is None:
+    if discretization.finite_width is None:
         return
     teeth = condensed_teeth(pair)
-    for gear, recipe in dict.fromkeys(zip(bodies, made.finite_width, strict=True)):
+    for gear, recipe in dict.fromkeys(zip(bodies, discretization.finite_width, strict=True)):
         if size := free_ends_cached(gear, recipe, teeth, cache):
             yield _Cost(_READ_PLANE, 0.0, size)
         else:
@@ -462,16 +462,16 @@ def effort(pair: ParallelAxes, plan: Plan, model: ContactModel, alignments: tupl
 
     Parameters are those of `predict_run`.
     """
-    made = plan.discretization
+    discretization = plan.discretization
     bodies = tuple(body.right_handed() for body in plan.bodies(pair))
     work = sum(contact_seconds(pair, plan, model, alignments))
-    if isinstance(made, FaceDiscretization):
-        gears = dict.fromkeys(zip(bodies, made.recipes, strict=True))
+    if isinstance(discretization, FaceDiscretization):
+        gears = dict.fromkeys(zip(bodies, discretization.recipes, strict=True))
         return work + sum(_solid_effort(gear.teeth, recipe, plan.level) for gear, recipe in gears)
-    for recipes in (made.recipes, made.coarse_recipes):
+    for recipes in (discretization.recipes, discretization.coarse_recipes):
         sections = dict.fromkeys(zip(bodies, recipes, strict=True))
         work += sum(_section_cost(gear, recipe)[0] for gear, recipe in sections)
-    return work + (_FREE_ENDS * len(dict.fromkeys(bodies)) if made.corrected else 0.0)
+    return work + (_FREE_ENDS * len(dict.fromkeys(bodies)) if discretization.corrected else 0.0)
 
 
 def _solid_effort(teeth: int, recipe: SectorRecipe, level: str) -> float:

@@ -48,8 +48,8 @@ NINE_OF_TEN = 1.28
 class ExpectedError:
     """Error of mean or peak-to-peak STE, whichever is worse, at the load where it is largest.
 
-    Parts are of the size that a tolerance counts by: of the quantity or, where that is less, of the size at
-    which the floor holds.
+    Errors by source are relative, to the same size as a tolerance is: to the quantity, or to a least size
+    where the quantity is less.
     """
 
     mesh: float
@@ -126,9 +126,9 @@ def expected_error(
     Parameters
     ----------
     curves : ExpectedCurves, optional
-        What is known of mean and peak-to-peak before the run; default: those of usual pairs.
+        Mean and peak-to-peak that are known or estimated before the run; default: those of usual pairs.
     model_chosen : bool
-        The caller chose the model.
+        Whether the caller chose the model.
     """
     known = curves or usual_curves(pair, plan)
     parts, values = _parts(pair, plan, known), np.stack([known.mean, known.peak_to_peak])
@@ -147,15 +147,18 @@ def expected_error(
 
 
 def usual_mesh_error(pair: ParallelAxes, plan: Plan) -> tuple[float, float]:
-    """Return the median error by mesh of mean and of peak-to-peak, over the mean's rise under load."""
+    """Return the median errors by mesh of mean and peak-to-peak, over the part of the mean that load adds."""
     made = plan.discretization
     if not isinstance(made, FaceDiscretization):
         return PLANE[plan.level]
     if is_relieved_helical(pair):
         mean, ripple = QUIET[plan.level]
         return made.remaining * mean, made.remaining * ripple
-    helical, wound = helical_share(pair), (RELIEVED if _modified(pair) else HELICAL)[plan.level]
-    mean, ripple = ((1.0 - helical) * a + helical * b for a, b in zip(SPUR[plan.level], wound, strict=True))
+    # between the errors of spur and of helical gears, by the helix
+    helical, of_helical = helical_share(pair), (RELIEVED if _modified(pair) else HELICAL)[plan.level]
+    mean, ripple = (
+        (1.0 - helical) * a + helical * b for a, b in zip(SPUR[plan.level], of_helical, strict=True)
+    )
     return mean, ripple
 
 
@@ -168,7 +171,7 @@ def _modified(pair: ParallelAxes) -> bool:
 
 
 def _parts(pair: ParallelAxes, plan: Plan, known: ExpectedCurves) -> dict[str, FloatArray]:
-    """Return the errors of mean and peak-to-peak by source, each (2, C) in m."""
+    """Return the errors of mean and peak-to-peak by source, each (2, C) in m, for C curves (loads)."""
     made = plan.discretization
     mean, ripple = known.mean, known.peak_to_peak
     values = np.stack([mean, ripple])
@@ -183,8 +186,9 @@ def _parts(pair: ParallelAxes, plan: Plan, known: ExpectedCurves) -> dict[str, F
         plane = np.outer(CORRECTION * np.array(finite_width_excess(pair)) * (1.0, WIDTH_RIPPLE), mean)
     elif bias := plane_bias(pair, made):
         plane = bias.largest(mean, ripple)
-    left = model_errors if known.absolute else in_small_displacements  # large ones are known in m alone
-    method = left(pair, known.force, values, over_face=isinstance(made, FaceDiscretization))
+    # displacements that are not small have errors that are known only with the curves in m
+    error_of = model_errors if known.absolute else in_small_displacements
+    method = error_of(pair, known.force, values, over_face=isinstance(made, FaceDiscretization))
     positions = nothing.copy()
     over_allowed = FACE_POSITIONS if isinstance(made, FaceDiscretization) else PLANE_POSITIONS
     positions[1] = over_allowed * plan.nodes.tolerance * np.maximum(ripple, plan.nodes.least_ripple)

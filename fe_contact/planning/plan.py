@@ -1,4 +1,10 @@
-"""Discretization of a run from a pair, an accuracy and a contact model."""
+"""Discretization of a run from a pair, an accuracy and a contact model.
+
+A strip is the contact of two flanks under a line load, of the half-width b by Hertz. A load patch is the
+area, of half-width a, over which the finite elements get the load of a strip; the local law replaces the
+patch by the strip. Support loads are solved beside the requested ones, to carry the forces down to lift-off
+and into overload.
+"""
 
 from __future__ import annotations
 
@@ -24,25 +30,27 @@ from fe_contact.planning.discretization import (
 from fe_contact.types import BoolArray, FloatArray, Json
 
 WIDER = 1.25
-"""Least width of the wider patches, which measure the error by the width, over that of the patches."""
+"""Least width of the wider patches, which measure the error by the patch width, over that of the patches."""
 PATCHES_SEEN = 0.7
-"""Part of the remaining second-order error that counts, over that change. Strips are not as narrow as points.
+"""Share that counts of an error of second order in the patch width. The order holds for narrow patches;
+strips are not that narrow.
 """
 
 EDGE_PATCH = 0.0125
 """Least length of the patch at a tip edge in modules: two to three elements of the tip (factors of two move
 STE in corner contact by less than 0.05 %)."""
 EDGE_SHARE = 0.5
-"""Share of the largest load whose strip the patch at a tip edge follows. Another pair carries the rest there.
-"""
+"""Share of the largest load whose strip sets the patch at a tip edge; another pair carries the rest there."""
 WIDEST_STRIP = 0.225
-"""Largest half-width of a strip in modules that patches and the local law follow. The receipt counts wider
-ones.
+"""Largest half-width of a strip, in modules, to which patches and the local law are fitted. The receipt
+counts wider strips.
 """
 STRIP_OVER_LAW = 0.6
-"""Largest strip over the reference length of the local law. The law is straight from 0.66 on."""
+"""Half-width of the largest strip over the reference length of the local law. From 0.66 on the law is a
+straight line.
+"""
 PATCH_SHARE = 0.5
-"""Share of the largest load whose strips the load patches follow."""
+"""Share of the largest load whose strips set the width of load patches."""
 SMALLEST_SUPPORT = 1e-3
 """Lowest support load over the largest load."""
 LARGEST_SUPPORT = 2.0
@@ -50,17 +58,19 @@ LARGEST_SUPPORT = 2.0
 SUPPORT_RATIO = 5.0
 """Largest ratio of neighboring support loads."""
 _REACH = 2.5
-"""Spacings of the first nodes: interpolants take two nodes of the pitch before and three of the next one."""
+"""Distance from the end of a base pitch, in spacings of the first nodes, within which interpolants of the
+neighboring pitch use the nodes: two of the pitch before and three of the pitch behind.
+"""
 POSITION_SHARE = 0.5
-"""Part of a tolerance that the search of positions allows as interpolation error. It leaves 0.2 to 0.8 of
-this.
+"""Part of a tolerance that the search of positions allows as interpolation error. The error that remains is
+0.2 to 0.8 of this.
 """
 CLOSEST = 1.0 / 16.0
-"""Least interpolation error that a search allows over the usual one."""
+"""Least interpolation error that a search allows, over that without a tolerance."""
 FLOOR_SHARE = 0.5
-"""Part of the floor of a tolerance that positions use. Meshes and slices take most of the tolerance."""
+"""Part of the floor of a tolerance that positions use; meshes and slices use most of the tolerance."""
 _ROUNDING = 1e-6
-"""Least ripple over the deflection that the search resolves."""
+"""Least peak-to-peak STE that the search resolves, over the deflection."""
 
 
 @dataclass(frozen=True)
@@ -70,41 +80,48 @@ class NodeRule:
     start: int
     """Number of equally spaced nodes that the search begins with."""
     tolerance: float
-    """Interpolation error to keep, as a fraction of each load's peak-to-peak STE."""
+    """Largest interpolation error, over the peak-to-peak STE of each load."""
     maximum: int
     """Largest number of nodes."""
     assessed_pitches: int = 3
     """Number of base pitches of a longer period that the search assesses."""
     least_ripple: float = 0.0
-    """Least peak-to-peak STE, m; smaller ones count as this."""
+    """Least peak-to-peak STE to which the error is relative, m."""
 
     def reached_by_neighbor(self, position: FloatArray) -> BoolArray:
-        """Whether positions (P,) of a base pitch are nodes of interpolants in the neighboring pitches."""
+        """Return which positions (P,) of a base pitch are nodes of interpolants in neighboring pitches."""
         return np.minimum(position, 1.0 - position) * self.start < _REACH
 
     def searched(self, period: int) -> float:
-        """Return in how many base pitches the search solves a position: beside those assessed at the ends."""
-        probes = 4.0 * _REACH / self.start
-        return 1.0 if period == 1 else (1.0 + probes) * min(self.assessed_pitches, period)
+        """Return the mean number of base pitches in which the search solves a position.
+
+        These are the assessed pitches and, near their ends, the neighboring ones.
+        """
+        neighbors = 4.0 * _REACH / self.start
+        return 1.0 if period == 1 else (1.0 + neighbors) * min(self.assessed_pitches, period)
 
     def for_tolerance(self, allowed: AllowedError) -> NodeRule:
-        """Return the rule by which positions take their share of a tolerance, and no more than usual."""
+        """Return the rule by which positions use their share of a tolerance.
+
+        The interpolation error is never larger than without a tolerance, nor smaller than `CLOSEST` of that.
+        """
         wanted = POSITION_SHARE * allowed.relative / self.tolerance
-        closer = min(max(wanted, CLOSEST), 1.0)
-        limit = round(self.maximum / math.sqrt(closer))
-        minimum = FLOOR_SHARE * allowed.least_scale * wanted / closer  # the floor is as asked, however close
-        return replace(self, tolerance=closer * self.tolerance, maximum=limit, least_ripple=minimum)
+        factor = min(max(wanted, CLOSEST), 1.0)
+        limit = round(self.maximum / math.sqrt(factor))
+        # tolerance times least ripple, the floor of the error, does not depend on the limits of the factor
+        minimum = FLOOR_SHARE * allowed.least_scale * wanted / factor
+        return replace(self, tolerance=factor * self.tolerance, maximum=limit, least_ripple=minimum)
 
     def ripple(self, curves: FloatArray) -> FloatArray:
-        """Return the peak-to-peak STE (C,) in m of curves (P, C) in m that the tolerance is a part of."""
+        """Return the peak-to-peak STE (C,) of curves (P, C), both m, to which the tolerance is relative."""
         minimum = np.maximum(self.least_ripple, _ROUNDING * np.abs(curves).max(axis=0))
         return np.asarray(np.maximum(np.ptp(curves, axis=0), minimum))
 
 
-PLANE_NODES = NodeRule(64, 0.0015, 768, 64)
-FACE_NODES = NodeRule(64, 0.005, 192, 3)
-"""Rules of the placement in the plane and over the face. Positions cost a hundred times as much over the
-face, and its curves are smoother.
+PLANE_NODES = NodeRule(start=64, tolerance=0.0015, maximum=768, assessed_pitches=64)
+FACE_NODES = NodeRule(start=64, tolerance=0.005, maximum=192, assessed_pitches=3)
+"""Rules of models in the plane and over the face. A position over the face costs a hundred times as much, and
+its curves are smoother.
 """
 
 
@@ -117,8 +134,8 @@ class Plan:
     coarse_patch: PatchRule
     """`patch`, `coarse_patch`: Load patches, and wider ones, which the coarse meshes resolve."""
     remaining_patches: float
-    """Error left over the change to the wider patches. It is of second order in the width, against patches as
-    narrow as the strips of the largest load; 0 where the run has such narrow patches.
+    """Error by the width of the patches over the change of the result from the patches to the wider ones. The
+    error is of second order in the width, and 0 where patches are as narrow as strips of the largest load.
     """
     positions: int | None
     """Number of fixed positions, or None for adaptive nodes."""
@@ -127,11 +144,11 @@ class Plan:
     load: FloatArray
     """Requested normal forces F_bn in N."""
     support: FloatArray
-    """Further loads in N that carry the force extraction down to lift-off and into overload."""
+    """Support loads, normal forces in N."""
     parts: tuple[str, ...]
     """Parts of the gears' bodies that the finite elements have, as in `ContactModel`."""
     level: str = "standard"
-    """"draft", "medium", "standard" or "fine": that of the meshes."""
+    """Level of the meshes: "draft", "medium", "standard" or "fine"."""
 
     def bodies(self, pair: ParallelAxes) -> tuple[Toothing, Toothing]:
         """Return both gears as their finite elements have them."""
@@ -162,13 +179,13 @@ def make_plan(
     load : ndarray
         Requested normal forces in N, increasing, > 0.
     model : ContactModel
-        `across_face` asks for three dimensions, `finite_width` for a plane corrected towards them, `parts`
-        for what the bodies have.
+        `across_face` asks for three dimensions, `finite_width` for a plane corrected for the face width.
+        `parts` are the parts of the bodies.
     level : str
-        Of the meshes, unless the accuracy names one; `fe_contact.planning.planned` chooses it by the
+        Level of the meshes, unless `options` name one; `fe_contact.planning.planned` chooses it by the
         accuracy.
     slices : int, optional
-        Of the face in three dimensions; default: those of the level.
+        Number of slices of the face in three dimensions; default: that of the level.
     """
     level = options.level or level
     levels = increasing("load", load)
@@ -183,27 +200,32 @@ def make_plan(
     nodes = FACE_NODES if model.across_face else PLANE_NODES
     if options.tolerance is not None:
         nodes = nodes.for_tolerance(options.tolerance)
+    # support loads: a geometric sequence up to the lowest requested load, without it, and one for overload
     low, high = SMALLEST_SUPPORT * levels[-1], levels[0]
     below = max(math.ceil(math.log(high / low) / math.log(SUPPORT_RATIO)), 0) if high > low else 0
     support = np.concatenate([np.geomspace(low, high, below + 1)[:-1], [LARGEST_SUPPORT * levels[-1]]])
+    patch, coarse_patch, remaining_patches = patches
     return Plan(
-        discretization,
-        *patches,
-        options.positions,
-        nodes,
-        levels,
-        support,
-        model.parts,
-        level,
+        discretization=discretization,
+        patch=patch,
+        coarse_patch=coarse_patch,
+        remaining_patches=remaining_patches,
+        positions=options.positions,
+        nodes=nodes,
+        load=levels,
+        support=support,
+        parts=model.parts,
+        level=level,
     )
 
 
 def patch_rules(pair: ParallelAxes, force: float, made: Discretization) -> tuple[PatchRule, PatchRule, float]:
-    """Return the load patches, wider ones that measure their error, and the part of that change that is left.
+    """Return the load patches, the wider patches, and the factor from their difference to the error.
 
-    Patches are as wide as strips under half the largest load, and as the mesh asks; the wider ones as the
-    coarse mesh asks, but no wider than a slice if that tells enough. `force` is the largest requested load in
-    N. The local law reaches as far as the strips of any load, whatever the patches.
+    Patches are as wide as strips under half the largest load, or as wide as the mesh can resolve. The wider
+    ones are as wide as the coarse mesh can resolve, but no wider than a slice, and at least `WIDER` times as
+    wide if the mesh set the patches. `force` is the largest requested load in N. The local law holds for the
+    strips of all loads, the support loads included.
     """
     cosine = math.cos(pair.base_helix_angle)
     modulus = contact_modulus(pair.pinion.material, pair.wheel.material)
@@ -214,9 +236,11 @@ def patch_rules(pair: ParallelAxes, force: float, made: Discretization) -> tuple
     coarse, coarse_edge = _resolved(made, made.coarse_recipes)
     slice_width = pair.face_width / (SLICE_OVER_PATCH * made.slices)
     wider = max(min(coarse, slice_width), WIDER * half if half > wanted else half)
-    left = PATCHES_SEEN * (1.0 - (wanted / half) ** 2) / ((wider / half) ** 2 - 1.0) if half > wanted else 0.0
+    remaining = 0.0
+    if half > wanted:  # the error grows with the square of the width
+        remaining = PATCHES_SEEN * (1.0 - (wanted / half) ** 2) / ((wider / half) ** 2 - 1.0)
     coarse_edge = max(coarse_edge, edge)
-    return PatchRule(half, edge, edge_load, law), PatchRule(wider, coarse_edge, edge_load, law), left
+    return PatchRule(half, edge, edge_load, law), PatchRule(wider, coarse_edge, edge_load, law), remaining
 
 
 def _resolved(made: Discretization, recipes: tuple[MeshRecipe | SectorRecipe, ...]) -> tuple[float, float]:
@@ -226,10 +250,10 @@ def _resolved(made: Discretization, recipes: tuple[MeshRecipe | SectorRecipe, ..
 
 
 def wanted_patch(pair: ParallelAxes, force: float) -> float:
-    """Return the half-width in m of load patches for loads up to one in N, whatever the mesh.
+    """Return the half-width in m of load patches for loads up to `force`, N, whatever the mesh resolves.
 
-    Bodies give way by a part in proportion to a^2 under a patch, and by 3/2 b^2 under a strip that widens
-    with its load: patches are right for half of it.
+    The deflection of the bodies has a part in proportion to a^2 under a patch, and to 3/2 b^2 under a strip
+    that widens with its load. The patches are exact for `PATCH_SHARE` of the load.
     """
     return math.sqrt(1.5) * longest_strip(pair, PATCH_SHARE * force)
 
@@ -240,7 +264,10 @@ def longest_strip(pair: ParallelAxes, force: float) -> float:
 
 
 def _widest_strip(pair: ParallelAxes, force: float) -> float:
-    """Hertz half-width in m at the pitch point under the whole force; no aligned contact is much wider."""
+    """Return the half-width in m by Hertz at the pitch point under the whole force.
+
+    No contact of aligned flanks is much wider.
+    """
     roll_1, roll_2 = pair.roll_lengths(0.0, 0)
     cosine = math.cos(pair.base_helix_angle)
     radius = relative_radius(roll_1, pair.wheel.sign * roll_2) / cosine

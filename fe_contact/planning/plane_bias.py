@@ -10,13 +10,13 @@ from fe_contact.planning.model_error import bending_ripple
 from fe_contact.ste.plane_bias import PlaneBias
 
 
-def plane_bias(pair: ParallelAxes, made: Discretization) -> PlaneBias | None:
+def plane_bias(pair: ParallelAxes, discretization: Discretization) -> PlaneBias | None:
     """Return the bias of a discretization; None in three dimensions and in a plane that is corrected."""
-    if isinstance(made, FaceDiscretization) or made.corrected:
+    if isinstance(discretization, FaceDiscretization) or discretization.corrected:
         return None
-    if made.hypothesis is PlaneHypothesis.PLANE_STRESS:
+    if discretization.hypothesis is PlaneHypothesis.PLANE_STRESS:
         mean, ripple = (1.0 / (1.0 + excess) - 1.0 for excess in plane_stress_excess(pair))
     else:
         mean, ripple = finite_width_excess(pair)
-    model, width = made.hypothesis.value.replace("_", " "), 1e3 * pair.face_width
+    model, width = discretization.hypothesis.value.replace("_", " "), 1e3 * pair.face_width
     return PlaneBias(f"{model}: over the face of {width:.4g} mm", mean, ripple, bending_ripple(pair))

@@ -1,4 +1,8 @@
-"""The plausibility checks of gear pairs and their results: quantity, limits, source."""
+"""The plausibility checks of gear pairs and their results.
+
+The arguments of a check are its name, the quantity in words, its lower and upper limit (None: no limit), the
+unit of the limits, and their source.
+"""
 
 from __future__ import annotations
 
@@ -197,6 +201,7 @@ CHECKS: dict[str, Check] = {check.name: check for check in (*_PARTS, *_DEVIATION
 """All checks by name."""
 
 assessed = Checklist(CHECKS).assessed
+"""Function that compares values with the limits of checks; it returns the findings."""
 
 
 SOLVED = ("hertz_pressure", "transmission_error")

@@ -43,10 +43,10 @@ def errors_by_source(table: SteFields, point: OperatingPoint) -> FloatArray:
 
     Linear between the nodes. NaN: not estimated.
     """
-    values, places = np.moveaxis(table.curve_error, (2, 3, 4), (0, 1, 2)), source_places(table, point)
-    at_nodes = places.at_nodes(np.delete(values, np.s_[len(AT_NODES) : len(SOURCES)], axis=3))[0]
+    values, interpolation = np.moveaxis(table.curve_error, (2, 3, 4), (0, 1, 2)), source_places(table, point)
+    at_nodes = interpolation.at_nodes(np.delete(values, np.s_[len(AT_NODES) : len(SOURCES)], axis=3))[0]
     between = [
-        places.of_interval(values[..., source, :], i)[0]
+        interpolation.of_interval(values[..., source, :], i)[0]
         for i, source in enumerate(range(len(AT_NODES), len(SOURCES)))
     ]
     first, derivatives = np.split(at_nodes, [len(AT_NODES)])

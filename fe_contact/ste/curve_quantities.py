@@ -1,4 +1,9 @@
-"""Mean, peak-to-peak and mesh harmonics of transmission-error curves, and how they differ."""
+"""Mean, peak-to-peak and mesh harmonics of transmission-error curves, and the differences of these.
+
+A curve covers `period` base pitches; its orders are multiples of the frequency of the period, of which each
+`period`-th is a mesh harmonic. Orders off the mesh arise where pitches differ. Shapes: P or Q positions, C
+curves, 23 quantities (`QUANTITIES`): mean, peak-to-peak, the largest order off the mesh, 20 mesh harmonics.
+"""
 
 from __future__ import annotations
 
@@ -20,9 +25,12 @@ between pitches.
 QUANTITIES = FIRST_HARMONIC + HARMONICS
 BY_SOURCE = {"mean_m": MEAN, "peak_to_peak_m": PEAK_TO_PEAK, "first_harmonic_m": FIRST_HARMONIC}
 """Index of each quantity whose errors a receipt has by source, by its key; m."""
-# samples of a pitch, a dozen for the shortest harmonic, and of a long period where that would be too many
 _PER_PITCH, _PER_PERIOD, _FEWEST = 256, 2**15, 64
+"""Samples of a base pitch, a dozen for the shortest harmonic; most samples of a period; least of a base pitch
+in a long period, which comes first.
+"""
 _FEWEST_ROWS = 8
+"""Least positions with a solution for which a curve has quantities."""
 
 
 class Quantities(NamedTuple):
@@ -38,9 +46,10 @@ def quantity_changes(
 ) -> FloatArray:
     """Return by how much the quantities of two sets of curves differ, (23, C) in m.
 
-    Of a harmonic it is the length of the difference of the two phasors, which bounds the change of its
-    amplitude and does not vanish where only the phase moves; of peak-to-peak, where the knots are the same,
-    at least half the peak-to-peak of the difference, since the change itself may cross zero by accident.
+    The difference of a harmonic is the length of the difference of the two phasors, which bounds the change
+    of its amplitude and does not vanish where only the phase moves. The difference of peak-to-peak, where the
+    knots are the same, is at least half the peak-to-peak of the difference of the curves, since it may cross
+    zero by accident.
 
     Parameters
     ----------
@@ -56,7 +65,8 @@ def quantity_changes(
     Returns
     -------
     ndarray
-        NaN for curves with fewer than eight rows. Beside the mesh that of the order that changes most.
+        NaN for curves with fewer than eight positions with a solution. The entry of orders off the mesh is
+        the difference of the order that changes most.
     """
     knots = position if at is None else at
     good = np.isfinite(curves) if at is not None else np.isfinite(curves) & np.isfinite(other)
@@ -82,7 +92,8 @@ def quantity_changes(
 def quantity_derivatives(values: FloatArray, period: int) -> FloatArray:
     """Return the derivatives of the quantities of a curve by its values, (23, P).
 
-    Of the amplitude of a harmonic; of peak-to-peak by the highest and the lowest value; none beside the mesh.
+    Those of a harmonic are of its amplitude, those of peak-to-peak are 1 at the highest and -1 at the lowest
+    value. The row of orders off the mesh is 0.
 
     Parameters
     ----------
@@ -105,7 +116,7 @@ def quantity_derivatives(values: FloatArray, period: int) -> FloatArray:
 
 
 def _with_bend(changes: FloatArray, difference: FloatArray) -> FloatArray:
-    """Let peak-to-peak change at least by half the peak-to-peak of the difference (P, C)."""
+    """Return changes, that of peak-to-peak at least half the peak-to-peak of `difference` (P, C)."""
     minimum = 0.5 * np.ptp(difference, axis=0)
     return np.concatenate([changes[:1], np.maximum(changes[1:2], minimum), changes[2:]])
 
@@ -120,7 +131,7 @@ def peak_excess(position: FloatArray, values: FloatArray, period: int) -> FloatA
 
 
 def _crest_excess(step: FloatArray, values: FloatArray) -> FloatArray:
-    """Height of the highest corner above the highest knot, >= 0."""
+    """Return the height of the highest corner above the highest knot, >= 0, (C,) in m."""
     following = np.roll(values, -1, axis=0)
     chord = (following - values) / step
     before, after = np.roll(chord, 1, axis=0), np.roll(chord, -1, axis=0)
@@ -132,9 +143,10 @@ def _crest_excess(step: FloatArray, values: FloatArray) -> FloatArray:
 
 
 def error_bound(position: FloatArray, band: FloatArray, values: FloatArray, period: int) -> FloatArray:
-    """Return the largest errors of quantities by errors within bands (P, C) of curves (P, C), (23, C); m.
+    """Return the largest errors (23, C), m, of the quantities of curves (P, C) with errors in a band (P, C).
 
-    To the mean their mean, to peak-to-peak their sum at both extremes, to any order twice their mean.
+    The error of the mean is the mean of the band, that of peak-to-peak the sum of the band at both extremes,
+    and that of any order twice the mean of the band.
     """
     mean = mean_of_curves(position, np.nan_to_num(band), period)
     known = np.nan_to_num(values)
@@ -160,7 +172,7 @@ def _quantities(position: FloatArray, values: FloatArray, period: int) -> Quanti
 
 
 def _changes(quantities: Quantities, other: Quantities) -> FloatArray:
-    """Differences of two sets of quantities, (23, C)."""
+    """Return the differences of two sets of quantities, (23, C)."""
     lines, ripple = np.abs(quantities.lines - other.lines), np.abs(quantities.ripple - other.ripple)
     mesh = lines[:: quantities.period].copy()
     lines[:: quantities.period] = 0.0

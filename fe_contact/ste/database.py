@@ -47,7 +47,11 @@ def _with_axis_derivatives(mesh_force: MeshForce) -> ForceTable:
 
 
 def _by_order(grid: LevelGrid) -> FloatArray:
-    """Numbers of a grid over position, misalignment, center distance as (2, 2, 2, M, D, P, L)."""
+    """Return the values and derivatives of a grid as one array, (2, 2, 2, M, D, P, L).
+
+    The first three axes are the orders of differentiation by misalignment, center distance and position, 0 or
+    1. The others are the knots of these coordinates (M, D, P) and the levels (L).
+    """
     shape = np.moveaxis(grid.nodal[(0, 0, 0)], 0, 2).shape
     numbers = np.zeros((2, 2, 2, *shape))
     for (position, misalignment, distance), entry in grid.nodal.items():

@@ -1,4 +1,9 @@
-"""The mesh-force table of an STE database."""
+"""The mesh-force table of an STE database.
+
+Axis letters: P positions, F stored loads, S support loads, M misalignments, D changes of the center distance,
+L levels of the table, n pairs of teeth. A support load is solved to carry the table down to lift-off and
+beyond the highest stored load; results do not show it.
+"""
 
 from __future__ import annotations
 
@@ -16,11 +21,15 @@ from fe_contact.ste.level_grid import deflection_grid, monotone_stiffness, stiff
 from fe_contact.ste.load_levels import SMOOTHING, LoadLevels, gradual_contact, refined_levels
 from fe_contact.types import FloatArray, IntArray
 
+SHORT_LINE = 1e-9
+"""Half length of a line of contact over the width of the smoothed sign, below which it counts as a point."""
+
 
 def sliding_sums(database: SteFields) -> tuple[FloatArray, FloatArray]:
     """Return sum of share sign(y) and sum of share |y| (m) over the pairs, both (P, F, M, D).
 
-    The sign is y/sqrt(y^2 + h^2), h `SMOOTHING` base pitches. On helical teeth the load of a pair lies
+    `y` is the distance of a pair from the pitch point along the line of action, m. The sign is smoothed,
+    y/sqrt(y^2 + h^2) with h of `SMOOTHING` base pitches. On helical teeth the load of a pair lies
     uniformly on its line of contact over the whole face, which spans b tan(beta_b) of the path.
     """
     gears = database.geometry
@@ -34,8 +43,8 @@ def sliding_sums(database: SteFields) -> tuple[FloatArray, FloatArray]:
 
 
 def _averages(y: FloatArray, half: float, width: float) -> tuple[FloatArray, FloatArray]:
-    """Means of the smoothed sign(y) and of y sign(y) over y - half .. y + half."""
-    if half <= 1e-9 * width:
+    """Return the means of the smoothed sign(y) and of y sign(y) over y - half .. y + half."""
+    if half <= SHORT_LINE * width:
         root = np.sqrt(y**2 + width**2)
         return np.asarray(y / root), np.asarray(y**2 / root)
     low, high = y - half, y + half
@@ -82,22 +91,25 @@ def force_table(database: SteFields) -> ForceTable:
 
 
 def _at_levels(database: SteFields, stored: FloatArray, level: FloatArray) -> FloatArray:
-    """Put a quantity of the stored loads (P, F, M, D) on all levels (P, M, D, L): linear in the force.
+    """Return a quantity of the stored loads (P, F, M, D) on all levels (P, M, D, L), linear in the force.
 
-    At lift-off it keeps its value at the lowest load, where the contact begins.
+    Below the lowest stored load, down to lift-off, it has the value at that load; above the highest likewise.
     """
-    at = level / math.cos(database.geometry.base_helix_angle)
-    above = np.clip(np.searchsorted(database.force, at), 1, max(database.force.size - 1, 1))
+    force = level / math.cos(database.geometry.base_helix_angle)  # normal force
+    above = np.clip(np.searchsorted(database.force, force), 1, max(database.force.size - 1, 1))
     if database.force.size == 1:
         return np.repeat(np.moveaxis(stored, 1, -1), level.size, axis=-1)
     low, high = database.force[above - 1], database.force[above]
-    share = np.clip((at - low) / (high - low), 0.0, 1.0)
+    share = np.clip((force - low) / (high - low), 0.0, 1.0)
     values = np.moveaxis(stored, 1, -1)
     return np.asarray((1.0 - share) * values[..., above - 1] + share * values[..., above])
 
 
 def _stored_levels(database: SteFields) -> LoadLevels:
-    """Lift-off, the stored and the support loads, with stiffness limited at the knots."""
+    """Return the levels of lift-off, the stored and the support loads, by increasing load.
+
+    Their stiffness is limited at the stored positions, so that the force increases with deflection there.
+    """
     to_transverse = math.cos(database.geometry.base_helix_angle)
     force, order = _all_loads(database)
     tangent = _merged(database.tangent_compliance, database.support_tangent_compliance, order)
@@ -110,7 +122,7 @@ def _stored_levels(database: SteFields) -> LoadLevels:
 
 
 def _all_loads(database: SteFields) -> tuple[FloatArray, IntArray]:
-    """Sort stored and support loads, N; return them and where each stood among the two in a row."""
+    """Return stored and support loads in increasing order, N, and the indices that sort them (F + S,)."""
     force = np.concatenate([database.force, database.support_force])
     order = np.argsort(force)
     return force[order], order
@@ -122,7 +134,7 @@ def _merged(stored: NDArray[Any], support: NDArray[Any], order: IntArray) -> NDA
 
 
 def _require_increasing(database: SteFields, force: FloatArray, deflection: FloatArray) -> None:
-    """Refuse noise that breaks the order of the levels, naming where it is worst."""
+    """Raise `DatabaseError` where the deflection falls with load, with the point where it falls most."""
     gaps = np.diff(deflection, axis=-1)
     if np.all(gaps > 0.0):
         return
@@ -139,7 +151,10 @@ def _require_increasing(database: SteFields, force: FloatArray, deflection: Floa
 
 
 def _knot_limit(deflection: FloatArray, level: FloatArray) -> FloatArray:
-    """Three times the smaller of the secants below and above each level, at the knots."""
+    """Return three times the smaller of the secants below and above each level, at the stored positions.
+
+    A larger stiffness would make the cubic between two levels fall (`monotone_stiffness`).
+    """
     secant = np.diff(level) / np.diff(deflection, axis=-1)
     beyond = np.full_like(secant[..., :1], np.inf)
     return np.asarray(
@@ -148,5 +163,5 @@ def _knot_limit(deflection: FloatArray, level: FloatArray) -> FloatArray:
 
 
 def _position_third(entry: FloatArray) -> FloatArray:
-    """(P, M, D, L) to (M, D, P, L)."""
+    """Reorder the axes of an array from (P, M, D, L) to (M, D, P, L)."""
     return np.moveaxis(entry, 0, 2)

@@ -1,7 +1,8 @@
 """Tables of forces over transmission errors: levels, cubics and pieces.
 
-A level is a mesh force whose transmission error is stored over position. Between two levels the force is a
-monotone cubic of the transmission error, a piece.
+A level is a mesh force whose transmission error (deflection) is stored over position. Between two levels the
+force is a monotone cubic of the deflection, a piece. Above the highest level the force is the straight line
+with the stiffness of that level. Slopes are derivatives by position. Q queries are evaluated at once.
 """
 
 from __future__ import annotations
@@ -14,6 +15,13 @@ from numpy.typing import NDArray
 
 from bounds.brief import brief
 from fe_contact.types import FloatArray
+
+ITERATION_LIMIT = 80
+"""Most steps to a root: bisection alone resolves the fraction of a width in 52."""
+ROOT_ERROR = 4e-16
+"""Step relative to the root at which the search ends: two roundings of a number."""
+SMALLEST_ROOT = 1e-9
+"""Root to which steps are relative where it is smaller."""
 
 
 @dataclass(frozen=True)
@@ -37,14 +45,14 @@ class ForceCubic:
         return np.asarray(self.width * self.stiffness_ends.T)
 
     def cubic(self, t: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Force and its derivative in t at fraction t of the width."""
+        """Return the force and its derivative by t, at the fraction t of the width."""
         (low, high), (k0, k1) = self.force_ends.T, self.tangent_ends
         s = 1.0 - t
         force = low + (high - low) * t * t * (3.0 - 2.0 * t) + t * s * (s * k0 - t * k1)
         return force, 6.0 * t * s * (high - low) + s * (1.0 - 3.0 * t) * k0 + t * (3.0 * t - 2.0) * k1
 
     def position_slope(self, t: FloatArray, tangent: FloatArray) -> FloatArray:
-        """Differentiate in position at constant deflection; `tangent` is the derivative in t."""
+        """Return the derivative of the force by position at constant deflection; `tangent` is that by t."""
         s = 1.0 - t
         width, width_slope = self.width, self.deflection_slopes[:, 1] - self.deflection_slopes[:, 0]
         end_tangents = width_slope[:, None] * self.stiffness_ends + width[:, None] * self.stiffness_slopes
@@ -54,7 +62,10 @@ class ForceCubic:
     def sample(
         self, d: FloatArray, lifted: NDArray[np.bool_], above: NDArray[np.bool_]
     ) -> tuple[FloatArray, ...]:
-        """Force, stiffness and position slope at deflection d; zero if lifted off, straight above."""
+        """Return force, stiffness and derivative of the force by position at the deflection d.
+
+        They are zero for queries that are `lifted` off, and those of the straight line for queries `above`.
+        """
         beyond = d - self.deflection_ends[:, 1]
         t = np.clip((d - self.deflection_ends[:, 0]) / self.width, 0.0, 1.0)
         force, tangent = self.cubic(t)
@@ -66,18 +77,21 @@ class ForceCubic:
         return tuple(np.where(lifted, 0.0, values) for values in (force, stiffness, position_slope))
 
     def deflection(self, force: FloatArray, above: NDArray[np.bool_]) -> FloatArray:
-        """Deflection at which the cubic, or above it the straight line, reaches `force`."""
+        """Return the deflection at which the cubic, or for queries `above` the line, reaches `force`."""
         beyond = (force - self.force_ends[:, 1]) / self.stiffness_ends[:, 1]
         inside = self.deflection_ends[:, 0] + self._fraction(force) * self.width
         return np.where(above, self.deflection_ends[:, 1] + beyond, inside)
 
     def _fraction(self, force: FloatArray) -> FloatArray:
-        """Root t in [0, 1] of the monotone cubic: Newton's method, bisecting where it leaves its bracket."""
+        """Return the root t in [0, 1] of the monotone cubic by Newton's method.
+
+        A step that would leave the bracket [low, high] of the root halves the bracket instead.
+        """
         low, high = np.zeros_like(force), np.ones_like(force)
         t = np.clip(
             (force - self.force_ends[:, 0]) / (self.force_ends[:, 1] - self.force_ends[:, 0]), 0.0, 1.0
         )
-        for _ in range(80):
+        for _ in range(ITERATION_LIMIT):
             value, tangent = self.cubic(t)
             short = value < force
             low, high = np.where(short, t, low), np.where(short, high, t)
@@ -86,7 +100,7 @@ class ForceCubic:
             following = np.where((newton > low) & (newton < high), newton, 0.5 * (low + high))
             following = np.where(value == force, t, following)
             step, t = np.abs(following - t), following
-            if np.all(step <= 4e-16 * np.maximum(t, 1e-9)):
+            if np.all(step <= ROOT_ERROR * np.maximum(t, SMALLEST_ROOT)):
                 break
         return t
 
@@ -143,13 +157,26 @@ class ForceTable:
             object.__setattr__(self, entry.name, array)
 
     def at_misalignment(self, index: int, misalignment: FloatArray) -> ForceTable:
-        """Return the table of one of the misalignments, without that axis, called `misalignment` (1,), m."""
-        at = slice(index, index + 1)
-        arms = (None if arm is None else arm[at] for arm in self.arms)
-        numbers = self.deflection, self.deflection_slope, self.stiffness, self.stiffness_slope
-        deflection, across, stiffness, along = (stack[at] for stack in numbers)
-        axes = self.position, self.level, misalignment, self.center_distance_change
-        return ForceTable(*axes, deflection, across, stiffness, along, self.period, None, None, *arms)
+        """Return the table at one node of the misalignment, whose axis then has this node alone.
+
+        The node gets the value `misalignment` (1,), m.
+        """
+        node = slice(index, index + 1)
+        load_arm, sliding_share, sliding_lever = (None if arm is None else arm[node] for arm in self.arms)
+        return ForceTable(
+            position=self.position,
+            level=self.level,
+            misalignment=misalignment,
+            center_distance_change=self.center_distance_change,
+            deflection=self.deflection[node],
+            deflection_slope=self.deflection_slope[node],
+            stiffness=self.stiffness[node],
+            stiffness_slope=self.stiffness_slope[node],
+            period=self.period,
+            load_arm=load_arm,
+            sliding_share=sliding_share,
+            sliding_lever=sliding_lever,
+        )
 
     @property
     def arms(self) -> tuple[FloatArray | None, FloatArray | None, FloatArray | None]:

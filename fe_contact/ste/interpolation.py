@@ -103,8 +103,8 @@ def ordered_slopes(axis: Axis, levels: FloatArray) -> FloatArray:
     """Slopes of a family of curves (P, ..., L), increasing in L: none overshoots, none touches the next.
 
     Each slope has its box (monotone pieces), each pair of neighbors a bound on the difference (their gap
-    stays positive). Zero meets all of them, so one pass up the chain finds what is feasible, and one pass
-    down picks the slopes nearest to the unbounded ones.
+    stays positive). Slopes of 0 fulfill all bounds, so a solution exists: one pass up the curves narrows each
+    box to what the lower curves allow, and one pass down picks the feasible slopes nearest to Akima's.
     """
     if len(axis.knots) == 1:
         return np.zeros_like(levels)
@@ -161,8 +161,8 @@ def _akima_slopes(axis: Axis, values: FloatArray) -> FloatArray:
     total = trust_left + trust_right
     # chords that agree to rounding on both sides: Akima's rule is 0/0, the plain mean is his own choice
     scale = np.abs(left) + np.abs(right) + np.abs(two_left) + np.abs(two_right)
-    blurred = total <= 1e-9 * scale
-    share = np.where(blurred, 0.5, trust_left / np.where(blurred, 1.0, total))
+    indefinite = total <= 1e-9 * scale
+    share = np.where(indefinite, 0.5, trust_left / np.where(indefinite, 1.0, total))
     return np.asarray(share * left + (1.0 - share) * right)
 
 
@@ -179,6 +179,7 @@ def _gap_bounds(axis: Axis, gaps: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Bounds on the slope of the gap to the next curve at every knot, down and up."""
     spacing = axis.spacing.reshape(-1, *(1,) * (gaps.ndim - 1))
     before, after = axis.neighbors(np.broadcast_to(spacing, (len(spacing), *gaps.shape[1:])), 0.0)
+    # the inner Bernstein coefficients of the gap are gap -+ slope * spacing / 3
     allowed = 3.0 * (1.0 - _MIN_GAP_SHARE) * gaps
     with np.errstate(divide="ignore"):
         return np.asarray(allowed / after), np.asarray(allowed / before)

@@ -167,16 +167,16 @@ def _on_branches(levels: LoadLevels, pairs: IntArray, k: int, force: FloatArray)
     return np.minimum(lower, upper), np.where(lower < upper, soft, stiff)
 
 
-def _largest_exponent(wanted: FloatArray, holds: Callable[[FloatArray], BoolArray]) -> FloatArray:
+def _largest_exponent(maximum: FloatArray, holds: Callable[[FloatArray], BoolArray]) -> FloatArray:
     """Return the largest exponents up to those wanted for which a condition `holds`, as it does for 0."""
-    low, high = np.zeros_like(wanted), wanted
-    if np.all(holds(wanted)):
-        return wanted
+    low, high = np.zeros_like(maximum), maximum
+    if np.all(holds(maximum)):
+        return maximum
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
         inside = holds(middle)
         low, high = np.where(inside, middle, low), np.where(inside, high, middle)
-    return np.where(holds(wanted), wanted, low)
+    return np.where(holds(maximum), maximum, low)
 
 
 def _branch(

@@ -23,9 +23,10 @@ from fe_contact.ste.level_grid import LevelGrid, deflection_grid, monotone_stiff
 from fe_contact.types import FloatArray, IntArray
 
 SlopeRule = Callable[[Axis, FloatArray], FloatArray]
+"""Function from an axis and values at its knots, first array axis, to their slopes."""
 
-_AT_ONCE = 2**17
-"""Queries that are evaluated at once: each takes half a kilobyte on its way."""
+_BLOCK = 2**17
+"""Largest number of queries that are evaluated together: each needs half a kilobyte of memory."""
 
 
 class Validity(IntFlag):
@@ -132,8 +133,8 @@ class MeshForce:
         if np.any(f < 0.0):
             raise InputError("force", float(f.min()), at_least(0.0, "N"), "Teeth do not pull.")
         deflection, validity = np.empty(f.size), np.empty(f.size, dtype=np.int8)
-        for start in range(0, f.size, _AT_ONCE):
-            part = slice(start, start + _AT_ONCE)
+        for start in range(0, f.size, _BLOCK):
+            part = slice(start, start + _BLOCK)
             at_force = f[part] * to_transverse, x[part], m[part], c[part]
             deflection[part], validity[part] = self._deflections(*at_force)
         return deflection.reshape(shape), validity.reshape(shape)
@@ -155,7 +156,10 @@ class MeshForce:
         return first.stencil(x), second.stencil(m), third.stencil(c)
 
     def _level_below(self, at: tuple[Stencil, ...], d: FloatArray) -> IntArray:
-        """Highest level not above each deflection, -1 below lift-off: by bisection, levels are in order."""
+        """Return the highest level not above each deflection, -1 below lift-off.
+
+        The search bisects, since the levels increase.
+        """
         low, high = np.full(d.size, -1), np.full(d.size, len(self.table.level))
         while np.any(high - low > 1):
             middle = np.maximum((low + high) // 2, 0)
@@ -191,9 +195,10 @@ def _queries(**arguments: ArrayLike) -> tuple[tuple[int, ...], list[FloatArray]]
 
 
 def _position_first(entry: FloatArray) -> FloatArray:
-    """(M, D, P, L) to (P, M, D, L)."""
+    """Reorder the axes of an array from (M, D, P, L) to (P, M, D, L)."""
     return np.moveaxis(entry, 2, 0)
 
 
 def _along(axis: Axis, number: int, rule: SlopeRule, values: FloatArray) -> FloatArray:
+    """Return the slopes of values along their array axis `number`, which stands first for the rule."""
     return np.moveaxis(rule(axis, np.moveaxis(values, number, 0)), 0, number)

@@ -18,9 +18,14 @@ if TYPE_CHECKING:
 
 
 SCHEMA_VERSION = 6
-"""Version 1 states no errors of the model; up to 2 the largest pressure is that of edges, too; up to 3 orders
-beside the mesh have no errors of their own; up to 4 the errors of a plane hold its bias, bands between nodes
-not the error of their interval; up to 5 all alignments are requested ones."""
+"""Version of the file layout. Older files lack the following:
+
+- 1: the errors of the model;
+- 1 and 2: the largest pressure without edges; theirs includes edge contact;
+- 1 to 3: errors of orders that are no mesh orders;
+- 1 to 4: bias apart from error for a load plane, and the error of interpolation in the bands between nodes;
+- 1 to 5: the mark of requested alignments; all of theirs are requested.
+"""
 
 
 def content_hash(case: Json, solver_version: str, schema_version: int) -> str:
@@ -108,7 +113,7 @@ class PairGeometry:
         return torque / (self.base_radius[0] * math.cos(self.base_helix_angle))
 
     def to_json(self) -> Json:
-        """Plain JSON with the same names; without `internal` and thicknesses that are not true or known."""
+        """Plain JSON with the same names; `internal` is left out if False, unknown thicknesses too."""
         content = asdict(self)
         for name in ("internal", "base_tooth_thickness"):
             if not content[name]:

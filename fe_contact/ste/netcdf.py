@@ -1,4 +1,8 @@
-"""STE databases as netCDF-4 files."""
+"""STE databases as netCDF-4 files.
+
+The errors of a curve have an axis of sources (`SOURCES`) and one of quantities; `OFF_MESH` is the index of
+orders that are no mesh orders. The checksum of a file begins with a text that only some files have.
+"""
 
 from __future__ import annotations
 
@@ -21,8 +25,11 @@ from model_studies.netcdf import UnreadableFile, opened
 from model_studies.netcdf_content import NetcdfContent, Variable
 
 FORMAT = "lineofaction STE database"
+"""Value of the attribute ``format`` of the files."""
 _OFF_MESH_SINCE = 4
+"""Schema version since which errors have an entry for orders that are no mesh orders."""
 WARNINGS = "warnings"
+"""Name of the attribute with the warnings of the metadata."""
 _JSON_ATTRIBUTES = ("case", "effect_ledger", "receipt", "software_versions")
 # units and long names; "1" is CF's dimensionless
 ATTRIBUTES: dict[str, tuple[str, str]] = {
@@ -87,6 +94,7 @@ def _read_variables(path: Path) -> tuple[dict[str, Any], Json]:
 
     try:
         # arrays by h5py: h5netcdf looks for unwritten ends of unlimited dimensions, at several times the cost
+        # texts (kinds O and S) are by h5netcdf, which decodes them
         with opened(path) as content, h5netcdf.File(content.id, "r") as file:
             arrays = {
                 str(name): np.asarray((variable if content[name].dtype.kind in "OS" else content[name])[...])
@@ -114,10 +122,10 @@ class FileFormat:
     """Names of arrays that some files have."""
 
     def read(self, path: Path, before: Callable[[Json], str] = lambda _: "") -> tuple[dict[str, Any], Json]:
-        """Return the arrays and the attributes of a file; the checksum is over `before` of these, too.
+        """Return the arrays and the attributes of a file.
 
-        Raises `DatabaseError`: the file is missing, no netCDF-4, of another kind, of a newer schema, or
-        damaged.
+        `before` returns, from the attributes, the text that the checksum begins with. Raises `DatabaseError`:
+        the file is missing, no netCDF-4, of another kind, of a newer schema, or damaged.
         """
         arrays, attributes = _read_variables(path)
         if attributes.get("format") != self.name:
@@ -173,14 +181,16 @@ def read(path: Path) -> dict[str, Any]:
     Raises `DatabaseError`: the file is missing, no netCDF-4, no STE database, of a newer schema, or damaged.
     """
     content, attributes = FILES.read(path, lambda attributes: _before(_period(path, attributes)))
-    if content.get("curve_error", np.empty(0)).shape[0] == len(SOURCES) - 1:  # of schema version 1
+    # files of schema version 1 have no errors of the method: they are 0 in their place among the sources
+    if content.get("curve_error", np.empty(0)).shape[0] == len(SOURCES) - 1:
         content["curve_error"] = np.insert(content["curve_error"], AT_NODES.index(METHOD), 0.0, axis=0)
     for name in ("curve_error", "load_arm_error"):
         if attributes["schema_version"] < _OFF_MESH_SINCE and content.get(name, np.empty(0)).size:
             content[name] = np.insert(content[name], OFF_MESH, np.nan, axis=1)
     documents = {name: json_attribute(path, attributes, name) for name in _JSON_ATTRIBUTES}
-    if part := (documents["receipt"].get("bias") or {}).get("stated"):
-        content |= _without_bias(content, part)
+    stated_bias = (documents["receipt"].get("bias") or {}).get("stated")  # older files alone have it
+    if stated_bias:
+        content |= _without_bias(content, stated_bias)
     return content | {
         "geometry": _gear_pair(path, attributes),
         "metadata": Metadata(
@@ -193,11 +203,11 @@ def read(path: Path) -> dict[str, Any]:
     }
 
 
-def _without_bias(content: dict[str, Any], part: float) -> dict[str, Any]:
-    """Return the errors of an older file without the bias of its plane, which was `part` of the STE."""
+def _without_bias(content: dict[str, Any], bias: float) -> dict[str, Any]:
+    """Return the errors of an older file without the `bias` of its model in the plane, a share of the STE."""
     errors = content.get("curve_error", np.empty(0)).copy()
-    errors[AT_NODES.index(PLANE) : AT_NODES.index(PLANE) + 1] = 0.0
-    band = content["error_estimate"] - part * np.abs(content["static_transmission_error"])
+    errors[AT_NODES.index(PLANE) : AT_NODES.index(PLANE) + 1] = 0.0  # a slice: the array may be empty
+    band = content["error_estimate"] - bias * np.abs(content["static_transmission_error"])
     return {"curve_error": errors, "error_estimate": np.maximum(band, 0.0)}
 
 
@@ -231,7 +241,7 @@ def _stored(database: SteFields) -> dict[str, Any]:
 
 
 def _period(path: Path, attributes: Json) -> int:
-    """Period in base pitches; files older than the attribute hold one."""
+    """Return the period, base pitches; files without the attribute are older and have the period 1."""
     period = attributes.get("period", 1)
     if not isinstance(period, int | np.integer):
         raise DatabaseError(f"{path.name}: damaged, its period is {period!r}")
@@ -239,7 +249,7 @@ def _period(path: Path, attributes: Json) -> int:
 
 
 def _before(period: int) -> str:
-    """Return the beginning of the bytes of the checksum: the period if it is not 1."""
+    """Return the text that the checksum begins with: the period if it is not 1."""
     return f"period {period};" if period != 1 else ""
 
 

@@ -148,18 +148,18 @@ class WarmProcess:
 
     def __init__(self, work: str, modules: list[str], log: Path, warn: Warn) -> None:
         self.warn = warn
-        self._channel, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self._channel, child_channel = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._channel.settimeout(_PATIENCE_S)
         self._ready, self._forks, self.living, self._gone = False, 0, 0, False
         self._asking = threading.Lock()  # threads of a Dask worker reap their children
-        with theirs, log.open("wb") as stream:
+        with child_channel, log.open("wb") as stream:
             try:
                 self._process = subprocess.Popen(
-                    [*_FORK_SERVER, str(theirs.fileno()), work, *modules],
+                    [*_FORK_SERVER, str(child_channel.fileno()), work, *modules],
                     stdin=subprocess.DEVNULL,
                     stdout=stream,
                     stderr=stream,
-                    pass_fds=(theirs.fileno(),),
+                    pass_fds=(child_channel.fileno(),),
                     start_new_session=True,
                     env=child_environment(),
                 )

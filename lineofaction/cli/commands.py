@@ -56,7 +56,8 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 for family in FAMILIES:
-    for verb in family.verbs.registered_commands:  # the whole sentence, which the list would cut off
+    # the list of verbs has the whole first sentence of each docstring, which typer would cut off
+    for verb in family.verbs.registered_commands:
         verb.short_help = (verb.callback.__doc__ or "").partition("\n")[0]
     app.add_typer(family.verbs)
 app.add_typer(of_services.access_keys, name="keys", rich_help_panel="service")
@@ -68,7 +69,8 @@ app.add_typer(of_services.store, name="store", rich_help_panel="service")
 def main() -> None:
     """Run the command line."""
     keep_to_one_thread()
-    warnings.filterwarnings("ignore", message="implausible")  # each verb says it in its own fields and units
+    # verbs print complaints of plausibility themselves, with the fields and units of the case
+    warnings.filterwarnings("ignore", message="implausible")
     foreign = warnings.showwarning
 
     def show(message: Warning | str, category: type[Warning], *location: Any, **stream: Any) -> None:
@@ -77,11 +79,13 @@ def main() -> None:
         else:
             foreign(message, category, *location, **stream)
 
-    warnings.showwarning = show  # what our own say is for people, without a line of code
+    warnings.showwarning = (
+        show  # warnings of this program are notes: a line of source would tell users nothing
+    )
     try:
         app()
     finally:
-        gc.freeze()  # what is left ends with the process: its last collection need not look at it
+        gc.freeze()  # the last garbage collection skips all objects: they end with the process anyway
 
 
 def _version(requested: bool) -> None:

@@ -36,7 +36,11 @@ class FlankQuestion:
 def run_compare_flanks(
     files: Sequence[Path], question: FlankQuestion, output: Path, *, as_json: bool
 ) -> None:
-    """Run the study of a change of flanks: of two case files, over the tolerances of a file."""
+    """Run the study of a change of flanks.
+
+    `files` are the case files before and after, or the one after, which is then compared with the case of the
+    scene. Tolerances and load cases are read from the files of the question.
+    """
     if len(files) > 2:
         bound = (
             "the case files of the flanks before and after, or of those after alone: before are the scene's"
@@ -75,7 +79,10 @@ def run_compare(
     *,
     as_json: bool,
 ) -> None:
-    """Write the page; print differences above their errors; `of` are the torque and the recording."""
+    """Write the page that compares two files, and print the differences that are above their errors.
+
+    `of`: torque in N m at which tables are compared, and the recording that runs are compared with.
+    """
     check_writable(output)
     page = compare(files, view, *of)
     write_page(page, output)
@@ -85,6 +92,6 @@ def run_compare(
         }
         print_json({"file": str(output), "differences": differences})
         return
-    said = (f"{line.name}: {line.value}: {line.remark}" for line in page.headlines)
-    for line in (*said, page.lead, f"written to {output}"):
+    headlines = (f"{line.name}: {line.value}: {line.remark}" for line in page.headlines)
+    for line in (*headlines, page.lead, f"written to {output}"):
         console().print(line, soft_wrap=True)

@@ -1,4 +1,4 @@
-"""``loa export``: deformed gears, or by the ending of the output a run, a mesh force or results in REXS.
+"""``loa export``: deformed gears, or by ending and options a run, a mesh force, stiffness, results in REXS.
 
 `InputFile.as_it_is` is the path of a file; it refuses values that options set over those of the file.
 """
@@ -20,6 +20,7 @@ from lineofaction.cli.export_fmu import export_mesh_fmu
 from lineofaction.cli.export_point import Point
 from lineofaction.cli.export_rexs import export_rexs
 from lineofaction.cli.export_run import TABLE, UNIVERSAL, export_run
+from lineofaction.cli.export_stiffness import export_stiffness
 from lineofaction.cli.output import console, print_json, print_written, progress_bar, table
 from lineofaction.cli.ste import positions
 from lineofaction.gearbox.convert.boundary_errors import boundary_errors
@@ -39,9 +40,12 @@ def run_export(
     """Write the export that the ending of the output names.
 
     `further` has the options of single kinds: `start`, `end`, `function` of a run, `damping_n_s_per_m` and
-    `backlash_um` of a mesh force, `at` and `beside` (number of neighboring teeth) of deformed gears.
+    `backlash_um` of a mesh force, `library` that mesh stiffness is written for, `at` and `beside` (number of
+    neighboring teeth) of deformed gears.
     """
-    if rexs is not None:
+    if further["library"]:
+        export_stiffness(file.as_it_is, output, further["library"], point, as_json=as_json)
+    elif rexs is not None:
         export_rexs(file.as_it_is, rexs, output, point, as_json=as_json)
     elif output.suffix in (*UNIVERSAL, TABLE):
         window = further["start"], further["end"]

@@ -114,15 +114,17 @@ def _write(file: InputFile, step: Path, output: Path, made: StepHousing) -> list
     target = output.parent / step.name
     in_place = target.exists() and target.samefile(step)
     base = read_table(file)
-    there = base.get("housings", [])
-    others = [part for part in there if part.get("name") not in made.replaced]
-    of_file = [part for part in there if part.get("step_file") == step.name]
+    housings = base.get("housings", [])
+    others = [part for part in housings if part.get("name") not in made.replaced]
+    of_file = [part for part in housings if part.get("step_file") == step.name]
     revised = output == file.path and of_file and not any(part in others for part in of_file)
     free = in_place or revised or not target.exists()
     if not free and target.read_bytes() != step.read_bytes():
         raise BadInput.of("output", str(target), "free for the STEP file", "Choose another folder or name.")
-    taken = {part.get("name") for part in others}
-    unused = (name for name in ("housing", *(f"housing {k}" for k in range(2, 102))) if name not in taken)
+    used_names = {part.get("name") for part in others}
+    unused = (
+        name for name in ("housing", *(f"housing {k}" for k in range(2, 102))) if name not in used_names
+    )
     housing = {"name": [*made.replaced, *unused][0], "step_file": step.name, **made.fields}
     table = base | {"housings": [*others, housing]}
     find = in_folder(output.parent)

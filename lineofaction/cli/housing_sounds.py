@@ -31,10 +31,10 @@ from lineofaction.report.run.view import RunView
 
 
 def receiver_of(scene: Path | None, point: str, microphone: str) -> Receiver | None:
-    """Return the receiver that the options name; None: runs sound by their forces and motions.
+    """Return the receiver that the options name; None: without options, sounds are of forces and motions.
 
-    Without both it is the microphone of the scene's complaint. Raises `BadInput`: both, one of these without
-    a scene, or no position.
+    A scene without point and microphone gives the microphone of its complaint. Raises `BadInput`: point and
+    microphone are both given, one of them is given without a scene, or the microphone is no position.
     """
     if scene is None and not point and not microphone:
         return None
@@ -92,6 +92,7 @@ def _run_sound(name: str, run: RunResult, housings: SceneHousings, receiver: Rec
 
 
 def _require_no_view(view: RunView, receiver: Receiver) -> None:
+    """Refuse options that choose a force or a motion of the run, which a receiver does not have."""
     named = {"quantity": view.quantity, "bearing": view.bearing, "mesh": view.mesh}
     if not receiver.point:
         named["direction"] = view.direction

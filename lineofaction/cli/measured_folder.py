@@ -27,9 +27,16 @@ from lineofaction.gearbox.schemas.plan import omission_warnings
 from lineofaction.gearbox.units import UM
 
 _OF_A_CASE = {"profile_slope": -1, "profile_form": 1, "helix_slope": -1, "helix_form": 1}
-"""Sign of traits as figures of the flanks in a case: a slope removes where a deviation is in excess."""
+"""Sign of the traits of measured gears that are also flank figures of a case, so that a study can vary them.
+
+A slope of a case removes material where a deviation is in excess.
+"""
 _SIGNIFICANT = 2.0
-"""Standard errors of a correlation from which it is stated."""
+"""Correlations of fewer standard errors than this are not stated: they may be chance."""
+_LONGEST = 300
+"""Most characters of a warning about a file."""
+_COMPONENTS = 4
+"""Principal components whose share of the variance is printed."""
 
 
 def run_folder(case: Case, folder: Path, of: Inspected, output: Path | None, *, as_json: bool) -> None:
@@ -60,7 +67,7 @@ def _gears(folder: Path, chart: Chart, cutoff_mm: float | None) -> list[Inspecte
         try:
             gear = inspected_gear(path, chart, None if cutoff_mm is None else cutoff_mm * 1e-3)
         except BadInput as error:
-            omissions.append(f"{path.name}: {error.faults[0].bound}"[:300])
+            omissions.append(f"{path.name}: {error.faults[0].bound}"[:_LONGEST])
             continue
         if gear.differences:
             omissions.append(f"{path.name}: {gear.differences[0]}; {len(gear.differences)} such values")
@@ -97,17 +104,21 @@ def _as_json(people: Population, gear: str) -> Json:
 
 
 def _rows(people: Population, gear: str) -> Iterator[str]:
-    """Yield what a tolerance study takes: mean and standard deviation of gears, and correlations."""
+    """Yield the population as options of a tolerance study.
+
+    ``GEAR.TRAIT_um=MEAN/DEVIATION`` has mean and standard deviation between gears, ``TRAIT*TRAIT=VALUE`` a
+    correlation.
+    """
     names = [name for name in people.names if name in _OF_A_CASE]
     at = [people.names.index(name) for name in names]
     for name, k in zip(names, at, strict=True):
         mean, spread = _OF_A_CASE[name] * people.mean[k] / UM, np.sqrt(people.between[k, k]) / UM
         yield f"{gear}.{name}_um={mean:.3f}/{spread:.3f}"
-    for i, one in enumerate(names):
-        for j, other in list(enumerate(names))[:i]:
-            correlation = _OF_A_CASE[one] * _OF_A_CASE[other] * people.correlation[at[i], at[j]]
+    for i, later in enumerate(names):
+        for j, earlier in list(enumerate(names))[:i]:
+            correlation = _OF_A_CASE[later] * _OF_A_CASE[earlier] * people.correlation[at[i], at[j]]
             if abs(correlation) > _SIGNIFICANT / np.sqrt(len(people.gears) - 1.0):
-                yield f"{gear}.{other}_um*{gear}.{one}_um={correlation:.2f}"
+                yield f"{gear}.{earlier}_um*{gear}.{later}_um={correlation:.2f}"
 
 
 def _show(people: Population, answer: Json) -> None:
@@ -130,7 +141,7 @@ def _show(people: Population, answer: Json) -> None:
         ]
         out.print(table(("pitches", "gears", "mean, µm", "largest, µm"), pitches, "", ("pitches",)))
     for kind, traces in people.traces.items():
-        shares = ", ".join(f"{100.0 * share:.3g} %" for share in traces.share[:4])
+        shares = ", ".join(f"{100.0 * share:.3g} %" for share in traces.share[:_COMPONENTS])
         out.print(
             f"{traces.number} traces of the {kind}: principal components with {shares} of the variance."
         )

@@ -28,16 +28,16 @@ _STAGE = "A planetary stage: the sun drives, the carrier is braked, the ring is 
 _SCENE = "A helical pair between two shafts: motor, brake, four bearings"
 
 KINDS: Mapping[str, Callable[[PairWishes], str]] = {
-    "spur": lambda wanted: case_text(_spur(wanted), "A spur pair"),
-    "helical": lambda wanted: case_text(_helical(wanted), "A helical pair"),
-    "internal": lambda wanted: case_text(_internal(wanted), "A pinion in a ring gear"),
-    "planetary": lambda wanted: planetary_text(planetary_stage(wanted), _STAGE),
-    "scene": lambda wanted: pair_scene_text(_helical(wanted), _SCENE),
+    "spur": lambda wishes: case_text(_spur(wishes), "A spur pair"),
+    "helical": lambda wishes: case_text(_helical(wishes), "A helical pair"),
+    "internal": lambda wishes: case_text(_internal(wishes), "A pinion in a ring gear"),
+    "planetary": lambda wishes: planetary_text(planetary_stage(wishes), _STAGE),
+    "scene": lambda wishes: pair_scene_text(_helical(wishes), _SCENE),
 }
 """Writers of first files by the kind of file, which is also the name of the option."""
 
 
-def run_new(kinds: Mapping[str, bool], wanted: PairWishes, output: Path | None) -> None:
+def run_new(kinds: Mapping[str, bool], wishes: PairWishes, output: Path | None) -> None:
     """Write or print the file of the one kind that was named; a helical pair if none was."""
     named = [kind for kind, chosen in kinds.items() if chosen]
     if len(named) > 1:
@@ -51,7 +51,7 @@ def run_new(kinds: Mapping[str, bool], wanted: PairWishes, output: Path | None) 
         check_writable(output)
         if output.exists():
             raise BadInput.of("output", str(output), "a new file", "Choose another name, or remove it first.")
-    text = text_of_kind(named[0] if named else "helical", wanted)
+    text = text_of_kind(named[0] if named else "helical", wishes)
     if output is None:
         sys.stdout.write(text)
         return
@@ -64,13 +64,13 @@ def run_new(kinds: Mapping[str, bool], wanted: PairWishes, output: Path | None) 
     print_written([output])
 
 
-def text_of_kind(kind: str, wanted: PairWishes) -> str:
+def text_of_kind(kind: str, wishes: PairWishes) -> str:
     """Return the file of a kind; the written file is read once as a check that it can be run.
 
     Raises `BadInput`: no such pair exists.
     """
     with boundary_errors():
-        text = KINDS[kind](wanted)
+        text = KINDS[kind](wishes)
     table = toml_table(text, "file")
     if "shafts" in table:
         scene = validated(SceneInput, table)

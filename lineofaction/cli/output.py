@@ -202,12 +202,12 @@ def _wide(block: _Block) -> int:
 def _grown(block: _Block, width: int) -> _Block:
     """Return the columns as wide as they are whole, as far as there is room."""
     room = max(width - _wide(block), 0)
-    grown = []
+    columns = []
     for column, wide in block:
         more = min(max(column.full_width - wide, 0), room)
-        grown.append((column, wide + more))
+        columns.append((column, wide + more))
         room -= more
-    return grown
+    return columns
 
 
 def print_headlines(headlines: Sequence[Headline]) -> None:
@@ -257,14 +257,16 @@ def progress_bar() -> Iterator[Report]:
     clocks = (TimeElapsedColumn(), TimeRemainingColumn(), TextColumn("left"))
     with Progress(*columns, *clocks, console=Console(stderr=True)) as bars:
         tasks: dict[str, TaskID] = {}
-        said: dict[str, str] = {}  # a cost that was announced stays
+        announced_costs: dict[str, str] = {}  # a cost that was announced stays
 
         def report(stage: str, fraction: float) -> None:
             name = stage_name(stage)
             if name not in tasks:
                 tasks[name] = bars.add_task(stage, total=1.0)
-            said[name] = stage if stage != name else said.get(name, stage)
-            bars.update(tasks[name], description=said[name], completed=min(max(fraction, 0.0), 1.0))
+            announced_costs[name] = stage if stage != name else announced_costs.get(name, stage)
+            bars.update(
+                tasks[name], description=announced_costs[name], completed=min(max(fraction, 0.0), 1.0)
+            )
 
         yield report
 

@@ -63,8 +63,8 @@ def overridable(argument: str, subject: str = "case") -> Callable[[Callable[...,
 
     def decorate(verb: Callable[..., R]) -> Callable[..., R]:
         parameters = parameters_of(verb)
-        taken = {spelling for option in parameters for spelling in _spellings(option)}
-        added = [option for option in _options(subject) if not taken & set(_spellings(option))]
+        own_spellings = {spelling for option in parameters for spelling in _spellings(option)}
+        added = [option for option in _options(subject) if not own_spellings & set(_spellings(option))]
 
         @functools.wraps(verb)
         def run(**options: Any) -> R:

@@ -65,13 +65,13 @@ class PairSketch:
         return max(3, round(0.2 * self.width))
 
 
-def external_pair(wanted: PairWishes, *, teeth: int, ratio: float, helix: float, module: float) -> PairSketch:
+def external_pair(wishes: PairWishes, *, teeth: int, ratio: float, helix: float, module: float) -> PairSketch:
     """Return an external pair; the keywords are values for missing wishes."""
-    module = wanted.module or module
-    helix = helix if wanted.helix is None else wanted.helix
-    first = wanted.teeth or teeth
-    second = _hunting_teeth(first, wanted.ratio or ratio)
-    width = wanted.width or face_width(module, helix)
+    module = wishes.module or module
+    helix = helix if wishes.helix is None else wishes.helix
+    first = wishes.teeth or teeth
+    second = _hunting_teeth(first, wishes.ratio or ratio)
+    width = wishes.width or face_width(module, helix)
     pinion, wheel = (blank_table(count, module, helix, width) for count in (first, second))
     distance = _round_up(reference_center_distance(pinion, wheel) / MM, 0.5 if module >= 1.0 else 0.1)
     shifts = balanced_shifts(pinion, wheel, distance * MM)
@@ -83,12 +83,12 @@ def external_pair(wanted: PairWishes, *, teeth: int, ratio: float, helix: float,
     return PairSketch(module, helix, width, distance, gears[0], gears[1], _torques(pinion))
 
 
-def internal_pair(wanted: PairWishes, *, teeth: int, ratio: float, module: float) -> PairSketch:
+def internal_pair(wishes: PairWishes, *, teeth: int, ratio: float, module: float) -> PairSketch:
     """Return a pinion in a ring gear, without profile shift."""
-    module = wanted.module or module
-    helix, first = wanted.helix or 0.0, wanted.teeth or teeth
-    width = wanted.width or face_width(module, helix)
-    return ring_pair(module, helix, width, first, round(first * (wanted.ratio or ratio)))
+    module = wishes.module or module
+    helix, first = wishes.helix or 0.0, wishes.teeth or teeth
+    width = wishes.width or face_width(module, helix)
+    return ring_pair(module, helix, width, first, round(first * (wishes.ratio or ratio)))
 
 
 def ring_pair(module: float, helix: float, width: float, teeth: int, ring_teeth: int) -> PairSketch:

@@ -23,20 +23,20 @@ _MIN_TEETH = 18
 """Least number of teeth of a planet: with fewer, teeth without profile shift are undercut."""
 
 
-def planetary_stage(wanted: PairWishes) -> StageSketch:
+def planetary_stage(wishes: PairWishes) -> StageSketch:
     """Return a stage of three planets; its ring has the teeth of the sun plus twice the planet's.
 
     Raises `BadInput`: no planets fit a ratio that small.
     """
-    module, teeth, helix = wanted.module or 2.0, wanted.teeth or 24, wanted.helix or 0.0
-    wished = 0.5 * teeth * ((wanted.ratio or 5.0) - 2.0)
+    module, teeth, helix = wishes.module or 2.0, wishes.teeth or 24, wishes.helix or 0.0
+    wished = 0.5 * teeth * ((wishes.ratio or 5.0) - 2.0)
     fitting = [count for count in range(_MIN_TEETH, int(wished) + 4) if (teeth + count) % PLANETS == 0]
     if not fitting or wished < _MIN_TEETH:
         minimum = 2.0 + 2.0 * _MIN_TEETH / teeth
         bound = f"at least {minimum:.3g} with {teeth} teeth of the sun"
-        raise BadInput.of("--ratio", wanted.ratio, bound, "Or leave it out.")
+        raise BadInput.of("--ratio", wishes.ratio, bound, "Or leave it out.")
     planet = min(fitting, key=lambda count: abs(count - wished))
-    width = wanted.width or face_width(module, helix)
+    width = wishes.width or face_width(module, helix)
     ring = ring_pair(module, helix, width, planet, teeth + 2 * planet)
     transverse = module / math.cos(helix * DEGREE)
     sun = GearSketch(

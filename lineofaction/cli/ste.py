@@ -21,10 +21,17 @@ from lineofaction.gearbox.project import only, tables_in
 from lineofaction.gearbox.schemas import Case, read_model
 
 _FARTHEST = 1e6
+"""Largest position that ``--at`` accepts, base pitches."""
 _MAX_ORDERS = 8
-_NAME, _DECIMALS, _BAR, _SPARKS = 17, 4, 16, 24
+"""Largest number of orders that are listed."""
+_NAME, _BAR, _SPARKS = 17, 16, 24
+"""Characters of a name, of the bar of the largest order, and of the curve."""
+_DECIMALS = 4
+"""Decimals of a figure in µm without an error."""
 _BLOCKS = "▁▂▃▄▅▆▇█"
+"""Characters of a drawn curve, from its least to its largest value."""
 _Line = tuple[str, float, float | None]
+"""Name, value and error of a figure, µm; None: the error was not estimated."""
 
 
 def run_ste(
@@ -51,6 +58,7 @@ def run_ste(
 
 
 def _cached_table(case: Path) -> Path:
+    """Return the file of the table that the cache has for a case."""
     from lineofaction.cli.cached_tables import CachedTables  # noqa: PLC0415 (the base reads tables)
 
     return CachedTables.file(read_model(Case, case))
@@ -93,6 +101,8 @@ def open_ste(file: Path) -> SteDatabase:
 
 
 def _arguments(point: dict[str, float | None], database: SteDatabase) -> dict[str, Any]:
+    """Return the arguments of `curve_json` by the options; without a load the highest one is taken."""
+    # the options stand in this order in the signature of the verb
     torque, force, misalignment_um, center_distance_change_mm = point.values()
     if torque is not None and force is not None:
         remedy = "Leave out one of them, or both for the highest load."
@@ -106,7 +116,7 @@ def _arguments(point: dict[str, float | None], database: SteDatabase) -> dict[st
 
 
 def positions(text: str) -> list[float]:
-    """Positions of ``--at``."""
+    """Return the positions that the text of ``--at`` lists, base pitches."""
     bound = f"numbers from {-_FARTHEST:g} to {_FARTHEST:g}, separated by commas"
     try:
         numbers = [float(part) for part in text.split(",")]
@@ -118,6 +128,7 @@ def positions(text: str) -> list[float]:
 
 
 def _rows(curve: dict[str, Any]) -> list[list[str]]:
+    """Return the rows of a curve as texts, in the order of `_columns`."""
     shares = [[f"{share:.6g}" for share in row] for row in curve["load_share"]]
     bands = [[f"{band:.3g}"] for band in curve["error_um"]] if "error_um" in curve else [[]] * len(shares)
     lines = zip(curve["position"], curve["ste_um"], shares, bands, strict=True)
@@ -211,6 +222,7 @@ def _orders(curve: dict[str, Any]) -> tuple[list[_Line], list[_Line]]:
 
 def _sparkline(values: list[float]) -> str:
     """Return two periods of a curve as one line of blocks, from its least to its largest value."""
+    # half the characters span the period; the index starts again behind its end
     samples = np.array(values)[np.arange(_SPARKS) * len(values) // (_SPARKS // 2) % len(values)]
     span = np.ptp(values)
     steps = (len(_BLOCKS) - 1) * (samples - min(values)) / span if span > 0.0 else np.zeros(_SPARKS)

@@ -39,8 +39,8 @@ class Results:
         if self._as_json:
             print_json(asdict(audit))
         else:
-            lost = (("damaged, set aside", audit.damaged), ("missing", audit.missing))
-            _list_names(*lost, ("unknown", audit.unknown))
+            lists = (("damaged, set aside", audit.damaged), ("missing", audit.missing))
+            _list_names(*lists, ("unknown", audit.unknown))
             bad, aside = len(audit.damaged) + len(audit.missing), len(audit.unknown)
             typer.echo(f"{audit.sound} files intact, {bad} damaged or missing")
             if aside or audit.quarantined:

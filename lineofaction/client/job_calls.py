@@ -316,11 +316,11 @@ class JobCalls(Surface):
     def _note_other_version(self, error: BadInput) -> Steps[None]:
         """Add to a refusal that client and service are of different versions, if they are."""
         try:
-            theirs = yield from JobCalls.version(self)
+            service_version = yield from JobCalls.version(self)
         except ServiceError:
             return
-        if theirs != solver_version():
+        if service_version != solver_version():
             error.add_note(
-                f"The service is version {theirs}, this client {solver_version()}: they "
+                f"The service is version {service_version}, this client {solver_version()}: they "
                 "may differ. Install the version of the service."
             )

@@ -1,4 +1,7 @@
-"""Stages of work, and the fraction of the whole that is done."""
+"""Stages of work, and the fraction of the whole that is done.
+
+A pass is one computation of a table with all its stages; under a tolerance, passes follow until it is met.
+"""
 
 from __future__ import annotations
 
@@ -9,8 +12,10 @@ from model_studies.progress import Progress, by_cost, silent, stage_name
 
 _PACE_KNOWN = 0.1
 """Fraction of a stage from which on its pace alone predicts its time."""
-_FIRST = 0.8
-"""Share of the remaining work that a pass takes if another may follow: most passes are the last."""
+_PASS_SHARE = 0.8
+"""Share of the remaining fraction that a pass counts if another one may follow. It is large because most
+passes are the last.
+"""
 
 
 class Stage(NamedTuple):
@@ -28,15 +33,18 @@ def staged(report: Progress) -> Callable[[float, str], None]:
 class PacedFraction:
     """The fraction done of work whose cost nobody predicts, by the time that its stages take; it never falls.
 
-    The usual shares say what stages take that have not begun, in proportion to the time so far. A stage under
-    way takes what its pace says, that of the last one counts alone in the end. Stages that are left out, such
-    as that of tables which are stored, have no share. `stages`: in the order in which they are done.
+    The time of a stage that has not begun follows from the time so far and the usual shares. The time of the
+    current stage follows from its pace; up to `_PACE_KNOWN`, its usual time counts as well. Stages that are
+    left out, such as that of stored tables, count neither before nor after. `stages` are names with usual
+    shares, in the order in which they are done.
     """
 
     def __init__(self, stages: Iterable[tuple[str, float]]) -> None:
         self._shares = dict(stages)
         self._seen: list[str] = []
-        self._begun_s = self._last_s = self._first_s = 0.0
+        self._first_s = 0.0  # times of the clock: the first report,
+        self._begun_s = 0.0  # the end of the stage before the current one,
+        self._last_s = 0.0  # the last report
         self._done = 0.0
 
     def at(self, stage: str, fraction: float, elapsed_s: float) -> float | None:
@@ -53,7 +61,8 @@ class PacedFraction:
         if stage not in self._shares:
             return None
         if not self._seen:
-            self._first_s = self._last_s = elapsed_s
+            self._first_s = elapsed_s
+            self._last_s = elapsed_s
         if stage not in self._seen:
             self._seen.append(stage)
             self._begun_s = self._last_s
@@ -62,16 +71,18 @@ class PacedFraction:
         return self._done
 
     def _fraction(self, stage: str, fraction: float) -> float:
-        """Return the time so far over the now expected time of the whole."""
+        """Return the time so far over the time now expected of the whole."""
         names = list(self._shares)
-        share, ahead = self._shares[stage], sum(self._shares[n] for n in names[names.index(stage) + 1 :])
+        share = self._shares[stage]
+        ahead = sum(self._shares[name] for name in names[names.index(stage) + 1 :])
         before = sum(self._shares[name] for name in self._seen if name != stage)
-        past_s, stage_s = self._begun_s - self._first_s, self._last_s - self._begun_s
-        if past_s <= 0.0:
+        past_s = self._begun_s - self._first_s  # time of the stages before
+        stage_s = self._last_s - self._begun_s  # time of the current stage so far
+        if past_s <= 0.0:  # the first stage: the shares alone
             return share * fraction / (share + ahead)
         usual_s = past_s * share / before
-        known = min(fraction / _PACE_KNOWN, 1.0)
-        total_s = (1.0 - known) * max(usual_s, stage_s) + (known * stage_s / fraction if fraction else 0.0)
+        weight = min(fraction / _PACE_KNOWN, 1.0)  # of the time by the pace of the stage
+        total_s = (1.0 - weight) * max(usual_s, stage_s) + (weight * stage_s / fraction if fraction else 0.0)
         later_s = ahead * (past_s + total_s) / (before + share)
         return (past_s + stage_s) / (past_s + total_s + later_s)
 
@@ -79,17 +90,17 @@ class PacedFraction:
 class TableFraction:
     """The fraction done of a table, by the predicted cost of its stages; it never falls.
 
-    A pass that begins anew takes what is left, or most of it if another may follow. `refines`: whether a pass
-    may be followed by another, as under a tolerance.
+    A new pass counts the whole remaining fraction, or `_PASS_SHARE` of it if another pass may follow.
+    `refines`: another pass may follow, as under a tolerance.
     """
 
     def __init__(self, *, refines: bool = False) -> None:
-        self._share = _FIRST if refines else 1.0
+        self._share = _PASS_SHARE if refines else 1.0
         self._done = 0.0
         self._progress: Progress = silent
 
     def plan(self, stages: Mapping[str, float]) -> None:
-        """Take the predicted cost of the stages of a pass that begins."""
+        """Begin a pass with the predicted cost of its stages."""
         begun, share = self._done, self._share * (1.0 - self._done)
         self._progress = by_cost(lambda fraction: self._reach(begun + share * fraction), stages)
 

@@ -1,4 +1,8 @@
-"""A study as the registry states it: its row, of which are its function and the process of a client."""
+"""The row of a study in the registry: what it takes and returns, and how verb, process and function call it.
+
+The same row is an attribute of classes: on a class that lists studies it is the row itself, on a client it is
+the process of the service that computes the study.
+"""
 
 from __future__ import annotations
 
@@ -54,28 +58,26 @@ class Takes(Generic[P, Q, T, F]):
     work: Callable[[], object]
     """Function that loads the `Computation`."""
     from_file: bool = False
-    """Whether the inputs are a file of the verb and a mapping of the client, rather than options."""
+    """Whether the verb reads the inputs from a file and the client takes a mapping, instead of options."""
     bare: bool = False
-    """Whether the file of the inputs may be left out; all of them then have defaults."""
+    """Whether the file of the inputs may be left out, so that all inputs have their defaults."""
 
 
 class Offered(Generic[P, T, F]):
-    """An attribute of a class that is itself there, and of a client of that class a process.
-
-    `name`: of the process: that of the attribute.
-    """
+    """A descriptor: the class has the study's row as the attribute, an instance (a client) the process."""
 
     name: str
+    """Name of the process: that of the attribute, with hyphens."""
 
     def __set_name__(self, _owner: type, name: str) -> None:
-        object.__setattr__(self, "name", name.replace("_", "-"))
+        object.__setattr__(self, "name", name.replace("_", "-"))  # rows are frozen dataclasses
 
     @overload
     def __get__(self, caller: None, owner: type) -> Self: ...
     @overload
     def __get__(self, caller: _Caller[Self, C], owner: type) -> C: ...
     def __get__(self, caller: Any, owner: type) -> Any:
-        """Return the attribute of a class, the process of a client."""
+        """Return the row where the attribute is read from a class, the process where from a client."""
         return self if caller is None else caller.process(self)
 
 
@@ -92,7 +94,7 @@ class Study:
     sentence on the work.
     """
     example: str
-    """Arguments of the verb."""
+    """Arguments of the verb in the example of its help."""
     group: str
     """Group under which the help lists the verb."""
     kind: str
@@ -100,13 +102,11 @@ class Study:
     stages: tuple[tuple[str, float], ...]
     """Stages of the work, in order, and their shares of the time."""
     version: str = "2"
-    """Part of the result's content hash: another one, and stored results are computed again."""
+    """Part of the result's content hash: a new version makes stored results be computed again."""
     folder: str = ""
-    """Name of the files, but for their endings, that the verb writes to a folder; empty: it writes one file.
-    """
+    """Name without ending of the files that the verb writes to a folder; empty: the verb writes one file."""
     further: tuple[str, ...] = ()
-    """Endings of files that the verb writes in addition to the files of all studies. CSV can be printed too.
-    """
+    """Endings of files that this verb writes beyond those of all studies; CSV can be printed too."""
     several: bool = False
     """Whether the verb takes several files."""
     housed: bool = False
@@ -133,7 +133,7 @@ class Study:
 
     @property
     def accepted(self) -> tuple[str, ...]:
-        """Endings of a file that is named: a page is printed on request alone."""
+        """Endings that the user may name for the output: `endings`, and PDF, which is never the default."""
         return (*self.endings, ".pdf")
 
     @property
@@ -170,7 +170,7 @@ class StudyFunction(Generic[Q, T]):
         inputs = "".join(f"\n{name}: {field.description or ''}" for name, field in fields)
         return f"{self.study.description}\n{inputs}"
 
-    # by its inputs alone, or with at least one of what a call of any study takes
+    # the first form has the inputs of this study alone; each other has one argument that all studies take
     @overload
     def __call__(self, subject: Subject, *inputs: Q.args, **fields: Q.kwargs) -> T: ...
     @overload
@@ -183,7 +183,7 @@ class StudyFunction(Generic[Q, T]):
     def __call__(self, subject: Subject, *, progress: Progress | None, **further: Any) -> T: ...
     @overload
     def __call__(self, subject: Subject, *, folder: Path | None, **further: Any) -> T: ...
-    def __call__(  # type: ignore[misc]  # of Q it takes at most one by its place
+    def __call__(  # type: ignore[misc]  # the first form has all of Q by position, this one at most one
         self,
         subject: Subject,
         inputs: Mapping[str, Any] | None = None,
@@ -225,7 +225,7 @@ class StudyFunction(Generic[Q, T]):
 
 @dataclass(frozen=True)
 class StudyOf(Study, Offered[P, T, F], Generic[P, Q, T, F]):
-    """A study that clients offer, and that is a function."""
+    """A row of the registry that is also an attribute of clients, and has a function for Python users."""
 
     takes: Takes[P, Q, T, F]
 

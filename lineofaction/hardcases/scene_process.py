@@ -41,10 +41,10 @@ class _Worker:
 
     def __init__(self) -> None:
         context = multiprocessing.get_context("spawn")
-        self._pipe, theirs = context.Pipe()
-        self._process: BaseProcess = context.Process(target=_serve, args=(theirs,), daemon=False)
+        self._pipe, child_pipe = context.Pipe()
+        self._process: BaseProcess = context.Process(target=_serve, args=(child_pipe,), daemon=False)
         self._process.start()
-        theirs.close()
+        child_pipe.close()
         self.alive = self._pipe.poll(_START_LIMIT) and bool(self._pipe.recv())
 
     def run(self, scene: HardScene) -> Outcome:

@@ -133,8 +133,8 @@ def read_inputs(files: Sequence[Path]) -> Inputs:
         key=lambda pair: list(STUDIES).index(pair[0].name),
     )
     pages = {study.kind: _study_page(study, file, database) for study, file in studies}
-    said = file_attributes(by_kind["run"][1]) if "run" in read else {}
-    marks, unit = (json.loads(said.get(name, "null")) for name in (COMPLAINT, UNIT))
+    attributes = file_attributes(by_kind["run"][1]) if "run" in read else {}
+    marks, unit = (json.loads(attributes.get(name, "null")) for name in (COMPLAINT, UNIT))
     records = {file.name: making_of(file) for file in files}
     return Inputs(**read, pages=pages, warnings=warnings, marks=marks, unit=unit, records=records)
 

@@ -1,4 +1,4 @@
-"""Tasks whose results are kept until all is done: an interrupted study goes on where it was."""
+"""Workers that store the results of tasks: an interrupted study, repeated, computes the missing ones only."""
 
 from __future__ import annotations
 
@@ -19,28 +19,33 @@ S = TypeVar("S")
 T = TypeVar("T")
 R = TypeVar("R")
 _CHECKSUM = 32
+"""Bytes of a SHA-256 digest, which stands before the content of a file."""
 
 
 @dataclass(frozen=True)
 class Remembering:
     """Workers with a folder that stores their results.
 
-    The folder is of this study alone, as its files are unpickled, and the caller's to remove. Results of
-    another `version` of what computes are not taken.
+    Files of the folder are unpickled, so it must belong to this study alone. The caller removes it.
     """
 
     others: Workers
+    """Workers that do the tasks without a stored result."""
     folder: Path
     version: str
+    """Version of the program; results of another version are not used."""
     _digests: dict[int, tuple[object, str]] = field(default_factory=dict, compare=False, repr=False)
+    """Shared objects and their digests by the `id` of the object. The object is in the value so that it lives
+    and no other one gets its `id`.
+    """
 
     @property
     def cost(self) -> RunCost:
-        """Cost of the tasks that the other workers did this time."""
+        """Cost of the tasks that had no stored result."""
         return self.others.cost
 
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
-        """Yield stored results and new ones; the new ones are stored."""
+        """Yield the results of tasks in their order, stored ones or computed ones, which are stored."""
         files = self._files(function, shared, items)
         if files is None:
             yield from self.others.run(function, shared, items)
@@ -49,7 +54,7 @@ class Remembering:
         missing = [item for item, known in zip(items, stored, strict=True) if known is None]
         results = self.others.run(function, shared, missing)
         for file, known in zip(files, stored, strict=True):
-            if known is not None:
+            if known is not None:  # a tuple of one result, which itself may be None
                 yield known[0]
                 continue
             result = next(results)
@@ -61,18 +66,21 @@ class Remembering:
     ) -> list[Path] | None:
         """Return the files of the results of tasks; None if the content of the tasks cannot be identified."""
         try:
-            known = self._digests.get(id(shared))
-            if known is None:
-                known = self._digests[id(shared)] = shared, content_digest(shared)
-            context = f"{self.version} {function.__module__}.{function.__qualname__} {known[1]}"
+            if id(shared) not in self._digests:
+                self._digests[id(shared)] = shared, content_digest(shared)
+            _, shared_digest = self._digests[id(shared)]
+            context = f"{self.version} {function.__module__}.{function.__qualname__} {shared_digest}"
             names = [f"{context} {content_digest(item)}" for item in items]
-        except TypeError:
+        except TypeError:  # `content_digest` knows no digest of such an object
             return None
         return [self.folder / hashlib.sha256(name.encode()).hexdigest() for name in names]
 
 
 def _write(file: Path, result: Any) -> None:
-    """Keep a result; a reader sees all of it or nothing, and no room for it is no reason to fail."""
+    """Store a result by a temporary file, so that a reader finds all of it or nothing.
+
+    A file that cannot be written, on a full disk for example, is left out: the result is computed anew.
+    """
     content = pickle.dumps(result, protocol=pickle.HIGHEST_PROTOCOL)
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -85,6 +93,7 @@ def _write(file: Path, result: Any) -> None:
 
 
 def _read(file: Path) -> tuple[Any] | None:
+    """Return a stored result in a tuple; None: it is missing or damaged."""
     try:
         content = file.read_bytes()
     except OSError:

@@ -56,12 +56,12 @@ class Packed:
 
 def do_task(function: Callable[[Any, Any], R], item: Any, packed: Packed) -> TaskResult[R]:
     """Do one task, on a worker."""
-    begun = task_cpu_seconds()
+    cpu_before = task_cpu_seconds()
     try:
         result = function(packed.unpacked(), item)
     except KeyboardInterrupt:  # a Ctrl-C reaches the processes of a pool, too
         raise WorkersLost("A worker was interrupted.") from None
-    return TaskResult(result, task_cpu_seconds() - begun, peak_memory())
+    return TaskResult(result, task_cpu_seconds() - cpu_before, peak_memory())
 
 
 def task_cpu_seconds() -> float:

@@ -1,4 +1,8 @@
-"""Limits of callers: requests of one caller per minute and at the same time, and the capacity for all."""
+"""Limits of callers: requests of one caller per minute and at the same time, and the capacity for all.
+
+A holder is a key of access, or `NOBODY` for all callers without a key. Requests per minute are limited by a
+bucket for each holder: it is refilled at the rate of the limit up to the limit, and a request takes one out.
+"""
 
 from __future__ import annotations
 
@@ -18,16 +22,20 @@ from service.access.holder import Holder
 from service.access.quotas import Quota
 
 _RETRY_S = 1
+"""Seconds after which a refused caller may try again."""
 NOBODY = ""
 """Name of the holder that stands for all callers without a key."""
 
 logger = structlog.get_logger(__name__)
 _MINUTE_S = 60.0
 _MAX_CONNECTIONS = 800
+"""Largest number of connections of a server process, however many files it may open."""
 _MIN_CONNECTIONS = 32
+"""Least number of connections with which a server starts."""
 _OTHER_FILES = 192
-"""Kept for all else: up to four files in each of the 40 threads of handlers, pipes to workers, the rest."""
+"""Open files that are no connections: up to four in each of the 40 threads of handlers, and others."""
 _FILES_OF_A_WORKER = 4
+"""Open files of a server process for each of its worker processes."""
 RAISE = "Raise the limit of the process (ulimit -n, LimitNOFILE= of systemd)."
 
 
@@ -37,9 +45,9 @@ class Usage:
     Parameters
     ----------
     what : str
-        The kind, plural.
+        Name of the kind, plural, in messages.
     in_all : int, optional
-        Most of all holders together.
+        Largest number of all holders together; None: no limit.
     """
 
     def __init__(self, what: str, in_all: int | None = None) -> None:
@@ -50,17 +58,17 @@ class Usage:
         return self._counts[name]
 
     def refuse_beyond(self, name: str, maximum: int | None) -> None:
-        """Raise `TooManyHeld` if a holder has `maximum`, `TooManyRequests` if all together have theirs."""
+        """Raise `TooManyHeld` if a holder has `maximum`, `TooManyRequests` if all together have `in_all`."""
         if maximum is not None and self._counts[name] >= maximum:
-            who = "Callers without a key hold" if name == NOBODY else f"Key {name!r} holds"
-            text = f"{who} {maximum} {self._what}, the limit. End one of them, or try again."
+            subject = "Callers without a key hold" if name == NOBODY else f"Key {name!r} holds"
+            text = f"{subject} {maximum} {self._what}, the limit. End one of them, or try again."
             raise TooManyHeld.after(_RETRY_S, text)
         if self._in_all is not None and self._counts.total() >= self._in_all:
             raise TooManyRequests(f"There are {self._in_all} {self._what} in all. Try again soon.")
 
     @contextmanager
     def one(self, name: str) -> Iterator[None]:
-        """Hold one more while the context lasts."""
+        """Count one more in use by a holder while the context lasts."""
         self._counts[name] += 1
         try:
             yield
@@ -73,13 +81,13 @@ class Usage:
 class RateLimits:
     """The buckets of all keys, in the memory of one server process.
 
-    `clock`: seconds, steady; replaced by tests.
+    `clock` returns seconds that never fall; tests replace it.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
         self._lock = Lock()
-        self._left: dict[str, tuple[float, float]] = {}
+        self._left: dict[str, tuple[float, float]] = {}  # by name: requests left, and the instant, s
 
     def wait_s(self, key: Holder) -> int:
         """Take one request out of the bucket of a holder; return 0, or the seconds until there is one."""
@@ -88,9 +96,9 @@ class RateLimits:
             return 0
         with self._lock:
             left, instant = self._level(key.name, limit)
-            taken = left >= 1.0
-            self._left[key.name] = (left - 1.0 if taken else left, instant)
-        return 0 if taken else math.ceil((1.0 - left) * _MINUTE_S / limit)
+            granted = left >= 1.0
+            self._left[key.name] = (left - 1.0 if granted else left, instant)
+        return 0 if granted else math.ceil((1.0 - left) * _MINUTE_S / limit)
 
     def quota(self, key: Holder) -> Quota | None:
         """Return the quota of a holder and its remainder; None: no limit."""
@@ -103,7 +111,7 @@ class RateLimits:
         return Quota("requests", limit, int(left), window_s=int(_MINUTE_S), full_s=full_s)
 
     def _level(self, name: str, limit: int) -> tuple[float, float]:
-        """Return the requests in a bucket now, and the instant."""
+        """Return the number of requests in a bucket now, and the instant, s; a new bucket is full."""
         instant = self._clock()
         left, last = self._left.get(name, (float(limit), instant))
         return min(limit, left + (instant - last) * limit / _MINUTE_S), instant
@@ -111,26 +119,24 @@ class RateLimits:
 
 @dataclass(frozen=True)
 class Capacity:
-    """Capacity of one server process.
-
-    `connections`: most open HTTP connections with requests under way.
-    """
+    """Capacity of one server process; the other limits are shares of its connections."""
 
     connections: int = _MAX_CONNECTIONS
+    """Largest number of open HTTP connections with requests under way."""
 
     @property
     def comfortable_connections(self) -> int:
-        """The number of connections beyond which the connection that has been idle for longest is closed."""
+        """The number of connections beyond which the one that was idle for the longest time is closed."""
         return self.connections * 5 // 8
 
     @property
     def requests(self) -> int:
-        """Requests answered at once, and bodies awaited at once."""
+        """Largest number of requests that are answered, and of bodies that are awaited, at the same time."""
         return self.connections // 2
 
     @property
     def share(self) -> int:
-        """Requests of one caller answered at once, and bodies awaited, where its key says nothing else."""
+        """Largest number of requests of one caller at the same time, by default: a key may state its own."""
         return self.requests // 4
 
 

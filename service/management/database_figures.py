@@ -57,15 +57,15 @@ def _queue(load: Workload) -> Iterable[Metric]:
 
 def _ended(load: Workload) -> Iterable[Metric]:
     text = "Computations that ended, from their first start"
-    taken = HistogramMetricFamily("loa_computation_seconds", text, labels=_ENDED)
+    seconds = HistogramMetricFamily("loa_computation_seconds", text, labels=_ENDED)
     attempts = CounterMetricFamily(
         "loa_computation_attempts", "Attempts at computations that ended", labels=_ENDED
     )
     for entry in load.durations:
         names = [entry.process, entry.outcome]
-        taken.add_metric(names, list(entry.buckets), entry.seconds)
+        seconds.add_metric(names, list(entry.buckets), entry.seconds)
         attempts.add_metric(names, entry.attempts)
-    return taken, attempts
+    return seconds, attempts
 
 
 def _results(load: Workload) -> Iterable[Metric]:

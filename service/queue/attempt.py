@@ -72,10 +72,10 @@ class _AttemptTrace:
                 end_span(self._stage, step.at, {"loa.cpu_s": step.cpu_s - self._cpu_s})
                 self._stage = self._begun(name, step.at, step.cpu_s)
 
-    def end(self, how: str, usage: Usage | None) -> None:
+    def end(self, outcome: str, usage: Usage | None) -> None:
         """End the spans of the attempt with its outcome, such as "done", and its resources if known."""
-        now, fault = time.time(), "" if how == "done" else how
-        of_stage, of_attempt = dict[str, Fact](), dict[str, Fact]({"loa.outcome": how})
+        now, fault = time.time(), "" if outcome == "done" else outcome
+        of_stage, of_attempt = dict[str, Fact](), dict[str, Fact]({"loa.outcome": outcome})
         if usage is not None:
             of_stage["loa.cpu_s"] = max(usage.cpu_s - self._cpu_s, 0.0)
             of_attempt |= {"loa.cpu_s": usage.cpu_s, "loa.peak_mb": usage.peak_mb}
@@ -95,12 +95,12 @@ class Attempt:
     trace: _AttemptTrace
     fraction: PacedFraction
 
-    def note_end(self, how: str) -> None:
+    def note_end(self, outcome: str) -> None:
         """Count and log the end of the worker and, if it has been reaped, its use of resources."""
-        self.figures.ended(self.claim.process, how, self.worker)
+        self.figures.ended(self.claim.process, outcome, self.worker)
         for reason in self.worker.warnings:
             logger.warning("worker warns", **self.worker.log_fields, reason=reason)
-        self.trace.end(how, self.worker.usage)
+        self.trace.end(outcome, self.worker.usage)
         usage = {} if self.worker.usage is None else self.worker.usage.as_json()
         logger.info(
             "worker ended",
@@ -108,7 +108,7 @@ class Attempt:
             process=self.claim.process,
             **self.worker.log_fields,
             attempt=self.claim.attempts,
-            outcome=how,
+            outcome=outcome,
             **usage,
             **trace_fields(self.claim.traceparent),
         )

@@ -62,8 +62,8 @@ def batch_steps(connection: Connection) -> list[Update]:
         values = families.get(row.id, NOBODY).values()
         values["fraction"] = max(values["fraction"], row.fraction)
         if "state" in values or (values["message"], values["fraction"]) != (row.message, row.fraction):
-            mine = (computations.c.id == row.row) & running
-            steps.append(update(computations).where(mine).values(updated=now(), **values))
+            condition = (computations.c.id == row.row) & running
+            steps.append(update(computations).where(condition).values(updated=now(), **values))
     return steps
 
 

@@ -1,7 +1,9 @@
 """The scheduler's side of the job table: claim, progress, end, put back.
 
-One server owns the table (`service.store.ownership.Ownership`); callers dismiss meanwhile. So each step names
-its computation as one that runs: one that was dismissed stays so.
+A computation waits (state "accepted"), runs or has ended. The scheduler claims a waiting one to run it.
+One server owns the table (`service.store.ownership.Ownership`), but callers may dismiss a computation at any
+time. So each statement changes a computation only while its state is "running", and a dismissed one stays
+dismissed. A lost run is one whose end was not recorded, because the server ended first.
 """
 
 from __future__ import annotations
@@ -22,39 +24,44 @@ from service.store.retries import retried
 from service.version import solver_version
 
 MAX_LOST_RUNS = 10
-"""Most lost runs of a computation in a row. A computation that reaches it is taken for the cause of the
-losses and fails."""
+"""Number of consecutive lost runs at which a computation fails, as the probable cause of the losses."""
 SUSPECT_FROM = 3
-"""Number of lost runs in a row from which a computation runs alone. So the computation that ends the server
-is found."""
+"""Number of consecutive lost runs from which a computation runs alone.
+
+The computation that ends the server is found in this way.
+"""
 _LONGEST_WAIT_S = 60.0
+"""Longest wait of a computation after lost runs, s."""
 
 
 def wait_s(lost_runs: int) -> float:
-    """Return the wait of a computation after lost runs in a row, s: 1 s, twice as long each time."""
+    """Return the wait of a computation before its next run, s: 1 s after a lost run, doubled by each next."""
     return float(min(2.0 ** (lost_runs - 1), _LONGEST_WAIT_S)) if lost_runs else 0.0
 
 
 @dataclass(frozen=True)
 class Claim:
-    """A computation that runs; `attempts` counts this one.
-
-    `max_cost_s` (CPU s; None: no limit) is what was known when it was claimed, `waited_from` when it was
-    entered or put back (RFC 3339), `program` the version that entered it. An empty `traceparent` belongs to
-    no trace. `lost_runs` are those in a row that began and whose end nobody saw, as the server ended.
-    """
+    """A computation that the scheduler runs."""
 
     id: str
     process: str
+    """Name of the process, which is a kind of computation."""
     key: str
+    """Content hash of the inputs, under which the result is stored."""
     inputs: dict[str, Any]
     attempts: int
+    """Number of runs that count against the limit, this one included."""
     max_cost_s: float | None = None
+    """Limit of the cost, CPU s, at the time of the claim; None: no limit."""
     traceparent: str = field(default="", compare=False)
+    """Trace of the request; empty: none."""
     waited_from: str = field(default="", compare=False)
+    """Time (RFC 3339) at which it was entered or put back."""
     project: str = COMMON
     program: str = field(default="", compare=False)
+    """Version of the service that entered it."""
     lost_runs: int = field(default=0, compare=False)
+    """Number of consecutive lost runs before this one."""
 
     @property
     def suspect(self) -> bool:
@@ -71,10 +78,10 @@ class Reached:
     fraction: float | None
 
     def columns(self) -> dict[str, Any]:
-        """Return it as the job table has it."""
+        """Return the progress as columns of the job table."""
         fraction = {} if self.fraction is None else {"fraction": self.fraction}
-        at = {"stage": self.stage, "stage_fraction": self.stage_fraction}
-        return at | fraction | {"message": f"Runs: {self.stage}."}
+        stage = {"stage": self.stage, "stage_fraction": self.stage_fraction}
+        return stage | fraction | {"message": f"Runs: {self.stage}."}
 
 
 class Claims:
@@ -85,10 +92,10 @@ class Claims:
         self.program = program
 
     def claim(self, *, alongside: bool = False) -> Claim | None:
-        """Take the oldest waiting computation of the highest priority; None: none is to run now.
+        """Claim the oldest waiting computation of the highest priority; None: none may run now.
 
-        What another version entered is returned as it waits, for `service.queue.renewal`. A suspect is not
-        taken `alongside` other computations, and nothing is taken before it.
+        A computation that another version entered is returned but not claimed: `service.queue.renewal` enters
+        it anew. `alongside`: other computations run. A suspect is then not claimed, nor one behind it.
         """
         while (row := self._first()) is not None:
             claim = _claimed(row)
@@ -109,22 +116,23 @@ class Claims:
 
     @retried
     def _begin(self, row: Row[Any]) -> bool:
-        """Let a waiting computation run, unless it was dismissed; a repeated step finds it running."""
+        """Set a waiting computation to running; return False if it was dismissed."""
         attempt, table = row.attempts + 1, computations.c
+        # a repetition, after a lost connection, finds the computation running in this attempt
         waits = (table.state == "accepted") | (table.state == "running") & (table.attempts == attempt)
         values = {"attempts": attempt, "started": row.started or now(), "state": "running"}
         values |= {"message": "Starts.", "updated": now()}
         with writing(self._engine) as connection:
-            begun = update(computations).where(table.id == row.id, waits).values(**values)
-            return connection.execute(begun).rowcount > 0
+            change = update(computations).where(table.id == row.id, waits).values(**values)
+            return connection.execute(change).rowcount > 0
 
     def note_runs(self, claims: Collection[Claim]) -> None:
-        """Count runs that have begun as lost: they are, unless their end is noted."""
+        """Count runs that have begun as lost runs, until their end is recorded."""
         self._change([(claim, {"lost_runs": claim.lost_runs + 1}) for claim in claims])
 
     @retried
     def still_running(self, claims: Collection[Claim]) -> set[str]:
-        """Return the computations that still run: that were not dismissed."""
+        """Return the ids of the computations that still run, so were not dismissed."""
         if not claims:
             return set()
         which = _running(claims)
@@ -140,25 +148,27 @@ class Claims:
             return limit
 
     def progress(self, reached: Sequence[tuple[Claim, Reached]]) -> None:
-        """Note how far works are, in one transaction."""
+        """Record the progress of computations in one transaction."""
         self._change([(claim, point.columns()) for claim, point in reached])
 
     def succeed(self, claim: Claim) -> None:
-        """End with the result stored."""
+        """End a computation whose result is stored."""
         done = {"state": "successful", "message": "Done.", "fraction": 1.0, "stage_fraction": 1.0}
         self._end_with(claim, done)
 
     def fail(
         self, claim: Claim, message: str, faults: Sequence[dict[str, Any]] = (), reference: str = ""
     ) -> None:
-        """End without a result."""
+        """End a computation without a result."""
         details = {"faults": json.dumps(list(faults)), "reference": reference}
         self._end_with(claim, {"state": "failed", "message": message.replace("\0", "")} | details)
 
     def put_back(self, claim: Claim, message: str, *, counted: bool, lost_runs: int | None = None) -> None:
-        """Let it wait again; an attempt that ended through no fault of its own is not counted.
+        """Let a computation wait again.
 
-        It has then so many `lost_runs` in a row, None: those that it had, and none after one that counts.
+        `counted`: the run counts among the attempts, and there are no consecutive lost runs. A run that ended
+        for no fault of the computation is not counted; `lost_runs` is then the number of consecutive lost
+        runs, None: as before the run.
         """
         attempts = claim.attempts if counted else claim.attempts - 1
         lost_runs = claim.lost_runs if lost_runs is None else lost_runs
@@ -182,7 +192,7 @@ class Claims:
 
     @retried
     def advance_batches(self) -> None:
-        """Note how far batches are by the states of their jobs."""
+        """Record the progress of batches, which follows from the states of their jobs."""
         with reading(self._engine) as connection:
             steps = batch_steps(connection)
         if not steps:
@@ -193,26 +203,26 @@ class Claims:
 
     @retried
     def running(self) -> list[Claim]:
-        """Return the running computations of the table; at a start those of a server that died."""
+        """Return the running computations; when a server starts, they are those of a former one that died."""
         runs = (computations.c.state == "running") & ~of_batch
         with reading(self._engine) as connection:
             return [_claimed(row) for row in connection.execute(select(computations).where(runs))]
 
     @retried
     def waiting(self) -> set[str]:
-        """Return the computations that wait."""
+        """Return the ids of the computations that wait."""
         statement = select(computations.c.id).where(computations.c.state == "accepted")
         with reading(self._engine) as connection:
             return set(connection.execute(statement).scalars())
 
 
 def _running(claims: Collection[Claim]) -> ColumnElement[bool]:
-    """Return the condition of claimed computations that run."""
+    """Return the condition that a row is one of the claims and runs."""
     return computations.c.id.in_([claim.id for claim in claims]) & (computations.c.state == "running")
 
 
 def _waited_long_enough() -> ColumnElement[bool]:
-    """Return the condition of computations that have waited long enough since their lost runs."""
+    """Return the condition that a computation has waited `wait_s` since its last lost run."""
     table, time = computations.c, datetime.now(UTC)
     due = [
         (table.lost_runs == lost) & (table.updated <= instant(time - timedelta(seconds=wait_s(lost))))
@@ -222,6 +232,16 @@ def _waited_long_enough() -> ColumnElement[bool]:
 
 
 def _claimed(row: Row[Any]) -> Claim:
-    inputs, (project, key) = json.loads(row.inputs), at_address(row.key)
-    fields = (row.id, row.process, key, inputs, row.attempts, row.max_cost_s, row.traceparent)
-    return Claim(*fields, project=project, program=row.program, lost_runs=row.lost_runs)
+    project, key = at_address(row.key)
+    return Claim(
+        id=row.id,
+        process=row.process,
+        key=key,
+        inputs=json.loads(row.inputs),
+        attempts=row.attempts,
+        max_cost_s=row.max_cost_s,
+        traceparent=row.traceparent,
+        project=project,
+        program=row.program,
+        lost_runs=row.lost_runs,
+    )

@@ -1,9 +1,12 @@
-"""Jobs as tasks of a Dask scheduler, one each: found again by their names, cancelled, counted, brought home.
+"""Jobs as tasks of a Dask scheduler, one task for each job.
 
-A thread with an event loop of its own speaks with Dask. What it is to do follows from the tasks that are
-wanted: those that a fresh connection does not know are submitted, under names by which Dask finds the ones it
-has. So a scheduler that was lost, and a server that was started again, are the same case. Each task is
-published: it stays when the server is gone.
+A thread with its own event loop talks to Dask. It compares the tasks that the server wants with those of its
+connection and submits the others, under the names of the tasks; a name that Dask knows already gives the
+present task. A lost scheduler and a restarted server are therefore the same case. Each task is published as
+a dataset of its name, so that Dask keeps it when the server is gone.
+
+Three schedulers meet here: that of Dask; that of this service, which owns a `Cluster` and its `Task`s; and
+the event loop of the thread.
 """
 
 from __future__ import annotations
@@ -33,23 +36,23 @@ if TYPE_CHECKING:
     from distributed import Client
 
 _LOOK_S = 1.0
-"""Seconds between two looks at the connection and at the workers."""
+"""Seconds between two checks of the connection and of the workers."""
 _STOPPING_S = 2.0
 """Seconds for which a stop waits for a connection that is being made."""
 logger = structlog.get_logger(__name__)
 
 
 class Task:
-    """A job that was handed to Dask; it offers the same as `service.worker.worker.Worker` of this machine."""
+    """A job that was handed to Dask, with the methods of `service.worker.worker.Worker` of this machine."""
 
     channel: int | None = None
-    """Descriptor that wakes the scheduler; None: a task of Dask wakes the scheduler by itself."""
+    """File descriptor that wakes the service's scheduler; None: `Cluster` calls its `notify` instead."""
 
     def __init__(self, name: str, order: WorkOrder, log: Path, drop: Callable[[str], None]) -> None:
         self.name, self.order, self._log, self._drop = name, order, log, drop
         self.usage: Usage | None = None
         self.compliance_reads, self.warnings = CacheReads(), list[str]()
-        self._begin = ""
+        self._begin = ""  # name of the run of the task that a worker reported; empty: none yet
         self._started: float | None = None
         self._spent: float | None = None
         self._steps: deque[Step] = deque()
@@ -75,7 +78,10 @@ class Task:
         return self._spent
 
     def hear(self, event: Mapping[str, Any]) -> None:
-        """Take the report of a worker; a second beginning ends this run: who began it first was lost."""
+        """Take the report of a worker.
+
+        A report of another run of the task ends it: Dask starts a task again if its first worker is lost.
+        """
         if self._begin not in ("", event["begin"]):
             self.end(Outcome(failure="The Dask worker that ran it was lost.", lost=True))
         self._begin = event["begin"]
@@ -83,11 +89,11 @@ class Task:
         self._steps.extend(Step(*step) for step in event["steps"])
 
     def await_anew(self) -> None:
-        """Take the next beginning for the first: a scheduler was lost, which is not its fault."""
+        """Forget the run of the task, so that the run after the loss of a scheduler counts as the first."""
         self._begin, self._started = "", None
 
     def contents(self) -> Mapping[str, bytes]:
-        """Return the contents of the stored results that it reads."""
+        """Return the contents of the stored results that the task reads."""
         return {key: file.read_bytes() for key, file in self.order.stored.items()}
 
     def take(self, done: Done) -> None:
@@ -108,7 +114,7 @@ class Task:
 
     @property
     def ended(self) -> bool:
-        """Whether it is known how."""
+        """Whether the outcome of the task is known."""
         return self._outcome is not None
 
     def listen(self) -> tuple[list[Step], bool]:
@@ -122,7 +128,7 @@ class Task:
         return self._outcome
 
     def kill(self, _patience_s: float | None = None) -> None:
-        """Cancel it, or drop its result; its worker kills the child within half a second."""
+        """Cancel the task, or drop its result; its worker kills the child process within half a second."""
         self._drop(self.name)
 
     end_group = kill
@@ -135,24 +141,26 @@ class Cluster:
     """
 
     keeps = True
+    """Whether jobs go on while the server is stopped."""
 
     def __init__(self, address: str, deployment: str) -> None:
         self._address, self._name = address, f"loa-{deployment[:12]}"
         self.maximum = 0
         self._tasks: dict[str, Task] = {}
-        self._known: set[str] = set()
-        self._away = ""
+        self._known: set[str] = set()  # addresses of workers whose versions were checked
+        self._away = ""  # the fault that was logged last; empty: none
         self._lock, self._stopping = threading.Lock(), False
         self._loop: asyncio.AbstractEventLoop | None = None
         self._thread: threading.Thread | None = None
 
     def check(self) -> None:
-        """Raise `BadInput` of a scheduler that does not answer or lacks workers, or of other programs."""
+        """Raise `BadInput` if the scheduler is silent, has no workers, or has workers of other programs."""
         bound, tip = asyncio.run(self._fault_at_start())
         if bound:
             raise BadInput.of("scheduler", self._address, bound, tip)
 
     async def _fault_at_start(self) -> tuple[str, str]:
+        """Return the fault of a first connection and its remedy, as `_fault`."""
         try:
             async with dask_cluster.connection(self._address, asynchronous=True) as client:
                 with suppress(TimeoutError):
@@ -166,7 +174,11 @@ class Cluster:
             )
 
     async def _fault(self, client: Client) -> tuple[str, str]:
-        """Return why no work is sent, with a remedy; empty: it is sent. Counts the working threads."""
+        """Return the fault that keeps work from the workers and its remedy, and set `maximum`.
+
+        The fault is worded as the bound of a `BadInput`: "that of a scheduler with workers". It is empty if
+        there is none; the remedy is then without meaning.
+        """
         threads = await client.nthreads()  # type: ignore[no-untyped-call]
         self._known &= threads.keys()
         start = f"dask worker {self._address} --nthreads 1 --nworkers 4"
@@ -188,7 +200,7 @@ class Cluster:
         self._thread.start()
 
     def hurry(self) -> None:
-        """Do nothing: to begin takes no time."""
+        """Do nothing: unlike processes of this machine, tasks have no starts in progress to finish."""
 
     def close(self) -> None:
         """Disconnect; the tasks stay with Dask."""
@@ -218,7 +230,7 @@ class Cluster:
                 self._loop.call_soon_threadsafe(self._changed.set)
 
     async def _main(self) -> None:
-        """Until stopped: connect, serve; a connection that is lost is made again."""
+        """Connect and serve until stopped; connect again after each lost connection."""
         self._loop, self._changed = asyncio.get_running_loop(), asyncio.Event()
         while not self._stopping:
             try:
@@ -231,28 +243,28 @@ class Cluster:
             self.maximum = 0
 
     async def _serve(self, client: Client) -> None:
-        """Submit wanted tasks, cancel others; end when the connection is lost."""
+        """Submit wanted tasks and cancel others, until the connection is lost or `close` is called."""
         following: dict[Task, asyncio.Task[None]] = {}
         names = map(str, await client.list_datasets())  # type: ignore[no-untyped-call]
-        left = {name for name in names if name.startswith(self._name)}
-        looked = 0.0
+        stored = {name for name in names if name.startswith(self._name)}  # by an earlier run of the server
+        checked = 0.0  # monotonic time of the last check of the workers, s
         try:
             while not self._stopping:
                 self._changed.clear()
                 if str(client.status) != "running":
                     raise OSError("the connection broke")
-                if time.monotonic() - looked > _LOOK_S:
+                if time.monotonic() - checked > _LOOK_S:
                     fault, tip = await self._fault(client)
                     self._say(f"scheduler {self._address}: not {fault}. {tip}" if fault else "")
-                    looked = time.monotonic()
+                    checked = time.monotonic()
                 with self._lock:
                     wanted = dict(self._tasks)
                 dropped = following.keys() - wanted.values()
                 for task in dropped:
                     following.pop(task).cancel()
-                for name in {task.name for task in dropped} | left - wanted.keys():
+                for name in {task.name for task in dropped} | stored - wanted.keys():
                     await self._forget(client, name)
-                left = set()
+                stored = set()
                 for task in wanted.values():
                     if not task.ended and (task not in following or following[task].done()):
                         following[task] = asyncio.create_task(self._follow(client, task))
@@ -270,7 +282,7 @@ class Cluster:
         await client.unpublish_dataset(name)
 
     async def _follow(self, client: Client, task: Task) -> None:
-        """Let a task be done, and take its products."""
+        """Submit a task, wait for its end, and take its products."""
         task.await_anew()
         try:
             done = await self._done(client, task, await asyncio.to_thread(task.contents))
@@ -284,7 +296,10 @@ class Cluster:
         self._notify()
 
     async def _done(self, client: Client, task: Task, files: Mapping[str, bytes]) -> Done | Outcome | None:
-        """Submit a task, or join the present one; return its products, or the reason; None: try anew."""
+        """Submit a task, or find the one of its name, and wait for it.
+
+        Returns its products, or the outcome of a failure; None: the connection failed, submit it again.
+        """
         from distributed import KilledWorker  # noqa: PLC0415 (an extra)
 
         arguments = (task.order.line(), files, self._name, program())
@@ -302,7 +317,7 @@ class Cluster:
             return Outcome(failure=text, lost=True)
         except Exception as error:
             if isinstance(error, OSError) and future.status != "error":
-                return None  # in a transfer
+                return None  # a transfer between server and scheduler failed, not the task
             logger.exception("task failed", task=task.name)
             full = isinstance(error, OSError) and no_space(error, "the folder of the Dask worker")
             text = full or "The Dask worker could not do it; the log of the service has the reason."
@@ -316,7 +331,7 @@ class Cluster:
             task.hear(report)
 
     def _say(self, fault: str) -> None:
-        """Log once the fault that keeps jobs waiting, and its end."""
+        """Log a fault that keeps jobs waiting, or its end (empty text); each is logged once."""
         if fault != self._away:
             (logger.warning if fault else logger.info)(
                 "cluster away" if fault else "cluster back", reason=fault

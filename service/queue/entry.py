@@ -99,8 +99,8 @@ class Entry:
                 return identifier
             ended, terms = _ended_since(work, looked), self._terms
             if terms.reuse:
-                mine = (jobs.c.caller == self._caller.name, jobs.c.dismissed.is_(None))
-                equal = select(jobs.c.id).join(computations).where(*mine, jobs.c.stated == terms.stated)
+                conditions = (jobs.c.caller == self._caller.name, jobs.c.dismissed.is_(None))
+                equal = select(jobs.c.id).join(computations).where(*conditions, jobs.c.stated == terms.stated)
                 newest = equal.where(_live(work.key) | ended).order_by(jobs.c.created.desc()).limit(1)
                 known: str | None = connection.execute(newest).scalar()
                 if known is not None:
@@ -121,7 +121,7 @@ class Entry:
         A live computation that another version of the program entered becomes this version's: else the end
         of the other version's work would end this job too.
         """
-        mine, table, terms = computations.c.id == shared, computations.c, self._terms
+        condition, table, terms = computations.c.id == shared, computations.c, self._terms
         if shared is None:
             state: dict[str, Any] = {"state": "accepted", "message": "Waits for a worker."}
             if work.stored:
@@ -131,7 +131,7 @@ class Entry:
             values = {"traceparent": TRACEPARENT.get(), **state}
             return _entered(connection, process, work.key, work.inputs, **values)
         widen_terms(connection, shared, terms.priority, terms.max_cost_s)
-        live = mine & table.state.in_(LIVE)
+        live = condition & table.state.in_(LIVE)
         connection.execute(update(computations).where(live).values(program=solver_version()))
         return shared
 
@@ -174,8 +174,8 @@ class Entry:
     ) -> None:
         """Enter the batch and its jobs; of equal jobs the first has the weight of their cost."""
         common = {"created": now(), "caller": self._caller.name, "project": self._project, **USUAL.columns()}
-        begun = {"state": "running", "stage": "jobs", "started": now()}
-        computation = _entered(connection, process, f"{BATCH}{identifier}", {}, **begun)
+        initial_values = {"state": "running", "stage": "jobs", "started": now()}
+        computation = _entered(connection, process, f"{BATCH}{identifier}", {}, **initial_values)
         batch = {"id": identifier, "computation_id": computation, "parent": None, "place": 0, "weight": 0.0}
         rows = [common | batch | {"children": len(cases)} | self._terms.label.columns()]
         names, counted = [str(uuid.uuid4()) for _ in cases], set[str]()
@@ -193,11 +193,11 @@ class Entry:
 
 def widen_terms(connection: Connection, shared: str, priority: int, limit: float | None) -> None:
     """Give a computation the higher priority, while it waits, and the higher limit (CPU s; None: none)."""
-    mine, table = computations.c.id == shared, computations.c
-    lower = mine & (table.state == "accepted") & (table.priority < priority)
+    condition, table = computations.c.id == shared, computations.c
+    lower = condition & (table.state == "accepted") & (table.priority < priority)
     connection.execute(update(computations).where(lower).values(priority=priority))
     tighter = table.max_cost_s.is_not(None) if limit is None else table.max_cost_s < limit
-    connection.execute(update(computations).where(mine, tighter).values(max_cost_s=limit))
+    connection.execute(update(computations).where(condition, tighter).values(max_cost_s=limit))
 
 
 def _is_entered(connection: Connection, which: ColumnElement[bool], works: Sequence[BatchCase]) -> bool:
@@ -235,9 +235,9 @@ def _refuse_if_busy(connection: Connection, caller: Holder, further: int = 1) ->
     """Raise if a caller has more unfinished jobs than it may with so many `further` ones."""
     if caller.unfinished_jobs is None:
         return
-    mine = (jobs.c.caller == caller.name, jobs.c.dismissed.is_(None), jobs.c.children == 0)
+    conditions = (jobs.c.caller == caller.name, jobs.c.dismissed.is_(None), jobs.c.children == 0)
     live = computations.c.state.in_(LIVE)
-    count = select(func.count()).select_from(jobs.join(computations)).where(*mine, live)
+    count = select(func.count()).select_from(jobs.join(computations)).where(*conditions, live)
     if connection.execute(count).scalar_one() + further > caller.unfinished_jobs:
         raise QueueFull(
             f"Key {caller.name!r} has {caller.unfinished_jobs} unfinished jobs, its limit. "

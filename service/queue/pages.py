@@ -79,30 +79,30 @@ class PageQuery:
 
     def _wanted(self, lines: FromClause) -> Iterator[ColumnElement[bool]]:
         """Yield the conditions of lines but for state and time run."""
-        wanted = self.job_filter
-        for tag in wanted.tags:
+        job_filter = self.job_filter
+        for tag in job_filter.tags:
             yield lines.c.tags.contains(f"\n{tag.lower()}\n", autoescape=True)
-        for word in wanted.words:
+        for word in job_filter.words:
             yield lines.c.title_folded.contains(word.casefold(), autoescape=True)
-        if len(wanted.processes) == 1:  # an index has the order of one process
-            yield lines.c.process == wanted.processes[0]
-        elif wanted.processes:
-            yield lines.c.process.in_(wanted.processes)
-        if wanted.earliest is not None:
-            yield lines.c.created >= wanted.earliest
-        if wanted.latest is not None:
-            yield lines.c.created <= wanted.latest
+        if len(job_filter.processes) == 1:  # an index has the order of one process
+            yield lines.c.process == job_filter.processes[0]
+        elif job_filter.processes:
+            yield lines.c.process.in_(job_filter.processes)
+        if job_filter.earliest is not None:
+            yield lines.c.created >= job_filter.earliest
+        if job_filter.latest is not None:
+            yield lines.c.created <= job_filter.latest
 
     def _once(self, lines: FromClause) -> ColumnElement[bool]:
         """Return the condition of lines without a better wanted line of their result."""
         if self._wants_all:
             return lines.c.rank == NEWEST
         others = listings.alias()
-        wanted = [*self._wanted(others), *self._ran(others), _is_better(others, lines)]
+        conditions = [*self._wanted(others), *self._ran(others), _is_better(others, lines)]
         if self.job_filter.statuses:
-            wanted.append(others.c.state.in_(self.job_filter.statuses))
+            conditions.append(others.c.state.in_(self.job_filter.statuses))
         same = select(others.c.job).where(others.c.key == lines.c.key, others.c.parent == lines.c.parent)
-        return ~same.where(*wanted).exists()
+        return ~same.where(*conditions).exists()
 
     @property
     def _wants_all(self) -> bool:

@@ -82,9 +82,11 @@ class Renewal:
 
     @retried
     def _texts(self, claim: Claim) -> list[str]:
-        mine = (jobs.c.computation_id == claim.id, jobs.c.stated != "", jobs.c.dismissed.is_(None))
+        conditions = (jobs.c.computation_id == claim.id, jobs.c.stated != "", jobs.c.dismissed.is_(None))
         with writing(self._engine) as connection:
-            rows = connection.execute(select(jobs.c.stated).where(*mine).order_by(jobs.c.created).limit(1))
+            rows = connection.execute(
+                select(jobs.c.stated).where(*conditions).order_by(jobs.c.created).limit(1)
+            )
             return list(rows.scalars())
 
     @retried
@@ -121,6 +123,6 @@ class Renewal:
 
 def _join(connection: Connection, computation: str, other: str) -> None:
     """Let the jobs of a computation be of another, which does the same work."""
-    mine = jobs.c.computation_id == computation
-    connection.execute(update(jobs).where(mine).values(computation_id=other))
+    conditions = jobs.c.computation_id == computation
+    connection.execute(update(jobs).where(conditions).values(computation_id=other))
     connection.execute(delete(computations).where(computations.c.id == computation))

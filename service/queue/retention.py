@@ -31,15 +31,17 @@ from service.store.retries import retried
 logger = structlog.get_logger(__name__)
 
 _AT_ONCE = 500
+"""Jobs that one transaction removes, so that others need not wait long for the database."""
 _IDENTIFIER = 36  # characters of a computation's identifier: other logs are not this program's
 FIRST_S, EVERY_S = 60.0, 3600.0
+"""Seconds from the start of the service to the first removal, and between removals."""
 
 
 class Retention:
     """Removes results, jobs and files that a service needs no more, also while the service runs.
 
-    It looks at workspaces and logs of the data directory too; a file that is removed from the store can be
-    had back for so many days.
+    It removes workspaces and logs of the data directory too. A file that is removed from the store can be
+    restored from the quarantine for `quarantine_days`.
     """
 
     def __init__(
@@ -49,14 +51,17 @@ class Retention:
         self._quarantine = Quarantine(store.files, Deployment(engine, store), quarantine_days)
 
     def collect(self, older_than_days: float | None = None, *, dry_run: bool = False) -> Iterator[Leftover]:
-        """Remove, or only list, leftovers: files and lines without each other, and expired items."""
+        """Remove, or only list, leftovers and expired items.
+
+        Leftovers are files without a row in the database, and rows without their file.
+        """
         yield from collect_orphans(self._store, self._quarantine, dry_run=dry_run)
         yield from self.expire(older_than_days, dry_run=dry_run)
 
     def expire(self, older_than_days: float | None = None, *, dry_run: bool = False) -> Iterator[Leftover]:
         """Remove old items with a date: results, jobs, workspaces, logs, and quarantined files.
 
-        Raises `BadInput`: the files of the store are another deployment's by now.
+        Raises `BadInput`: another deployment has taken the files of the store over.
         """
         self._quarantine.confirm()
         if older_than_days is not None:
@@ -71,14 +76,15 @@ class Retention:
 
     @retried
     def _forgotten(self, since: str, *, dry_run: bool) -> list[str]:
-        """Return some ended jobs that nobody requested since an instant; remove them unless it is a trial.
+        """Return ended jobs that nobody requested since an instant, and remove them unless `dry_run`.
 
-        A batch goes as a whole; computations of no job go with them.
+        One call removes at most `_AT_ONCE` jobs. The jobs of a batch are removed with it, never alone.
+        Computations and webhooks that no job has any more are removed too.
         """
         ended = computations.c.state.in_(ENDED) & (computations.c.updated < since)
         unasked = func.coalesce(jobs.c.asked, jobs.c.created) < since
         batch = jobs.alias()
-        of_no_batch = ~exists().where(batch.c.id == jobs.c.parent)
+        of_no_batch = ~exists().where(batch.c.id == jobs.c.parent)  # the job is in no batch that still exists
         old = select(jobs.c.id).join(computations, jobs.c.computation_id == computations.c.id)
         with writing(self._engine, in_turn=True) as connection:
             chosen = old.where(ended, unasked, of_no_batch)
@@ -91,7 +97,7 @@ class Retention:
         return names
 
     def _of_computations(self, *, dry_run: bool) -> Iterator[Leftover]:
-        """Remove workspaces and logs of ended computations; logs of failed ones are referred to."""
+        """Remove workspaces and logs of ended computations; logs of failed ones stay: messages name them."""
         live = self._states("accepted", "running")
         for path in self._old("work"):
             if path.name not in live:
@@ -108,6 +114,7 @@ class Retention:
                 yield Leftover("log", f"log/{path.name}", size)
 
     def _old(self, folder: str) -> list[Path]:
+        """Return the files of a folder that were not written for `GRACE_S` seconds."""
         directory = self._data_directory / folder
         paths = sorted(directory.iterdir()) if directory.is_dir() else []
         return [path for path in paths if time.time() - path.stat().st_mtime > GRACE_S]

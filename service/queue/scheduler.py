@@ -339,8 +339,8 @@ class Scheduler:
             elif self._crew.keeps:
                 self._begin(claim)
             else:
-                how = "while it ran" if claim.lost_runs else "before it had begun"
-                self._settlement.free_or_fail(claim, f"The service ended {how}.", claim.lost_runs)
+                when = "while it ran" if claim.lost_runs else "before it had begun"
+                self._settlement.free_or_fail(claim, f"The service ended {when}.", claim.lost_runs)
 
     def _note_progress(self) -> None:
         """Write down how far works are, at most every `_NOTED_EVERY_S`."""

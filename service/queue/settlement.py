@@ -30,15 +30,17 @@ class Ended:
 
 @dataclass(frozen=True)
 class Settlement:
-    """Settles attempts; each step may be repeated until the database and the store take it.
-
-    Suspects run `alone`, unless a cluster places them.
-    """
+    """Settles attempts; each step may be repeated until the database and the store accept it."""
 
     claims: Claims
     store: ResultStore
     max_attempts: int
+    """Attempts of a computation after which it has failed, if its worker died each time."""
     alone: bool = True
+    """Whether a suspect runs without other jobs; not where a cluster places jobs.
+
+    A suspect is work during whose last runs the server or Dask worker ended.
+    """
 
     def settle(self, ended: Ended) -> None:
         """Store the products, or note why none exist; remove the workspace unless an attempt follows."""
@@ -66,7 +68,7 @@ class Settlement:
         return False
 
     def _keep(self, claim: Claim, outcome: Outcome, usage: Usage | None) -> None:
-        """Store the products; a file system that refuses them will refuse a repetition too."""
+        """Store the products; an error of the file system ends the work: a repetition would fail too."""
         store = self.store.within(claim.project)
         spent = {} if usage is None else {"cpu_seconds": round(usage.cpu_s, 3)}
         try:
@@ -96,9 +98,9 @@ class Settlement:
         return False
 
     def free_or_fail(self, claim: Claim, reason: str, lost_runs: int) -> bool:
-        """Put back work whose server or Dask worker ended, unless the work causes these ends.
+        """Put back work whose server or Dask worker ended, unless the work itself seems to be the cause.
 
-        The evidence is who ran: this work so many times in a row, in the end without others.
+        It seems so after `MAX_LOST_RUNS` such runs in a row, the last of them without other work.
         """
         if lost_runs < MAX_LOST_RUNS:
             text = f"{reason} Waits to be begun again, which is no attempt."

@@ -144,15 +144,15 @@ class Submissions:
     def _dismiss(self, identifier: str) -> None:
         """Dismiss a job with the unended ones of its batch, and the computations that no other wants."""
         with writing(self._engine, in_turn=True) as connection:
-            mine = (jobs.c.id == identifier) | (jobs.c.parent == identifier)
+            condition = (jobs.c.id == identifier) | (jobs.c.parent == identifier)
             undismissed = jobs.c.dismissed.is_(None)
             live = select(computations.c.id).where(computations.c.state.in_(LIVE))
             goes_on = undismissed & jobs.c.computation_id.in_(live)
-            connection.execute(update(jobs).where(mine, goes_on).values(dismissed=now()))
-            wanted = exists().where(jobs.c.computation_id == computations.c.id, undismissed)
-            owners = select(jobs.c.computation_id).where(mine)
+            connection.execute(update(jobs).where(condition, goes_on).values(dismissed=now()))
+            has_other_job = exists().where(jobs.c.computation_id == computations.c.id, undismissed)
+            owners = select(jobs.c.computation_id).where(condition)
             # the scheduler kills their workers; a batch ends by its jobs
-            unwanted = computations.c.id.in_(owners) & ~wanted & computations.c.state.in_(LIVE)
+            unwanted = computations.c.id.in_(owners) & ~has_other_job & computations.c.state.in_(LIVE)
             values = {"state": "dismissed", "message": "Cancelled."}
             end_computations(connection, unwanted & ~of_batch, values)
 

@@ -1,4 +1,4 @@
-"""The one watcher of jobs of a process: it tells all who follow jobs that one changed."""
+"""The watcher of jobs of a process, which notifies all followers of a job when its state changes."""
 
 from __future__ import annotations
 
@@ -18,10 +18,11 @@ from service.store.database import reading
 from service.store.dialects import dialect_of
 
 REST_S = 0.2
-"""Seconds between two looks at the table, however often it changes."""
+"""Least seconds between two looks at the table, however often it changes."""
 NET_S = 5.0
-"""Seconds after which the table is read without news of a commit: a connection may be dead without a sign."""
+"""Seconds after which the table is read without notice of a commit: a dead connection brings no notice."""
 _RETRY_S = 1.0
+"""Seconds between attempts to reach a lost database."""
 
 T = TypeVar("T")
 Follower = Callable[[T | None], None]
@@ -37,9 +38,9 @@ class _Followed(Generic[T]):
 
 
 class Watcher(Generic[T]):
-    """Follows jobs in a thread that runs while there are followers; a lost database is waited for.
+    """Follows jobs in a thread that runs while there are followers, and waits for a lost database.
 
-    `show` makes of a job what followers are told, once for all of them.
+    `show` makes the state that followers get from a job; it is called once for all followers of the job.
     """
 
     def __init__(self, engine: Engine, show: Callable[[Job], T]) -> None:
@@ -47,7 +48,7 @@ class Watcher(Generic[T]):
         self._jobs: dict[str, _Followed[T]] = {}
         self._lock, self._stopped = threading.Lock(), threading.Event()
         self._thread: threading.Thread | None = None
-        self._new = False
+        self._new = False  # whether a follower joined since the last look
 
     @contextmanager
     def following(self, job: Job, follower: Follower[T]) -> Iterator[None]:
@@ -57,7 +58,8 @@ class Watcher(Generic[T]):
         """
         with self._lock:
             followed = self._jobs.setdefault(job.id, _Followed(job.updated))
-            followed.updated = min(followed.updated, job.updated)  # someone may be told twice, nobody never
+            # the earlier state of two followers: one may be notified twice, but none misses a change
+            followed.updated = min(followed.updated, job.updated)
             followed.followers.append(follower)
             self._new = True
             if self._thread is None:
@@ -73,7 +75,7 @@ class Watcher(Generic[T]):
                     del self._jobs[job.id]
 
     def stop(self) -> None:
-        """Tell all followers that there is no more, and end the thread."""
+        """Notify all followers of the end (None), and end the thread."""
         with self._lock:
             thread = self._thread
             self._stopped.set()
@@ -87,7 +89,7 @@ class Watcher(Generic[T]):
             try:
                 self._look()
                 with closing(dialect_of(self._engine).commits(self._engine)) as commits:
-                    self._look()  # what was committed before anything could be heard
+                    self._look()  # commits before notices of commits were received
                     looked = time.monotonic()
                     while self._jobs and not self._stopped.is_set():
                         if commits.received() or self._new or time.monotonic() - looked > NET_S:
@@ -125,11 +127,11 @@ class Watcher(Generic[T]):
         with self._lock:
             gone = known.keys() - updated.keys()
             self._tell(gone, None)
-            for identifier in gone:  # its followers hear of the end once, not with every look
+            for identifier in gone:  # its followers are notified of the end once, not at every look
                 self._jobs.pop(identifier, None)
 
     def _tell(self, identifiers: Collection[str], state: T | None) -> None:
-        """Tell the followers of jobs; the lock is held."""
+        """Call the followers of jobs with a state; the caller has the lock."""
         for identifier in identifiers:
             if identifier in self._jobs:
                 for follower in self._jobs[identifier].followers:

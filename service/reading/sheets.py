@@ -19,4 +19,4 @@ def case_as_made(inputs: Json, _folder: Path, _announce: Announce) -> Json:
         return {"case": case_as_filed(drawn), "left_out": []}
     of = Inspected(sheet["gear"], sheet["loaded"], sheet["cutoff_mm"])
     made, measured = measured_case(case, sheet["csv"], "csv", of)
-    return {"case": case_as_filed(made), "left_out": measured.omitted}
+    return {"case": case_as_filed(made), "left_out": [*measured.differences, *measured.omitted]}

@@ -76,8 +76,8 @@ def submit_batch(
 def _checked_inputs(context: Context, process: Process, request: BatchRequest) -> list[Json]:
     """Return the normalized inputs of all jobs.
 
-    Raises `BadInput`: with the faults of all, by their index; if they are too many with the first of each
-    job.
+    Raises `BadInput` with the faults of all jobs, named by the job's index; if there are more than
+    `MAX_FAULTS`, with the first fault of each job.
     """
     inputs, faults = [], []
     for index in range(len(request.jobs)):
@@ -94,7 +94,7 @@ def _checked_inputs(context: Context, process: Process, request: BatchRequest) -
 
 
 def _of_job(index: int, error: BadInput) -> list[Fault]:
-    """Return the faults of one job, named as in its case or scene file."""
+    """Return the faults of one job, with the job's index and the field's name in its case or scene file."""
     faults = []
     for fault in error.faults:
         name = fault.field.removeprefix("case.").removeprefix("scene.")
@@ -103,25 +103,25 @@ def _of_job(index: int, error: BadInput) -> list[Fault]:
 
 
 def _cases(context: Context, process: Process, inputs: Sequence[Json]) -> list[BatchCase]:
-    """Return the jobs of a batch: those with results, and the predicted costs of the others."""
-    keys = [process.key(one) for one in inputs]
+    """Return the jobs of a batch: whether each has a result already, and its predicted cost."""
+    keys = [process.key(of_job) for of_job in inputs]
     stored = {key: context.store.find(key, process.kind) is not None for key in set(keys)}
-    new = {key: one for key, one in zip(keys, inputs, strict=True) if not stored[key]}
+    new = {key: of_job for key, of_job in zip(keys, inputs, strict=True) if not stored[key]}
     costs = _costs(new)
     known = [cost for cost in costs.values() if cost is not None]
     usual = sum(known) / len(known) if known else 1.0
     return [
-        BatchCase(key, one, stored[key], costs.get(key) or usual)
-        for key, one in zip(keys, inputs, strict=True)
+        BatchCase(key, of_job, stored[key], costs.get(key) or usual)
+        for key, of_job in zip(keys, inputs, strict=True)
     ]
 
 
 def _costs(inputs: dict[str, Json]) -> dict[str, float | None]:
-    """Predict costs of jobs, as many as there is time for; the others cost as much on average."""
+    """Predict the costs of jobs, CPU s, by key, until `_PREDICTING_S` is spent; the others are left out."""
     costs: dict[str, float | None] = {}
     end = time.thread_time() + _PREDICTING_S
-    for key, one in inputs.items():
-        costs[key] = predicted_seconds(one)
+    for key, of_job in inputs.items():
+        costs[key] = predicted_seconds(of_job)
         if time.thread_time() > end:
             break
     return costs

@@ -36,6 +36,9 @@ from service.worker.process import ANALYZE
 READING_FAILURES = (TooLarge, TooManyHeld, QueueFull, LiveUnavailable)
 """Refusals of a reader of foreign bytes, in addition to faults of the bytes."""
 _MAX_FILES = 16
+"""Most files that a case or scene may name."""
+_MAX_CHARACTERS = 4_000_000
+"""Longest text of a case or scene file."""
 
 router = APIRouter(tags=["cases"], route_class=ScopedRoute)
 case_json = on_demand("lineofaction.gearbox.convert.case:case_json")
@@ -44,6 +47,7 @@ outline_json = on_demand("lineofaction.gearbox.convert.outline:outline_json")
 scenes_router = APIRouter(tags=["scenes"], route_class=ScopedRoute)
 units_router = APIRouter(tags=["units"], route_class=ScopedRoute)
 ENTRY = "lineofaction.gearbox.from_rexs.unit_answer:unit_of_rexs"
+"""Function that reads a gear unit, in a process of its own."""
 
 
 class CaseInputs(BoundaryModel):
@@ -61,7 +65,9 @@ class CaseRequest(BoundaryModel):
 class TomlBody(BoundaryModel):
     """The text of a case file."""
 
-    toml: str = Field(max_length=4_000_000, description="TOML", examples=["[pair]\nnormal_module_mm = 4.0\n"])
+    toml: str = Field(
+        max_length=_MAX_CHARACTERS, description="TOML", examples=["[pair]\nnormal_module_mm = 4.0\n"]
+    )
 
 
 class CaseText(TomlBody):

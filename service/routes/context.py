@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Annotated, NamedTuple
+from typing import Annotated, NamedTuple
 
 from fastapi import Depends, Request
 from sqlalchemy import Engine
@@ -23,12 +23,9 @@ from service.store.results import ResultStore
 from service.store.write_check import WriteCheck
 from service.worker.process import Registry
 
-if TYPE_CHECKING:
-    pass
-
 
 class JobEvent(NamedTuple):
-    """A state of a job as all its streams send it, made once."""
+    """A state of a job as a server-sent event; it is formatted once for all streams that send it."""
 
     id: str
     """When the state changed last, RFC 3339: a browser that reconnects names it (``Last-Event-ID``)."""
@@ -40,23 +37,21 @@ class JobEvent(NamedTuple):
 
 @dataclass
 class Streams:
-    """A count with a bound, of one event loop, so without a lock.
-
-    `maximum`: streams that may be open at once.
-    """
+    """Number of open event streams, with an upper bound; one event loop counts them, so there is no lock."""
 
     maximum: int = 256
+    """Streams that may be open at once."""
     _open: int = 0
 
     def enter(self) -> bool:
-        """Count one more; False: there is no room."""
+        """Count one stream more; False: `maximum` streams are open already."""
         if self._open >= self.maximum:
             return False
         self._open += 1
         return True
 
     def leave(self) -> None:
-        """Count one less."""
+        """Count one stream less."""
         self._open -= 1
 
 
@@ -71,9 +66,12 @@ class Context:
     registry: Registry
     submissions: Submissions
     scheduler: Scheduler | None
+    """None: another process schedules the jobs."""
     store: ResultStore
     live: QuestionPool
+    """Worker processes that compute the answers of sliders and drawings."""
     reader: QuestionPool
+    """Worker processes that read files of the request's body."""
     cached_answers: KeptAnswers
     engine: Engine
     writes: WriteCheck
@@ -93,7 +91,7 @@ class Context:
         return self._projects[project]
 
     def wake(self) -> None:
-        """Let the scheduler look at the table now; one in another process looks twice a second."""
+        """Let the scheduler look for new jobs now; one in another process looks twice a second anyway."""
         if self.scheduler is not None:
             self.scheduler.wake()
 

@@ -57,7 +57,10 @@ class AsMadeRequest(CaseRequest):
 class AsMadeBody(CaseBody):
     """A case of gears as made."""
 
-    left_out: list[str] = Field(description="Points of the loaded flanks that are left out, and why")
+    left_out: list[str] = Field(
+        description="Values that the machine printed otherwise than recomputed; points of the loaded "
+        "flanks that are left out, and why"
+    )
 
 
 @router.post(

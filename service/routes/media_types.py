@@ -21,7 +21,7 @@ NO_STORE = "no-store"
 _REVALIDATED = "private, no-cache"
 _TEXT, _ADDRESS = {"type": "string"}, {"type": "string", "format": "uri-reference"}
 OF_ALL = ("X-Request-ID", POLICY, LIMIT)
-"""Headers of every answer; the last two only for callers with shares."""
+"""Headers of every answer; `POLICY` and `LIMIT` only for callers whose key has shares (quotas)."""
 OF_STATUS: Mapping[int, tuple[str, ...]] = {
     401: ("WWW-Authenticate",),
     403: ("WWW-Authenticate",),
@@ -74,11 +74,13 @@ def media_type(header: str) -> str:
 def negotiated(accept: str, offered: Sequence[str]) -> str | None:
     """Return the offered type that an Accept header prefers, None if it takes none of them.
 
-    Of types wanted equally the one the header names first is taken, then the one offered first.
+    Of types of the same weight the one that the header names first is returned; of types by one range of the
+    header, such as ``*/*``, the one offered first.
     """
     ranges = [_range(part) for part in accept.split(",") if part.strip()]
     if not ranges:
         return offered[0]
+    # (weight, order in the header, order of offer, type): both orders count down, so the first is largest
     ranked = [(*_wanted(ranges, kind), -rank, kind) for rank, kind in enumerate(offered)]
     quality, *_, best = max(ranked)
     return best if quality > 0.0 else None
@@ -95,7 +97,7 @@ def _range(part: str) -> tuple[str, float]:
 
 
 def _wanted(ranges: Sequence[tuple[str, float]], kind: str) -> tuple[float, int]:
-    """Return the weight of a type by the most specific range that names it, and its place from the end."""
+    """Return the weight of a type by the most specific range that has it, and minus the range's index."""
     for name in (kind, f"{kind.partition('/')[0]}/*", "*/*"):
         for rank, (named, weight) in enumerate(ranges):
             if named == name:
@@ -104,10 +106,10 @@ def _wanted(ranges: Sequence[tuple[str, float]], kind: str) -> tuple[float, int]
 
 
 def for_one_caller(send: Send) -> Send:
-    """Return `send` for answers that hang on a key: no shared cache keeps them, and no other asks in vain.
+    """Return `send` for answers that depend on the caller's key: no shared cache stores them.
 
-    The caller's own cache may keep them and asks before each use, so that a key that is taken back opens
-    nothing. RFC 9111, sections 3.5, 5.2.2.4 and 5.2.2.7.
+    The caller's own cache may store them, but must ask the service before each use, so that a revoked key
+    opens nothing. RFC 9111, sections 3.5, 5.2.2.4 and 5.2.2.7.
     """
 
     async def confidential(message: Message) -> None:

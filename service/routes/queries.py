@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from fastapi import APIRouter, Header, Path, Query
 from starlette.concurrency import run_in_threadpool
@@ -36,9 +36,6 @@ from service.routes.openapi import documented
 from service.routes.results import Key
 from service.routes.scopes import ScopedRoute, needs
 
-if TYPE_CHECKING:
-    pass
-
 router = APIRouter(tags=["results"], route_class=DirectRoute)
 _BINARY = {"type": "string", "format": "binary"}
 _QUERY, _ANSWER = ({"$ref": f"#/components/schemas/{model.__name__}"} for model in (QueryInput, QueryOutput))
@@ -53,8 +50,10 @@ _BODIES = {
 }
 live_router = APIRouter(tags=["live"], route_class=ScopedRoute)
 STE, PLAN = "service.live.work:live_ste", "service.live.work:live_plan"
+"""Functions that answer in a worker process."""
 
 
+# the function has the signature for the description; `force_answer` answers, without the framework's cost
 @router.post(
     "/databases/{key}/query",
     summary="Mesh forces",
@@ -92,6 +91,7 @@ async def live_ste(key: Key, body: LiveInput, context: Ctx, request: Request) ->
     question = body.model_dump(mode="json", exclude_none=True)
     address = address_of(context.project, key)
     inputs = {"key": address, "file": str(stored.path), "cache": _cache(context), "question": question}
+    # a caller that names itself has one question at a time: a newer one replaces it
     asker = asker_of(request, body.caller and f"curves {context.project} {body.caller}")
     answer = context.live.ask(LiveOrder(STE, inputs), asker, subject=address, lasting=body.condense)
     return Response(await asyncio.wrap_future(answer), media_type=JSON)

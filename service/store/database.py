@@ -26,7 +26,7 @@ _UNNUMBERED = "computation"
 
 metadata = MetaData()
 BRIEF_MS = 100
-"""Patience of transactions that a caller can do without, ms."""
+"""Longest wait for the database of transactions that may fail without harm, ms."""
 _DRIVERS = {"sqlite": "sqlite", "postgresql": "postgresql+psycopg"}
 
 
@@ -41,22 +41,22 @@ class _SchemaNumbers:
 
     @property
     def ours(self) -> bool:
-        """Whether the schema is the schema of this program."""
+        """Whether the schema is that of this program."""
         return self.newest == REVISIONS[-1]
 
     @property
     def unknown(self) -> bool:
-        """Whether a newer program made it."""
+        """Whether a newer program made the schema."""
         return self.newest is not None and self.newest not in REVISIONS
 
     @property
     def usable(self) -> bool:
-        """Whether this program can use it: its own, or a newer one that only added."""
+        """Whether this program can use the schema: it is its own, or a newer one with additions only."""
         return self.ours or (self.unknown and self.usable_since in REVISIONS)
 
 
 def _schema_numbers(connection: Connection) -> _SchemaNumbers:
-    """Read the numbers of a database; one of version 0.2.0 or older has the second alone."""
+    """Read the numbers of a database; up to version 0.2.0 it has only the table `_OLDEST`, or no number."""
     tables = inspect(connection).get_table_names()
     oldest = _number(connection, _OLDEST) if _OLDEST in tables else None
     if NEWEST in tables:
@@ -96,10 +96,9 @@ class Schema:
 
     @retried
     def check(self) -> None:
-        """Look through the database, before it is worked on for long.
+        """Check the integrity of the database, before long work on it.
 
-        Raises `DatabaseDamaged`: something in it is damaged; the notes of the error say where it is and what
-        to do.
+        Raises `DatabaseDamaged`, whose notes say where the damage is and what to do.
         """
         with self._engine.execution_options(deadline_s=math.inf).begin() as connection:
             fault = dialect_of(connection).check(connection)
@@ -125,9 +124,9 @@ class Schema:
 
 
 def _prepare_schema(engine: Engine) -> None:
-    """See to it that this program can use the tables: upgraded if the database is ours alone, refused if not.
+    """Make the tables usable for this program: a SQLite file is upgraded, a server's database is not.
 
-    Raises `BadInput`: the schema is newer and has more than additions, or is older and not ours to change.
+    Raises `BadInput`: the schema is newer with more than additions, or an older one of a server.
     """
     schema = Schema(engine)
     numbers = schema.numbers()
@@ -155,10 +154,10 @@ def _refuse_newer(numbers: _SchemaNumbers, engine: Engine) -> None:
 
 
 def open_database(where: Path | str, *, pooled: bool = True) -> Engine:
-    """Return an engine on the database, its schema of this program.
+    """Return an engine on the database, whose schema this program can use.
 
-    Raises `BadInput`: the URL is none, its driver is not installed, or the schema is another program's: a
-    SQLite file is brought up to date by this call, a server by ``loa database upgrade``;
+    This call upgrades a SQLite file; ``loa database upgrade`` upgrades the database of a server. Raises
+    `BadInput`: no URL, its driver is not installed, or the schema is another program's;
     `DatabaseUnavailable`: the server does not answer.
 
     Parameters
@@ -184,7 +183,7 @@ def database_engine(where: Path | str, *, pooled: bool = True) -> Engine:
 
 
 def _url(text: str) -> URL:
-    """Read a URL; the driver is ours to choose."""
+    """Read a URL; its driver is replaced by the one that this program uses."""
     try:
         url = make_url(text.replace("postgres://", "postgresql://", 1))
         return url.set(drivername=_DRIVERS[url.get_backend_name()])
@@ -199,9 +198,10 @@ def writing(
 ) -> Iterator[Connection]:
     """Open a transaction that may write.
 
-    With `in_turn` it is alone among all that take turns: what it has read stays so until it ends. Others
-    rely on the rows they lock. It fails if others hold the database for longer than `patience_ms`, by default
-    `PATIENCE_MS`. With `ahead` it is the next one of this process.
+    With `in_turn` no other transaction of that kind runs at the same time, so what it has read from the
+    tables does not change until it ends; other transactions rely on locks of rows. It fails if others lock
+    the database for longer than `patience_ms`, by default `PATIENCE_MS`. With `ahead` it is the next one of
+    those that wait in this process.
     """
     dialect = dialect_of(engine)
     with ExitStack() as stack:

@@ -1,7 +1,9 @@
-"""A deployment: one database and one store of files that belong together; each names the other.
+"""A deployment: one database and one store of files that belong together.
 
-A deployment is known by a random identifier. It stands in the database and in a note beside the files. Where
-the two differ nothing is served and nothing is removed. Whether both can be written is tried by `WriteCheck`.
+A deployment has a random identifier, which is in the database and in a note beside the files. Where the two
+differ nothing is served and nothing is removed. The files are ours if the note has our database's identifier.
+The place is the folder or bucket of the files; the index is the database's table of them. `WriteCheck` tries
+whether both can be written.
 """
 
 from __future__ import annotations
@@ -28,7 +30,7 @@ NOTE = "deployment.json"
 _WRITTEN = "written"
 """Name of the file that is written to see whether writing is possible."""
 _MOMENT_MS = 600
-"""Patience of the transaction that sees whether the database takes a write, ms."""
+"""Time for which the trial write waits for another writer, ms."""
 NOTES = (NOTE, _WRITTEN)
 """Names of files in the store that belong to no result."""
 
@@ -53,14 +55,14 @@ _WRITABLE = "Give the service the right to write there, or name another place (L
 
 @dataclass(frozen=True)
 class _Owner:
-    """The content of a note: a deployment and the database it had then."""
+    """The content of a note: a deployment's identifier, and its database when the note was written."""
 
     deployment: str
     database: str
 
     @classmethod
     def of(cls, text: str) -> _Owner:
-        """Read a note; one that cannot be read names nobody we are."""
+        """Read a note; an unreadable note has an identifier that is no deployment's."""
         try:
             document = json.loads(text)
             return cls(str(document["deployment"]), str(document["database"]))
@@ -82,17 +84,17 @@ class Deployment:
 
     @retried
     def identifier(self) -> str | None:
-        """Return the name that the database has, None if it has none yet."""
+        """Return the identifier in the database, None if it has none yet."""
         with reading(self._engine) as connection:
             return connection.execute(select(deployments.c.id)).scalar()
 
     def _named(self) -> str:
-        """Return the name of the database, given to it now if it has none."""
+        """Return the identifier in the database, which gets one now if it has none."""
         return self.identifier() or self._name()
 
     @retried
     def _name(self) -> str:
-        """Give the database a name, unless it has one."""
+        """Give the database an identifier, unless it has one, and return it."""
         with writing(self._engine, in_turn=True) as connection:
             known: str | None = connection.execute(select(deployments.c.id)).scalar()
             if known is None:
@@ -101,7 +103,9 @@ class Deployment:
             return known
 
     def confirm_files(self) -> None:
-        """Confirm that the files belong to the database; mark a new place, or one of older versions.
+        """Confirm that the files belong to the database; write the note in a place without one.
+
+        A new place has no note, and one of older versions of the program.
 
         Raises `BadInput`: the files are another deployment's; or there are files and the index is empty, or
         names none of them; or the index names files and the place is empty.
@@ -112,7 +116,7 @@ class Deployment:
         self.confirm()
 
     def confirm(self) -> None:
-        """See to it that the place is ours: at the start, and right before anything is removed.
+        """Confirm that the place is ours: at the start, and right before anything is removed.
 
         Raises `BadInput`: the note beside the files names another deployment, or is gone.
         """
@@ -123,10 +127,10 @@ class Deployment:
             raise self._refusal(f": it belongs {whose}", tip)
 
     def write_database(self) -> None:
-        """Write to the database, ahead of submissions, as a trial.
+        """Write to the database as a trial, before writers of submissions that wait.
 
-        Raises `DatabaseUnavailable`: it does not answer, has to be mended, or one who writes holds it for
-        longer than a moment. `NoSpace`: its disk has no room for a submission.
+        Raises `DatabaseUnavailable`: it does not answer, is damaged, or another writer has it locked for more
+        than `_MOMENT_MS`. `NoSpace`: its disk has no room for a submission.
         """
         _refuse_without_space(dialect_of(self._engine).folder(self._engine.url))
         try:
@@ -136,7 +140,7 @@ class Deployment:
             raise outage_of(error, self._engine) or error from error
 
     def write_results(self) -> None:
-        """Write to the place of results: to see that this is possible.
+        """Write to the place of results as a trial.
 
         Raises
         ------
@@ -165,12 +169,12 @@ class Deployment:
         return None if text is None else _Owner.of(text)
 
     def _mark(self, *, replace: bool = False) -> None:
-        """Leave the note; of several deployments that do so at the same time one is heeded."""
+        """Write the note; of several deployments that do so at the same time, the first one's stays."""
         note = {"deployment": self._named(), "database": redacted_url(self._engine), "since": now()}
         self._put(NOTE, json.dumps(note, indent=1) + "\n", replace=replace)
 
     def _put(self, name: str, text: str, *, replace: bool) -> None:
-        """Leave a note; raises `BadInput` if the place cannot be written."""
+        """Write a note; raises `BadInput` if the place cannot be written."""
         try:
             self._files.put_note(name, text, replace=replace)
         except OSError as error:
@@ -198,19 +202,22 @@ def _refuse_without_space(folder: Path | None) -> None:
 
 @dataclass(frozen=True)
 class _Comparison:
-    """Comparison of an index with the files: files named, one of these, and whether the index names it."""
+    """Comparison of an index with the files in the place."""
 
     named: int
+    """Number of files that the index names."""
     file: str | None
+    """A result's file in the place, if possible one that the index names; None: there is none."""
     known: bool
+    """Whether the index names `file`."""
 
     @property
     def may_be_ours(self) -> bool:
-        """Whether the files may be the files of the index: no evidence is against it."""
+        """Whether the files may be those of the index: it is empty, or names one of them."""
         return self.named == 0 or self.known
 
     def refuse_strangers(self, refusal: Callable[[str, str], BadInput]) -> None:
-        """Raise if unmarked files cannot be the files of the index."""
+        """Raise a refusal if files without a note cannot be those of the index."""
         if self.known or (self.named == 0 and self.file is None):
             return
         if self.file is None:

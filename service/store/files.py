@@ -18,6 +18,8 @@ from lineofaction.gearbox.registry import SUFFIX
 from service.project import COMMON, PROJECT, address_of
 
 _DIGEST_LENGTH = 16
+"""Digits of the SHA-256 in a file's name."""
+# KIND/FOLDER/[PROJECT.]KEY[.DIGEST][.UNIQUE].ENDING; the folder is the first two digits of the key
 _NAME = re.compile(
     rf"(?P<kind>[a-z_]+)/(?P<folder>[0-9a-f]{{2}})/(?:(?P<project>{PROJECT.pattern})\.)?"
     r"(?P<key>(?P=folder)[0-9a-f]{62})"
@@ -28,6 +30,7 @@ SET_ASIDE = ".damaged"
 PARTIAL = ".part"
 """Ending of a file that is being written."""
 _PRIVATE = 0o600
+"""Permissions of files: the user of the service reads and writes, nobody else."""
 
 
 @dataclass(frozen=True)
@@ -67,11 +70,13 @@ class WrongContent(Exception):
 
 @dataclass(frozen=True)
 class KeptFile:
-    """A file in its place: its name, bytes, and time of its last change, s since 1970."""
+    """A stored file."""
 
     name: str
     size: int
+    """Number of bytes."""
     modified: float
+    """Time of the last change, s since 1970."""
 
 
 class ResultFiles(Protocol):
@@ -80,7 +85,7 @@ class ResultFiles(Protocol):
     address: str
     """The folder, or the URL of the bucket and prefix."""
     folder: Path | None
-    """The folder on this machine that is written to; None: they are elsewhere."""
+    """The folder on this machine that is written to; None: the files are on another machine."""
     reads: CacheReads
     """Reads of the cache on this machine; a folder needs no cache."""
 
@@ -106,7 +111,7 @@ class ResultFiles(Protocol):
         """Return the text of a note, None if there is none of this name."""
 
     def put_note(self, name: str, text: str, *, replace: bool = False) -> None:
-        """Keep a short text; unless it may `replace` another, the first of several writers is heeded."""
+        """Store a short text; unless it may `replace` another, the text of the first writer stays."""
 
     def move(self, name: str, target: str) -> None:
         """Rename a file; it may be gone already."""
@@ -193,7 +198,7 @@ class DirectoryFiles:
 
 
 def _name_if_free(draft: Path, target: Path) -> None:
-    """Give a short file its name unless that is taken; where there are no links its text is written anew."""
+    """Give a short file its name unless that is taken; where there are no links the text is copied."""
     try:
         os.link(draft, target)
     except FileExistsError:
@@ -204,7 +209,7 @@ def _name_if_free(draft: Path, target: Path) -> None:
 
 
 def install_file(file: Path, target: Path) -> None:
-    """Give a file a second name, its bytes on disk first; on another file system a copy gets the name."""
+    """Give a file a second name, after its bytes are on disk; on another file system a copy gets the name."""
     draft = target.with_name(f"{target.name}.{uuid.uuid4().hex[:8]}{PARTIAL}")
     try:
         os.link(file, draft)
@@ -212,7 +217,7 @@ def install_file(file: Path, target: Path) -> None:
         shutil.copyfile(file, draft)
     draft.chmod(_PRIVATE)
     _sync(draft)
-    os.utime(draft)
+    os.utime(draft)  # the time of storing: a linked file may be old, and would soon be removed
     draft.replace(target)
     _sync(target.parent)
 

@@ -1,6 +1,7 @@
 """Steps from schema to schema of the database, in order.
 
-A step behind `USABLE_SINCE` only adds, or removes an index, which no statement names.
+A step after `USABLE_SINCE` only adds tables, columns and indexes, or removes indexes, which no statement
+names. "Earlier" rows are those that were stored before the step.
 """
 
 from __future__ import annotations
@@ -16,23 +17,26 @@ if TYPE_CHECKING:
     from alembic.operations import Operations
 
 USABLE_SINCE = "0015"
-"""The oldest schema whose program can use the newest one.
+"""Oldest schema whose program can use the newest schema.
 
-So a former version can be started again after an upgrade. A step that removes or renames moves it up.
+A former version of the service, down to this schema, can therefore be started again after an upgrade. A step
+that removes or renames a table or a column sets it to the number of this step.
 """
 
 _NAMES = """
 UPDATE result SET used = created, file = kind || '/' || substr("key", 1, 2) || '/' || "key"
     || CASE WHEN kind IN ('ablation', 'frontier') THEN '.json' ELSE '.nc' END
 """
+"""Statement that fills in the last use and the file name of results stored before the columns."""
 _FUNCTION = """
 CREATE FUNCTION loa_job_changed() RETURNS trigger LANGUAGE plpgsql
 AS $$ BEGIN NOTIFY loa_jobs; RETURN NULL; END $$
 """
+"""Function of the triggers by which PostgreSQL notifies servers of changed jobs."""
 
 
 def migrate(connection: sa.Connection, revision: str | None) -> None:
-    """Make the steps behind `revision`, None: all, in the transaction of the connection."""
+    """Make the steps after `revision`, or all steps for None, in the transaction of the connection."""
     from alembic.migration import MigrationContext  # noqa: PLC0415 (start-up time: seldom needed)
     from alembic.operations import Operations  # noqa: PLC0415 (start-up time: seldom needed)
 
@@ -72,7 +76,7 @@ def _jobs_and_results(op: Operations) -> None:
 
 
 def _computations(op: Operations) -> None:
-    """Make the table of computations: at most one of a key waits or runs."""
+    """Add the table of computations, in which at most one row of a key is accepted or running."""
     op.create_table(
         "computation",
         sa.Column("id", sa.String, primary_key=True),
@@ -95,19 +99,25 @@ def _computations(op: Operations) -> None:
 
 
 def _added(table: str, *columns: tuple[Any, ...], **indexes: Sequence[str]) -> Callable[[Operations], None]:
-    """Return the step that adds columns, as of `_column`, and indexes."""
+    """Return a step that adds columns and indexes to a table.
+
+    `columns` are tuples of arguments of `_column`; `indexes` are names of indexes with their columns.
+    """
 
     def step(op: Operations) -> None:
         for column in columns:
             op.add_column(table, _column(*column))
-        for name, of in indexes.items():
-            op.create_index(name, table, of)
+        for name, index_columns in indexes.items():
+            op.create_index(name, table, index_columns)
 
     return step
 
 
 def _uses_of_results(op: Operations) -> None:
-    """Add names of files and last uses; files had the names of their keys, and were used when made."""
+    """Add the file name and the last use of results, and the last use of jobs.
+
+    Earlier files are named by kind and key; the last use of an earlier result is its creation.
+    """
     op.add_column("result", _column("file"))
     op.add_column("result", _column("used"))
     op.execute(_NAMES)
@@ -117,7 +127,7 @@ def _uses_of_results(op: Operations) -> None:
 
 
 def _durations(op: Operations) -> None:
-    """Count durations by process, outcome and class, from now on."""
+    """Add counts of durations by process, outcome and class of duration (`le`, its upper bound)."""
     op.create_table(
         "duration",
         *(sa.Column(name, sa.String, primary_key=True) for name in ("process", "outcome", "le")),
@@ -128,7 +138,7 @@ def _durations(op: Operations) -> None:
 
 
 def _deployments(op: Operations) -> None:
-    """Name the deployment when it first opens its place of results; mark lines rebuilt from files."""
+    """Add the name of the deployment, and a mark of the results whose rows were rebuilt from files."""
     op.create_table(
         "deployment",
         sa.Column("id", sa.String, primary_key=True),
@@ -139,7 +149,7 @@ def _deployments(op: Operations) -> None:
 
 
 def _terms_of_jobs(op: Operations) -> None:
-    """Add terms of callers beside inputs; earlier jobs have no label, no difference and no limit."""
+    """Add title, tags, differences, priority and the limit of cost of a job; earlier jobs have none."""
     for name in ("title", "title_folded"):
         op.add_column("job", _column(name))
     for name in ("tags", "differences"):
@@ -151,9 +161,9 @@ def _terms_of_jobs(op: Operations) -> None:
 
 
 def _changed_jobs(op: Operations) -> None:
-    """Let PostgreSQL notify of each transaction, of any program, that changes jobs for callers.
+    """Make PostgreSQL notify servers of each transaction that changes the state of jobs.
 
-    SQLite tells by its data version.
+    SQLite needs no trigger: its `data_version` changes with each transaction of another process.
     """
     if op.get_bind().dialect.name != "postgresql":
         return
@@ -166,7 +176,7 @@ def _changed_jobs(op: Operations) -> None:
 
 
 def _projects(op: Operations) -> None:
-    """Add projects; earlier items, and items of former programs, are in the common one."""
+    """Add the project of jobs and results; rows of earlier and former programs are in the common one."""
     op.add_column("job", _column("project"))
     op.create_index("job_by_project", "job", ["project", "created"])
     op.add_column("result", _column("project"))
@@ -174,7 +184,7 @@ def _projects(op: Operations) -> None:
 
 
 def _batches(op: Operations) -> None:
-    """Add batches, jobs that are parents of others, and calls to other services about jobs."""
+    """Add batches, which are jobs with child jobs, and the table of webhooks about jobs."""
     op.add_column("job", sa.Column("parent", sa.String))
     for name, kind in (("place", sa.Integer), ("children", sa.Integer), ("weight", sa.Float)):
         op.add_column("job", _column(name, "0", kind))
@@ -199,22 +209,22 @@ def _batches(op: Operations) -> None:
 
 
 def _one_owner(op: Operations) -> None:
-    """Remove who runs a computation and until when: the one server that owns the table does."""
+    """Remove the owner and the lease of a computation: one server owns the whole table."""
     op.drop_index("computation_by_lease", "computation")
     for name in ("owner", "lease", "leased_until"):
         op.drop_column("computation", name)
 
 
 def _lists_of_jobs(op: Operations) -> None:
-    """Add the table that filters and sorts lists, and an index of a result's computations."""
+    """Add the table by which lists of jobs are filtered and sorted, and an index of computations by key."""
     add_listing(op)
     op.create_index("computation_by_key", "computation", ["key", "state", "created"])
 
 
 def _unused_indexes(op: Operations) -> None:
-    """Remove indexes that no statement uses since lists have lines, or that begin another index.
+    """Remove indexes that no statement uses since lists have a table, and one that begins another index.
 
-    By the one of projects a submission looked for its caller's last job among those of all callers.
+    The database chose `job_by_project` for the last job of a caller, and so read the jobs of all callers.
     """
     for name in ("job_by_caller", "job_by_project", "job_by_time", "job_by_use"):
         op.drop_index(name, "job")
@@ -223,33 +233,33 @@ def _unused_indexes(op: Operations) -> None:
 
 STEPS: Mapping[str, Callable[[Operations], None]] = {
     "0001": _jobs_and_results,
-    # what runs now is nobody's, and its lease has ended
+    # computations that run during the step get no owner and an expired lease
     "0002": _added(
         *("computation", ("owner",), ("lease",), ("leased_until", "0", sa.Float)),
         computation_by_lease=["lease"],
     ),
     "0003": _uses_of_results,
-    # the key that a job was entered with; jobs of before are nobody's
+    # the key of the caller who submitted a job; earlier jobs have none
     "0004": _added("job", ("caller",), job_by_caller=["caller"]),
-    # the form in which a result is wanted; jobs of before had the one there was
+    # the form in which a result is returned; earlier jobs had this one
     "0005": _added("job", ("delivery", "document reference")),
     "0006": _durations,
     "0007": _deployments,
     "0008": _terms_of_jobs,
-    "0009": _added("computation", ("traceparent",)),  # what was entered before belongs to no trace
+    "0009": _added("computation", ("traceparent",)),  # earlier computations belong to no trace
     "0010": _changed_jobs,
     "0011": _added("computation", ("program",)),  # programs that do not know the column leave it empty
     "0012": _projects,
     "0013": _batches,
-    # jobs of before, or of a former program, have the inputs of their computation alone
+    # inputs as the caller stated them; earlier jobs, and those of former programs, have none
     "0014": _added("job", ("stated", "", sa.Text)),
     "0015": _one_owner,
-    # what a list of jobs shows of a result; those of before get it when they are listed
+    # the figures of a result in a list of jobs; earlier results get them when they are listed
     "0016": _added("result", ("headline", "", sa.Text)),
     "0017": _lists_of_jobs,
-    # runs in a row whose end nobody saw; of jobs of before none is known
+    # number of consecutive runs whose server or worker was lost; 0 for earlier computations
     "0018": _added("computation", ("lost_runs", "0", sa.Integer)),
     "0019": _unused_indexes,
 }
 REVISIONS = tuple(STEPS)
-"""All schemas there have been, the newest last."""
+"""Numbers of all schemas, the newest last."""

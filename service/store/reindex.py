@@ -40,8 +40,8 @@ def reindex(store: ResultStore, deployment: Deployment) -> _Reindexed:
     Raises `BadInput`: the files are another deployment's, and the index has results of its own.
     """
     deployment.take_over()
-    lost = (line for line in store.lines() if not store.files.has(line.file))
-    struck = tuple(line.file for line in lost if store.strike(line))
+    missing_lines = (line for line in store.lines() if not store.files.has(line.file))
+    struck = tuple(line.file for line in missing_lines if store.strike(line))
     named = {line.file for line in store.lines()}
     entered, damaged, doubled = 0, [], []
     for file in list(store.files.files()):

@@ -260,26 +260,30 @@ class ResultStore:
     @optional
     def _note_use(self, key: str, kind: str) -> None:
         """Write down that a result was requested; nobody waits for that."""
-        mine = (results.c.key == address_of(self.project, key), results.c.kind == kind)
+        conditions = (results.c.key == address_of(self.project, key), results.c.kind == kind)
         before = instant(datetime.now(UTC) - timedelta(seconds=USE_NOTED_EVERY_S))
         with writing(self._engine, patience_ms=BRIEF_MS) as connection:
-            connection.execute(update(results).where(*mine, results.c.used < before).values(used=now()))
+            connection.execute(update(results).where(*conditions, results.c.used < before).values(used=now()))
         self._noted[(key, kind)] = time.monotonic()
 
     @retried
     def without_headline(self, keys: Collection[str], kind: str, limit: int) -> list[IndexLine]:
         """Return up to `limit` lines of these keys that never got a headline, not even an empty one."""
         addresses = [address_of(self.project, key) for key in keys]
-        mine = results.c.key.in_(addresses), results.c.kind == kind, results.c.headline == ""
+        conditions = results.c.key.in_(addresses), results.c.kind == kind, results.c.headline == ""
         with reading(self._engine) as connection:
-            rows = connection.execute(select(results).where(*mine).order_by(results.c.key).limit(limit)).all()
+            rows = connection.execute(
+                select(results).where(*conditions).order_by(results.c.key).limit(limit)
+            ).all()
         return [_read(row) for row in rows]
 
     @optional
     def note_headline(self, key: str, kind: str, headline: Mapping[str, Any]) -> None:
         """Store the headline of a result that was stored without; empty: it has none."""
-        mine = results.c.key == address_of(self.project, key), results.c.kind == kind
-        step = update(results).where(*mine, results.c.headline == "").values(headline=json.dumps(headline))
+        conditions = results.c.key == address_of(self.project, key), results.c.kind == kind
+        step = (
+            update(results).where(*conditions, results.c.headline == "").values(headline=json.dumps(headline))
+        )
         with writing(self._engine, patience_ms=BRIEF_MS) as connection:
             connection.execute(step)
 
@@ -294,11 +298,11 @@ class ResultStore:
 
         Return whether it was removed.
         """
-        mine = [results.c.key == line.address, results.c.kind == line.kind, results.c.file == line.file]
+        conditions = [results.c.key == line.address, results.c.kind == line.kind, results.c.file == line.file]
         if unused_since is not None:
-            mine.append(results.c.used < unused_since)
+            conditions.append(results.c.used < unused_since)
         with writing(self._engine) as connection:
-            return connection.execute(delete(results).where(*mine)).rowcount > 0
+            return connection.execute(delete(results).where(*conditions)).rowcount > 0
 
     @retried
     def lines(self) -> list[IndexLine]:

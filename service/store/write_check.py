@@ -73,12 +73,12 @@ class WriteCheck:
         return _Writable() if waits else written
 
     def _try(self, outcome: Future[_Writable]) -> None:
-        begun = time.monotonic()
+        started = time.monotonic()
         results, _ = self._fault("results", self._deployment.write_results)
         database, late = self._fault("database", self._write_database)
         written = _Writable(database, results, late=late and not results)
         if not written.fault:
-            self._succeeded = begun
+            self._succeeded = started
         outcome.set_result(written)
 
     def _write_database(self) -> None:

@@ -86,8 +86,8 @@ class Calls:
     def _claim(self, lease: str) -> Call | None:
         """Take a call under a lease of this name, unless that was done already."""
         with writing(self._engine, in_turn=True) as connection:
-            mine = select(webhooks).where(webhooks.c.lease == lease)
-            row = connection.execute(mine).one_or_none()
+            own_calls = select(webhooks).where(webhooks.c.lease == lease)
+            row = connection.execute(own_calls).one_or_none()
             while row is None:
                 due = connection.execute(_due(connection).limit(1)).first()
                 if due is None:
@@ -99,7 +99,7 @@ class Calls:
                 else:  # the job has ended otherwise
                     values = {"state": "skipped"}
                 connection.execute(update(webhooks).where(this).values(updated=now(), **values))
-                row = connection.execute(mine).one_or_none()
+                row = connection.execute(own_calls).one_or_none()
             return Call(row.id, row.job, row.event, row.uri, row.attempts, row.lease)
 
     def deliver(self, call: Call, message: str) -> None:
@@ -117,9 +117,9 @@ class Calls:
         """Change a call that is made under its lease."""
         with writing(self._engine) as connection:
             due = dialect_of(connection).clock(connection) + pause
-            mine = (webhooks.c.id == call.id) & (webhooks.c.lease == call.lease)
+            own_calls = (webhooks.c.id == call.id) & (webhooks.c.lease == call.lease)
             values |= {"lease": "", "leased_until": 0.0, "due": due, "updated": now()}
-            connection.execute(update(webhooks).where(mine).values(**values))
+            connection.execute(update(webhooks).where(own_calls).values(**values))
 
 
 def _due(connection: Connection) -> Select[Any]:

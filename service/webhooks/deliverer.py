@@ -1,4 +1,4 @@
-"""Threads that make the calls that are due: signed requests to addresses that may be called."""
+"""Threads that make due calls of webhooks: signed requests to addresses of allowed origins."""
 
 from __future__ import annotations
 
@@ -23,7 +23,9 @@ THREADS, LOOK_S = 4, 2.0
 """Number of threads, and seconds between two looks of a thread. The threads look in turns: a due call is seen
 within half a second."""
 _STOPPING_S = 1.0
+"""Longest wait for the threads at the end, s."""
 _GONE = 410
+"""Status of an address that is not to be called again (HTTP "Gone")."""
 logger = structlog.get_logger(__name__)
 
 
@@ -87,7 +89,10 @@ def signed_headers(key: bytes, identifier: str, timestamp: int, body: bytes) -> 
 
 
 class Deliverer:
-    """Makes calls until it is stopped; another deliverer makes a call in progress after its lease."""
+    """Makes calls until it is stopped.
+
+    A call in progress is leased: if its deliverer does not finish it, another one makes it after the lease.
+    """
 
     def __init__(self, outbox: Outbox) -> None:
         self._outbox = outbox

@@ -57,9 +57,12 @@ def work(descriptor: int) -> None:
         channel = _Channel(stream)
         logging.getLogger("service").addHandler(_WarningHandler(channel))
         channel.send("begun", True)  # from now on its end is that of the work
-        begun = replace(COMPLIANCE_READS)  # a forked child has those of its parent
+        reads_before = replace(COMPLIANCE_READS)  # a forked child has those of its parent
         outcome = _outcome(order, _Reporter(channel))
-        reads = {"hits": COMPLIANCE_READS.hits - begun.hits, "misses": COMPLIANCE_READS.misses - begun.misses}
+        reads = {
+            "hits": COMPLIANCE_READS.hits - reads_before.hits,
+            "misses": COMPLIANCE_READS.misses - reads_before.misses,
+        }
         peak_mb = peak_memory() / BYTES_PER_MB
         channel.send("outcome", outcome | {"peak_mb": peak_mb, "compliance_reads": reads})
 

@@ -2,7 +2,7 @@
 
 An order is one computation with its inputs; its workspace is a directory of its own, in which another attempt
 finds the files of a worker that died. A product is a file that the work made for the store. A table is an STE
-database; a draft of it is what the passes of its refinement have so far.
+database. It is refined in passes until its tolerance is met; a draft is the table after a pass.
 """
 
 from __future__ import annotations

@@ -28,6 +28,7 @@ from dynamics.meshes.mesh_table import FIELDS, MeshTable
 from host.directories import atomic_file
 
 MAGIC = b"LOAMESH1"
+"""First bytes of the table's file: its format and version."""
 _EARLIEST = (1980, 1, 1, 0, 0, 0)  # earliest time of a ZIP entry: equal exports give equal files
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _INTEGER_OUTPUTS = (
@@ -204,6 +205,8 @@ def _content(element: MeshElement, name: str) -> dict[str, bytes]:
         **{f"sources/{file}": text for file, text in sources.items() if file.endswith((".c", ".h"))},
         f"resources/{TABLE_FILE}": MAGIC + _identity_of(table).encode("ascii") + table,
     }
+    # the identifier of the file is the hash of all members, which name it themselves: hashed with an empty
+    # one
     digest, members = hashlib.sha256(), {**content, **described("")}
     for member in sorted(members):
         digest.update(member.encode() + b"\0" + hashlib.sha256(members[member]).digest())

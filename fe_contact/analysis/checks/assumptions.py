@@ -201,9 +201,9 @@ def _crests(run: SolvedRun) -> Iterator[Assumption]:
 
 
 def _load_patches(run: SolvedRun) -> Assumption:
-    grown = sum(int(solution.beyond.sum()) for _, solution in run.solved)
-    reason = f"strips are wider at {grown} points" if grown else "all strips are narrower"
-    return Assumption("", "contact strips within the load patches", grown == 0, float("nan"), reason)
+    wider = sum(int(solution.beyond.sum()) for _, solution in run.solved)
+    reason = f"strips are wider at {wider} points" if wider else "all strips are narrower"
+    return Assumption("", "contact strips within the load patches", wider == 0, float("nan"), reason)
 
 
 def _support_loads(run: SolvedTable) -> Assumption:

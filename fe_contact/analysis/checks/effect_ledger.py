@@ -85,8 +85,8 @@ def _cost(
         other = toggled(checked, entry.name, "off" if entry.on else "on")
     except InputError:
         return None
-    there = _predicted(other, *known)
-    return cost - there if entry.on else there - cost
+    other_cost = _predicted(other, *known)
+    return cost - other_cost if entry.on else other_cost - cost
 
 
 def _predicted(checked: Checked, cache: Path | None, run: Plan | None) -> float:

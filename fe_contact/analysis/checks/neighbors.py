@@ -28,12 +28,12 @@ def edge_slope(pair: ParallelAxes, level: FloatArray) -> FloatArray:
     slope = np.zeros(level.shape)
     for side in _SIDES:
         gap = corner_contact(pair, side, overshoot).gap
-        there = np.isfinite(gap)
-        if np.count_nonzero(there) < 2:
+        can_touch = np.isfinite(gap)
+        if np.count_nonzero(can_touch) < 2:
             continue
-        opening = np.diff(gap[there]) / np.diff(overshoot[there])
+        opening = np.diff(gap[can_touch]) / np.diff(overshoot[can_touch])
         # the slope of the interval that holds the level, and the one before it: gaps are convex
-        within = np.searchsorted(gap[there], level).clip(1, opening.size) - 1
+        within = np.searchsorted(gap[can_touch], level).clip(1, opening.size) - 1
         slope = np.maximum(slope, np.maximum.accumulate(opening)[within])
     return np.asarray(slope)
 
@@ -43,8 +43,8 @@ def compliance_slope(problem: ContactProblem, base_pitch: float) -> float:
     count = len(problem.compliance)
     position = problem.candidates.position[:count]
     slices = np.einsum("qii->qi", problem.compliance)
-    there = problem.candidates.slices.present & (slices > 0.0)
-    both = there[1:] & there[:-1]
+    present = problem.candidates.slices.present & (slices > 0.0)
+    both = present[1:] & present[:-1]
     if count < 2 or not both.any():
         return np.inf
     way = base_pitch * np.diff(position)[:, None]

@@ -254,9 +254,9 @@ class _AlignmentLaws:
         """
         count, candidates = len(self.problem.compliance), self.problem.candidates
         pairs = np.unique(candidates.pair)
-        there = np.isfinite(candidates.gap[:count])
+        can_touch = np.isfinite(candidates.gap[:count])
         widths, radii = (
-            np.where(there, values[:count], 0.0).reshape(count, pairs.size, -1)
+            np.where(can_touch, values[:count], 0.0).reshape(count, pairs.size, -1)
             for values in (candidates.width, candidates.radius)
         )
         model = self.point.model

@@ -142,8 +142,8 @@ class DerivedPitches:
             return curves_of_point(point, position, load, np.arange(contact.pitches))
         return _flat(np.stack([envelope.ste, envelope.sum(_ARM)], axis=-1))
 
-    def _known(self, *wanted: FloatArray) -> list[tuple[FloatArray, FloatArray]]:
-        return list(zip((self.contact.position, self.contact.load), wanted, strict=True))
+    def _known(self, *values: FloatArray) -> list[tuple[FloatArray, FloatArray]]:
+        return list(zip((self.contact.position, self.contact.load), values, strict=True))
 
     def _changed(self, contact: CycleContact, rows: IntArray, loads: IntArray) -> FloatArray:
         states = [contact.nominal()[1]]
@@ -151,8 +151,8 @@ class DerivedPitches:
         solved = [np.stack([state.solution.deflection, _arms(state)], axis=-1) for state in states]
         change = contact.by_pitch(np.concatenate(solved)) - self.at_state[:, rows][:, :, loads]
         p, load = np.indices((rows.size, loads.size))
-        there = self.state[:, rows][:, :, loads]
-        return _flat(self.curves[:, rows][:, :, loads] + change[there, p, load])
+        states_of_points = self.state[:, rows][:, :, loads]
+        return _flat(self.curves[:, rows][:, :, loads] + change[states_of_points, p, load])
 
 
 def _arms(state: SolvedState) -> FloatArray:
@@ -198,12 +198,12 @@ def derived_table(
     levels = rising_deflection(envelope, support_envelope)
     if levels is None:
         return "by derivatives the transmission error would not rise with load"
-    begun = solved_in_parts(point, position, sets, first, edges=False)
+    initial = solved_in_parts(point, position, sets, first, edges=False)
     unloaded, ste, of_support = levels
     arrays = _arrays(envelope, ste), _support_arrays(support_envelope, of_support)
     contacts = [
         _contact(start, part_envelope, values, unloaded)
-        for start, part_envelope, values in zip(begun, (envelope, support_envelope), arrays, strict=True)
+        for start, part_envelope, values in zip(initial, (envelope, support_envelope), arrays, strict=True)
     ]
     return DerivedTable(tuple(contacts), DerivedPitches.of(envelope, ste), _errors(envelope))
 
@@ -299,8 +299,8 @@ def _shares_and_pressures(envelope: Envelope, minimum: LeastTangents) -> tuple[F
     p, load = np.indices(minimum.state.shape[1:])
     names = "load_share", "pair_pressure", _EDGE_OF_PAIR
     before, *of_pair = (envelope.arrays[name][minimum.state, p, load] for name in names)
-    grown = np.sqrt(np.divide(share, before, out=np.zeros_like(share), where=before > 0.0))
-    flank, edge = (pressure * np.minimum(grown, MAX_GROWN) for pressure in of_pair)
+    growth = np.sqrt(np.divide(share, before, out=np.zeros_like(share), where=before > 0.0))
+    flank, edge = (pressure * np.minimum(growth, MAX_GROWN) for pressure in of_pair)
     return share, flank, edge
 
 

@@ -56,15 +56,15 @@ class ToothGaps:
 def _by_tooth(pair: ParallelAxes, candidates: Candidates, gear: int, model: ContactModel) -> FloatArray:
     """Return the gaps by the teeth of one gear; one tooth stands for all where they are alike."""
     gear_model = replace(model, tooth_gaps=tuple(term for term in model.tooth_gaps if term.gear == gear))
-    touch, there = candidates.touch, np.isfinite(candidates.gap)  # an infinite gap: no candidate
+    touch, can_touch = candidates.touch, np.isfinite(candidates.gap)  # an infinite gap: no candidate
     teeth = min((pair.pinion, pair.wheel)[gear].teeth, model.period) if gear_model.tooth_gaps else 1
-    rolls = rolls_at(pair, touch.s_1[there], touch.s_2[there])
-    face = np.broadcast_to(candidates.face_position, there.shape)[there]
-    gaps = np.zeros((teeth, *there.shape))
+    rolls = rolls_at(pair, touch.s_1[can_touch], touch.s_2[can_touch])
+    face = np.broadcast_to(candidates.face_position, can_touch.shape)[can_touch]
+    gaps = np.zeros((teeth, *can_touch.shape))
     for tooth in range(teeth):
-        gaps[tooth][there] = gear_model.gap_of_teeth(MeetingTeeth(pair, np.array(tooth), *rolls, face))
+        gaps[tooth][can_touch] = gear_model.gap_of_teeth(MeetingTeeth(pair, np.array(tooth), *rolls, face))
     pairs = np.unique(candidates.pair).size
-    by_pair = gaps.reshape(teeth, len(there), pairs, -1)
+    by_pair = gaps.reshape(teeth, len(can_touch), pairs, -1)
     return np.ascontiguousarray(np.transpose(by_pair, (2, 1, 0, 3)))  # (J, P, R, M)
 
 

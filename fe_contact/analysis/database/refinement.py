@@ -163,7 +163,7 @@ def next_pass(choice: Decision, shares: FloatArray) -> Refinement | str:
     quantity at every node, without those that no run lowers; more sources are not looked at.
     """
     plan = choice.plan
-    begun = _Resolution(
+    initial = _Resolution(
         choice,
         plan.level,
         plan.discretization.slices,
@@ -171,21 +171,21 @@ def next_pass(choice: Decision, shares: FloatArray) -> Refinement | str:
         np.nan_to_num(shares[: len(AT_NODES)]),
         len(LEVELS),
     )
-    source = int(np.argmax(begun.sources))
-    finest = _settled(begun)
-    barrier = _barrier(begun, finest)
+    source = int(np.argmax(initial.sources))
+    finest = _settled(initial)
+    barrier = _barrier(initial, finest)
     if barrier is not None:
         if barrier == _WIDTH and (model := next_model(choice.checked)):
-            return _of_model(model, begun)
+            return _of_model(model, initial)
         return _no_way(finest, barrier)
-    finer = _settled(replace(begun, level_left=1))
+    finer = _settled(replace(initial, level_left=1))
     reason = (
-        f"{source_words(AT_NODES[source])} takes {engineering(begun.sources[source], 2)} of the tolerance"
+        f"{source_words(AT_NODES[source])} takes {engineering(initial.sources[source], 2)} of the tolerance"
     )
     refined = choice.refined(finer.level, finer.slices, finer.nodes, reason)
-    if refined.mesh.option.error.scatter and finer.used > 1.0 and begun.used - finer.used < finer.used:
+    if refined.mesh.option.error.scatter and finer.used > 1.0 and initial.used - finer.used < finer.used:
         return (
-            f"{', '.join(finer.steps)} would lower the errors from {engineering(begun.used, 2)} to "
+            f"{', '.join(finer.steps)} would lower the errors from {engineering(initial.used, 2)} to "
             f"{engineering(finer.used, 2)} of the tolerance, by less than it leaves"
         )
     return Refinement(refined, AT_NODES[source], finer.steps, finer.used)
@@ -204,12 +204,14 @@ def _settled(resolution: _Resolution) -> _Resolution:
     return resolution
 
 
-def _barrier(begun: _Resolution, finest: _Resolution) -> int | None:
+def _barrier(initial: _Resolution, finest: _Resolution) -> int | None:
     """Return the source that keeps even the finest resolution from the tolerance; None if it may be kept.
 
     What is measured stands as it is; what is predicted may turn out less by a factor `DOUBT`.
     """
-    changed = np.array([not np.array_equal(*both) for both in zip(begun.shares, finest.shares, strict=True)])
+    changed = np.array(
+        [not np.array_equal(*both) for both in zip(initial.shares, finest.shares, strict=True)]
+    )
     hoped = replace(finest, shares=finest.shares / _by_source(np.where(changed, DOUBT, 1.0), finest.shares))
     return int(np.argmax(hoped.sources)) if hoped.used > 1.0 else None
 
@@ -218,11 +220,11 @@ def _by_source(values: FloatArray, shares: FloatArray) -> FloatArray:
     return values.reshape(-1, *[1] * (shares.ndim - 1))
 
 
-def _of_model(model: Decision, begun: _Resolution) -> Refinement:
+def _of_model(model: Decision, initial: _Resolution) -> Refinement:
     """Return the pass of a more exact model; what lies between positions stays, the rest is expected."""
-    step = f"model {begun.decision.checked.model_name} -> {model.checked.model_name}"
+    step = f"model {initial.decision.checked.model_name} -> {model.checked.model_name}"
     tolerance = model.checked.request.options.allowed.relative
-    expected = float(np.hypot(model.mesh.option.error.reducible / tolerance, begun.shares[_POSITION].max()))
+    expected = float(np.hypot(model.mesh.option.error.reducible / tolerance, initial.shares[_POSITION].max()))
     return Refinement(model, AT_NODES[_WIDTH], (step,), expected)
 
 

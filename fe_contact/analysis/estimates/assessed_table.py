@@ -123,12 +123,12 @@ class AssessedTable:
         return sources | bias | signed | _summary(self.curve_error)
 
 
-def assessed_table(made: SolvedTable, coarse: OperatingPoints) -> tuple[AssessedTable, SolvedTable]:
+def assessed_table(solved_table: SolvedTable, coarse: OperatingPoints) -> tuple[AssessedTable, SolvedTable]:
     """Solve a table once more on each rougher discretization, and held-out points of its axes.
 
     Parameters
     ----------
-    made : SolvedTable
+    solved_table : SolvedTable
         On the meshes of the run.
     coarse : OperatingPoints
         Its places on the coarse meshes.
@@ -138,8 +138,8 @@ def assessed_table(made: SolvedTable, coarse: OperatingPoints) -> tuple[Assessed
     AssessedTable, SolvedTable
         The errors, and the table with the alignments that were inserted, which they are of.
     """
-    table, plan, fine, nodes = made.table, made.plan, made.places, made.nodes
-    discretization, solutions = plan.discretization, [solution for _, solution in made.solved]
+    table, plan, fine, nodes = solved_table.table, solved_table.plan, solved_table.places, solved_table.nodes
+    discretization, solutions = plan.discretization, [solution for _, solution in solved_table.solved]
     axes = plan.load, table.misalignment, table.center_distance_change
     sample = TableSample.of(nodes.position, fine.period, axes)
     nominal = sample.taken(table)
@@ -150,30 +150,30 @@ def assessed_table(made: SolvedTable, coarse: OperatingPoints) -> tuple[Assessed
     nested = Nested(sample, nominal, plane, patched, sample.solved(coarse, fine), sliced)
     positions = position_errors(nodes, fine, solutions, plan)
     ste, arms = nested.parts
-    measured = fine, made.solved, ste, positions, plan
+    measured = fine, solved_table.solved, ste, positions, plan
     sources, errors = estimate_errors(*measured), curve_errors(*measured)
-    request = made.checked.request
+    request = solved_table.checked.request
 
     def goal_of(refined: SteDatabase) -> IntervalGoal:
         at_nodes, bias = _at_inserted(errors, refined), table_bias(refined, fine, plan)
         return interval_goal(refined, at_nodes, request, bias)
 
     refined = request.options.tolerance is not None and not request.nodes_alone
-    validation = validation_axes(made, goal_of if refined else None)
-    made = validation.made
-    of_points, of_curves = interval_errors((plan.load.size, *made.places.shape), validation.axes)
+    validation = validation_axes(solved_table, goal_of if refined else None)
+    solved_table = validation.solved_table
+    of_points, of_curves = interval_errors((plan.load.size, *solved_table.places.shape), validation.axes)
     assessed = AssessedTable(
-        _at_inserted(sources.total, made.table),
-        np.concatenate([_at_inserted(errors, made.table), of_curves]),
-        _at_inserted(load_arm_errors(fine, table, arms, plan), made.table),
+        _at_inserted(sources.total, solved_table.table),
+        np.concatenate([_at_inserted(errors, solved_table.table), of_curves]),
+        _at_inserted(load_arm_errors(fine, table, arms, plan), solved_table.table),
         of_points,
         validation.loads,
         sources.to_json(),
         {name: error.to_json() for name, error in validation.axes.items()},
-        table_bias(made.table, fine, plan),
+        table_bias(solved_table.table, fine, plan),
         mesh_bias(ste, plan) if has_signed_errors(fine.nominal.pair, discretization) else None,
     )
-    return assessed, made
+    return assessed, solved_table
 
 
 def _at_inserted(errors: FloatArray, table: SteDatabase) -> FloatArray:

@@ -87,10 +87,10 @@ def curve_errors(
     Parameters are those of `estimate_errors`. Errors of the discretization are those at the loads and
     alignments that were solved again, and interpolated between them.
     """
-    made, sample, pair = plan.discretization, nested.sample, points.nominal.pair
+    discretization, sample, pair = plan.discretization, nested.sample, points.nominal.pair
     solutions = [solution for _, solution in solved]
-    signed = has_signed_errors(pair, made)
-    left = np.full(QUANTITIES, made.remaining) if signed else _left_by_mesh(pair, plan)
+    signed = has_signed_errors(pair, discretization)
+    left = np.full(QUANTITIES, discretization.remaining) if signed else _left_by_mesh(pair, plan)
     deflection, by_mesh, by_patches, by_slices, free_ends = _measured(points, nested, plan, left)
     if signed:
         added, changes = _added_by_load(solutions, sample), np.stack([by_mesh, by_patches])
@@ -105,7 +105,9 @@ def curve_errors(
         "position": np.broadcast_to(
             positions.curves[:, :, None, None], (*positions.curves.shape, *points.shape)
         ),
-        METHOD: model_errors(pair, plan.load, deflection, over_face=isinstance(made, FaceDiscretization))
+        METHOD: model_errors(
+            pair, plan.load, deflection, over_face=isinstance(discretization, FaceDiscretization)
+        )
         + points.gathered([of_quantities(rough_flank_errors(*contact)) for contact in solved]),
     }
     return np.stack([by_source[name] for name in AT_NODES])
@@ -144,9 +146,9 @@ def _measured(
     `left_by_mesh` (23,) is the error left over the change to the coarse mesh; `balance` the least change of a
     mean over the mean size of the change about it.
     """
-    made = plan.discretization
+    discretization = plan.discretization
     # on the curve: half the slices may multiply a small ripple, and no part of that is what many change
-    many_slices = nested.table + made.remaining_slices * (nested.table - nested.sliced)
+    many_slices = nested.table + discretization.remaining_slices * (nested.table - nested.sliced)
     parts = 1.0, left_by_mesh, plan.remaining_patches, 1.0, CORRECTION_ERROR
     return _changes(
         nested.sample,
@@ -220,12 +222,12 @@ def _helical(pair: ParallelAxes, plan: Plan) -> float:
 
 def _left_by_mesh(pair: ParallelAxes, plan: Plan) -> FloatArray:
     """Return the error left over the change to the coarse mesh, (23,)."""
-    made, helical = plan.discretization, _helical(pair, plan)
+    discretization, helical = plan.discretization, _helical(pair, plan)
     straight = "spur" if all(gear.web is None for gear in plan.bodies(pair)) else "thin"
     level = "draft" if plan.level in COARSER_THAN_STANDARD else "standard"
-    if isinstance(made, FaceDiscretization):
+    if isinstance(discretization, FaceDiscretization):
         spur, wound = (np.array(LEFT_BY_MESH[kind][level]) for kind in (straight, "helical"))
-        mean, ripple, harmonics = (1.0 - helical) * spur + helical * made.remaining * wound
+        mean, ripple, harmonics = (1.0 - helical) * spur + helical * discretization.remaining * wound
     else:
         mean, ripple, harmonics = LEFT_BY_MESH["plane"][level]
     return np.array([mean, ripple, *[harmonics] * (QUANTITIES - OFF_MESH)])

@@ -92,18 +92,21 @@ def estimate_errors(
     positions : PositionErrors
         The largest of the assessed operating points stand for every place.
     """
-    made, nominal = plan.discretization, points.nominal.pair
+    discretization, nominal = plan.discretization, points.nominal.pair
     solutions = [solution for _, solution in solved]
 
     def left(these: FloatArray, those: FloatArray, part: float) -> FloatArray:
         """Return a part of the differences of STE, at all points."""
         return nested.sample.spread_points(part * np.nan_to_num(np.abs(these - those)))
 
-    face, lags = isinstance(made, FaceDiscretization), [np.nan_to_num(s.deflection) for s in solutions]
+    face, lags = (
+        isinstance(discretization, FaceDiscretization),
+        [np.nan_to_num(s.deflection) for s in solutions],
+    )
     return _ErrorSources(
-        left(nested.patched, nested.coarse, made.remaining)
+        left(nested.patched, nested.coarse, discretization.remaining)
         + left(nested.plane, nested.patched, plan.remaining_patches),
-        left(nested.table, nested.sliced, made.remaining_slices),
+        left(nested.table, nested.sliced, discretization.remaining_slices),
         np.broadcast_to(positions.band[:, :, None, None], (*positions.band.shape, *points.shape)),
         points.gathered([contact_error(solution) for solution in solutions]),
         left(nested.table, nested.plane, CORRECTION_ERROR),

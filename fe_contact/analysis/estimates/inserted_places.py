@@ -1,4 +1,9 @@
-"""Operating points inserted between those of a solved table: their solutions join its arrays."""
+"""Operating points inserted between those of a solved table: their solutions join its arrays.
+
+An alignment is a misalignment and a change of the center distance. It has one operating point, also called a
+place, whose `contact` is shared by all misalignments at one center distance. Operating points that the table
+has stay the same objects, so that `id` tells them from new ones.
+"""
 
 from __future__ import annotations
 
@@ -34,13 +39,14 @@ def with_inserted_nodes(made: SolvedTable, axis: str, further: FloatArray) -> So
     axis : str
         "misalignment" or "center_distance_change".
     further : ndarray
-        Its nodes between those of the table, m.
+        Nodes of the axis between those of the table, m.
     """
     axes = {name: getattr(made.table, name) for name in (MISALIGNMENT, CENTER_DISTANCE)}
     axes[axis] = np.sort(np.concatenate([axes[axis], further]))
     places = _merged_places(made, axes)
     old = {id(point): k for k, point in enumerate(made.places.places)}
     new = [point for point in places.places if id(point) not in old]
+    # two lists of contacts: at the loads, and at the support loads
     further_sets = _solved(made, replace(places, places=tuple(new)))
     if further_sets is None:
         return None
@@ -61,7 +67,10 @@ def with_inserted_nodes(made: SolvedTable, axis: str, further: FloatArray) -> So
 
 
 def alignment_points(made: SolvedTable, axes: Alignments) -> OperatingPoints:
-    """Return the operating points of alignments; center distances of the table have its compliances."""
+    """Return the operating points of alignments.
+
+    Those at a center distance of the table have its contact, so that its compliance is not assembled again.
+    """
     scene = replace(
         made.checked.request.scene,
         misalignment=axes[MISALIGNMENT],
@@ -89,7 +98,7 @@ def _merged_places(made: SolvedTable, axes: Alignments) -> OperatingPoints:
 
 
 def _alignments(axes: Alignments) -> list[tuple[float, float]]:
-    """Return the pairs of misalignment and center distance, this one running fastest."""
+    """Return the pairs of misalignment and center distance, the center distance running fastest."""
     return list(product(axes[MISALIGNMENT].tolist(), axes[CENTER_DISTANCE].tolist()))
 
 
@@ -110,7 +119,7 @@ def _solved(made: SolvedTable, places: OperatingPoints) -> list[list[SolvedConta
 
 
 def take_compliance(made: SolvedTable, point: OperatingPoint) -> None:
-    """Let the contact of a place have the compliance of the table's positions, if the table has it."""
+    """Give the contact of a place the compliance that the table has of it at its positions, if any."""
     contact, model, position = point.contact, point.model, made.nodes.position
     if contact.cached_problem(model, position) is not None:
         return

@@ -1,8 +1,13 @@
 """Errors of a table between its positions, at every point and in its curves.
 
-An adaptive search has solved the middles of all intervals. Of fixed positions only those intervals are
-solved in which the curve bends: every position is predicted from the others first, and where that hardly
-fails a quarter of the failure stands for the interval, as of an error of second order at half the spacing.
+Where an adaptive search placed the positions, the middles of all intervals are solved already. Where the
+positions are fixed, middles are solved only in intervals in which the curve bends: first every position is
+predicted from the others, and where the prediction hardly fails, a quarter of its failure is the error of the
+interval, by second order at half the spacing.
+
+Shapes: T = `period` base pitches (pitch deviations make them differ), P positions in a base pitch, Q others,
+K = T P knots of the closed curve, F loads, C curves (operating points times loads), 23 figures of a curve
+(`QUANTITIES`: mean, peak-to-peak, harmonics).
 """
 
 from __future__ import annotations
@@ -30,12 +35,14 @@ from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.types import FloatArray, IntArray
 
 LEFT_BY_MIDDLES = 1.5
-"""Error of the positions over the change by inserting their middles: 4/3 for second order, and more for
-kinks, which may lie anywhere in an interval. Peaks at handovers would fall with the first power of the
-spacing. They are searched for separately: the chords of the neighboring intervals bound them (`peak_excess`).
+"""Error of the positions over the change by inserting the middles of their intervals.
+
+It is 4/3 for second order, and more for kinks, which may lie anywhere in an interval. Peaks where one tooth
+pair hands over to the next fall with the first power of the spacing only; `peak_excess` bounds them
+separately by the chords of the neighboring intervals.
 """
 LOADS = 7
-"""Nodes of an axis of loads that are solved: peaks between positions come and go from one to the next."""
+"""Loads of a table at which middles are solved: peaks between positions come and go from load to load."""
 SOLVED_PART = 4
 """Divisor of the number of bending intervals between fixed positions: at most one in `SOLVED_PART` is solved.
 """
@@ -61,11 +68,12 @@ def position_errors(
     Parameters
     ----------
     nodes : PositionNodes
-        As the search left them; those of fixed positions, and of several pitches, are measured here.
+        Positions with the errors of the search; errors of fixed positions, and of tables of several base
+        pitches, are measured here.
     solutions : list of ContactSolution
-        Of all places.
+        Solutions at all operating points.
     plan : Plan
-        For its loads and the error that a search would allow.
+        Its loads are used, and the error that a search by its rule would allow.
     """
     load, period = plan.load, points.period
     if np.isfinite(nodes.interval_error).any() and period == 1:
@@ -81,13 +89,19 @@ def position_errors(
 
 
 def _bound(nodes: PositionNodes, left: FloatArray, period: int) -> FloatArray:
-    """Return the errors of curves by errors `left` (T P, C) in intervals after nodes, (23, C) in m."""
+    """Return the errors of the figures of curves (23, C), m, by errors `left` (T P, C) of intervals.
+
+    Interval k lies between nodes k and k + 1.
+    """
     band = np.maximum(left, np.roll(left, 1, axis=0))
     return error_bound(_knots(nodes, period), band, nodes.value, period)
 
 
 def _left_of_difference(nodes: PositionNodes, left: FloatArray, period: int) -> FloatArray:
-    """Return the errors of the differences of pitches from their mean, which alone are no mesh orders."""
+    """Return the errors (T P, C), m, of the differences of base pitches from their mean.
+
+    The differences alone give orders off the mesh orders.
+    """
     by_pitch = nodes.value.reshape(period, nodes.position.size, -1)
     difference = (by_pitch - by_pitch.mean(axis=0)).reshape(left.shape)
     failed = NEXT_SPACING * predicted_failure(Axis(_knots(nodes, period), float(period)), difference)
@@ -101,7 +115,7 @@ def _measured(
     plan: Plan,
     sample: IntArray,
 ) -> tuple[PositionNodes, FloatArray]:
-    """Solve the middles of intervals at some loads, in all base pitches; see `measured_nodes`."""
+    """Solve middles of intervals at a `sample` of the loads, in all base pitches; see `measured_nodes`."""
     assessed, pitches = points.assessed_indices, np.arange(points.period)
     value = np.concatenate([solutions[k].deflection[:, sample] for k in assessed], axis=1)
 
@@ -124,9 +138,9 @@ def measured_nodes(
     """Measure the error between positions where it is largest, and bound it at the others.
 
     `value` (T P, C) is the STE in m at `position` (P,) in each of T = `period` base pitches, and `solve`
-    gives it (T Q, C) at positions (Q,). Intervals that are predicted to miss less than a search by `rule`
-    would allow are not solved: their middles are those of the interpolant, and their predicted errors (T
-    P, C) in m are returned beside the nodes, 0 for the others.
+    gives it (T Q, C) at positions (Q,). An interval whose predicted error is less than a search by `rule`
+    would allow is not solved: its middle is that of the interpolant. Its predicted error is returned beside
+    the nodes, in an array (T P, C) in m that is 0 for solved intervals.
     """
     count = position.size
     axis = Axis((np.arange(period)[:, None] + position).ravel(), float(period))
@@ -135,8 +149,11 @@ def measured_nodes(
     failed = NEXT_SPACING * predicted_failure(axis, value)
     error = np.maximum(failed, np.roll(failed, -1, axis=0))
     left = error.copy()
+    # the largest error over the ripple of its curve; 0/0 of a curve without ripple counts as 0
     worst = np.nan_to_num(error / rule.ripple(value)).max(axis=1).reshape(period, count).max(axis=0)
-    solved = np.argsort(worst, kind="stable")[-max(count // SOLVED_PART, 1) :]
+    solved = np.argsort(worst, kind="stable")[
+        -max(count // SOLVED_PART, 1) :
+    ]  # the intervals of largest error
     solved = np.sort(solved[worst[solved] > rule.tolerance])
     if solved.size:
         rows = (np.arange(period)[:, None] * count + solved).ravel()
@@ -160,7 +177,7 @@ def predicted_failure(axis: Axis, value: FloatArray) -> FloatArray:
 
 
 def _by_middles(nodes: PositionNodes, period: int) -> FloatArray:
-    """Carry the middles on to errors of the curves, (23, C) in m."""
+    """Return the errors of the figures of curves (23, C), m, by what inserting the middles changes."""
     knots = _knots(nodes, period)
     axis = np.append(knots, period)
     everywhere = np.sort(np.concatenate([knots, 0.5 * (axis[1:] + axis[:-1])]))

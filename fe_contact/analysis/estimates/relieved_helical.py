@@ -53,9 +53,9 @@ def remainder_of(plan: Plan) -> MeshRemainder:
     return REMAINDER.get(plan.level, REMAINDER["standard"])
 
 
-def has_signed_errors(pair: ParallelAxes, made: Discretization) -> bool:
+def has_signed_errors(pair: ParallelAxes, discretization: Discretization) -> bool:
     """Whether the errors of a discretization follow the laws of this file."""
-    return isinstance(made, FaceDiscretization) and is_relieved_helical(pair)
+    return isinstance(discretization, FaceDiscretization) and is_relieved_helical(pair)
 
 
 def mean_left(nested: Nested, plan: Plan) -> tuple[FloatArray, FloatArray]:

@@ -2,6 +2,10 @@
 
 A held-out alignment is solved at some positions and loads. Where the table misses it by more than a goal
 allows, the middle of the interval becomes a node, and both halves are measured again.
+
+Axis letters: I intervals between the nodes of the axis, F loads of the table, l loads that are solved, R
+positions that are solved, M misalignments, D changes of the center distance; 23 quantities of a curve
+(`curve_quantities`). A probe is the place of a held-out alignment in its interval, as a fraction.
 """
 
 from __future__ import annotations
@@ -36,17 +40,20 @@ from fe_contact.ste.fields import CENTER_DISTANCE, GRID, MISALIGNMENT
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
 MIDDLE, QUARTERS = (0.5,), (0.25, 0.5, 0.75)
-"""Held-out alignments in parts of an interval. Between three nodes or more the error of a cubic may vanish in
-the middle; with a goal the quarters are solved once the middle meets it."""
+"""Probes of an interval. Between three nodes or more the error of a cubic may vanish in the middle. With a
+goal, the quarters are solved once the middle meets it.
+"""
 MAX_HALVINGS = 5
 """Halvings of an interval of requested alignments: 20 um become intervals of 0.6 um."""
+ROUNDING = 1e-9
+"""Difference of two alignments over the shortest interval, below which they are the same."""
 
 
 @dataclass(frozen=True)
 class AlignmentErrors:
     """Error between the nodes of an axis of alignments."""
 
-    made: SolvedTable
+    solved_table: SolvedTable
     """Solved table with the inserted alignments."""
     error: FloatArray
     """Largest difference of interpolant and solution in the interval after each node, m. Shape (I, F)."""
@@ -62,42 +69,46 @@ class AlignmentErrors:
 class ValidationAlignments:
     """An axis of a table compared with solutions between its nodes.
 
-    On the other axis of alignments they are solved at the node nearest to zero. A longer period is assessed
-    in its first pitch, at some of its positions and loads.
+    The alignments between the nodes are solved at that node of the other axis of alignments that is nearest
+    to zero. A longer period is assessed in its first pitch, at some of its positions and loads. `truths` are
+    the solutions (R, l), m, by their place on the axis; NaN where a solution did not converge.
     """
 
     axis: str
     """"misalignment" or "center_distance_change"."""
     goal_of: GoalOf | None
-    """Nodes are inserted until their intervals meet the goal of the table."""
+    """Function from the table to the goal that its intervals must meet; None: no nodes are inserted."""
 
     def errors(self, made: SolvedTable) -> AlignmentErrors:
         """Measure the error of every interval of a table; with a goal insert nodes until it is met."""
         truths: dict[float, FloatArray] = {}
         limit = ""
-        for left in range(MAX_HALVINGS, -1, -1):
-            further = self._further(made, truths)
-            if not further.size:
+        for remaining in range(MAX_HALVINGS, -1, -1):
+            middles = self._middles_beyond(made, truths)
+            if not middles.size:
                 break
-            if not left:
+            if remaining == 0:
                 limit = halvings_reached(MAX_HALVINGS)
                 break
-            more = with_inserted_nodes(made, self.axis, further)
-            if more is None:
+            refined = with_inserted_nodes(made, self.axis, middles)
+            if refined is None:
                 limit = "a point between them has no solution"
                 break
-            made = more
+            made = refined
         self._solve(made, self._missing(made, truths, self._last_probes), truths)
         error, change = self._spread(made, *self._errors(made, truths))
         return AlignmentErrors(made, error, change, limit)
 
     @property
     def _last_probes(self) -> tuple[float, ...]:
-        """Return the held-out alignments of a finished axis; each center distance needs a compliance."""
+        """The probes that measure the errors of the finished axis.
+
+        The middle alone measures a center distance without a goal, since each one needs a compliance.
+        """
         return MIDDLE if self.goal_of is None and self.axis == CENTER_DISTANCE else QUARTERS
 
-    def _further(self, made: SolvedTable, truths: dict[float, FloatArray]) -> FloatArray:
-        """Return the middles of intervals that miss the goal; solve the held-out points that measure it."""
+    def _middles_beyond(self, made: SolvedTable, truths: dict[float, FloatArray]) -> FloatArray:
+        """Return the middles of intervals that miss the goal, and add solutions that measure this."""
         if self.goal_of is None:
             return np.empty(0)
         nodes = getattr(made.table, self.axis)
@@ -114,7 +125,7 @@ class ValidationAlignments:
         assert self.goal_of is not None
         _, change = self._spread(made, *self._errors(made, truths))
         goal = self.goal_of(made.table)
-        # of (2, F, M, D), which has quantities in the place of positions
+        # from (2 quantities, F, M, D) to (2, nodes of the axis, F, nodes of the other axis)
         allowed = np.moveaxis(allowed_errors(made.table, goal.tolerance), GRID.index(self.axis), 1)
         minimum = np.minimum(allowed[:, 1:], allowed[:, :-1])  # (2, I, F, others)
         share = (change[[MEAN, PEAK_TO_PEAK]][..., None] / minimum).max(axis=(0, 2, 3))
@@ -125,68 +136,74 @@ class ValidationAlignments:
         made: SolvedTable,
         truths: Mapping[float, FloatArray],
         probes: tuple[float, ...],
-        of: BoolArray | None = None,
+        intervals: BoolArray | None = None,
     ) -> FloatArray:
-        """Return the held-out alignments of intervals of an axis that are not solved yet."""
+        """Return the held-out alignments, m, not solved yet, of all or of the marked `intervals` (I,)."""
         nodes = getattr(made.table, self.axis)
         known = np.array([*truths, *nodes])
-        chosen = np.ones(nodes.size - 1, bool) if of is None else of
-        wanted = [
-            low + part * (high - low)
-            for (low, high), wished in zip(pairwise(nodes.tolist()), chosen, strict=True)
-            if wished
-            for part in probes
+        marked = np.ones(nodes.size - 1, bool) if intervals is None else intervals
+        alignments = [
+            low + probe * (high - low)
+            for (low, high), is_marked in zip(pairwise(nodes.tolist()), marked, strict=True)
+            if is_marked
+            for probe in probes
         ]
-        near = 1e-9 * np.diff(nodes).min()
-        return np.array([at for at in wanted if not np.any(np.abs(known - at) <= near)])
+        near = ROUNDING * np.diff(nodes).min()
+        return np.array([value for value in alignments if not np.any(np.abs(known - value) <= near)])
 
-    def _solve(self, made: SolvedTable, at: FloatArray, truths: dict[float, FloatArray]) -> None:
-        """Solve held-out alignments, (R, l) in m each; NaN where a solution did not converge."""
-        if not at.size:
+    def _solve(self, made: SolvedTable, alignments: FloatArray, truths: dict[float, FloatArray]) -> None:
+        """Solve held-out alignments, m, and add the solutions to `truths`."""
+        if not alignments.size:
             return
         rows, loads = self._sample(made)
         table = made.table
         other = np.array([self._other_node(table)])
-        points = alignment_points(made, {self.axis: at, self._other: other})
+        points = alignment_points(made, {self.axis: alignments, self._other: other})
         starts = None
         position = made.nodes.position
         if self.axis == MISALIGNMENT:  # all of one center distance, of which the table has the compliance
             first = points.places[0]
             take_compliance(made, first)
             first.contact.keep_rows(first.model, position, rows)
-            starts = [self._start(made, rows, loads, skew) for skew in at.tolist()]
-        where = [position[rows]] * at.size
+            starts = [self._start(made, rows, loads, value) for value in alignments.tolist()]
+        positions = [position[rows]] * alignments.size
         load = table.force[loads]
-        solved = deflected_operating_points(points.places, where, load, None, points.workers, starts=starts)
-        truths.update(zip(at.tolist(), (curves[..., 0] for curves in solved), strict=True))
+        solved = deflected_operating_points(
+            points.places, positions, load, None, points.workers, starts=starts
+        )
+        truths.update(zip(alignments.tolist(), (curves[..., 0] for curves in solved), strict=True))
 
-    def _start(self, made: SolvedTable, rows: IntArray, loads: IntArray, at: float) -> Start:
-        """Return the start of a misalignment between the solutions at its neighbor nodes."""
+    def _start(self, made: SolvedTable, rows: IntArray, loads: IntArray, misalignment: float) -> Start:
+        """Return forces to start from at a misalignment, interpolated between its neighbor nodes."""
         table = made.table
         nodes, changes = table.misalignment, table.center_distance_change
-        above = int(np.searchsorted(nodes, at))
-        part = (at - nodes[above - 1]) / (nodes[above] - nodes[above - 1])
+        above = int(np.searchsorted(nodes, misalignment))
+        part = (misalignment - nodes[above - 1]) / (nodes[above] - nodes[above - 1])
         nearest = int(np.argmin(np.abs(changes)))
+        # solutions stand by misalignment, then by center distance
         lower, upper = (made.solved[m * changes.size + nearest] for m in (above - 1, above))
         first, second = (solution.force[np.ix_(rows, loads)] for _, solution in (lower, upper))
         return Start(lower[0].candidates, first + part * (second - first))
 
     def _errors(self, made: SolvedTable, truths: Mapping[float, FloatArray]) -> tuple[FloatArray, FloatArray]:
-        """Largest differences (I, l) in every interval and changes of the quantities (23, I, l), m."""
+        """Return the largest differences (I, l) in intervals, and changes of the quantities (23, I, l), m.
+
+        Differences are those of the table from the solutions `truths`, times `AWAY`.
+        """
         rows, loads = self._sample(made)
         table, position = first_pitch(made.table), made.nodes.position[rows]
-        at = np.array(sorted(truths))
+        probes = np.array(sorted(truths))
         other = self._other_node(table)
-        alignment = (at[:, None], other) if self.axis == MISALIGNMENT else (other, at[:, None])
+        alignment = (probes[:, None], other) if self.axis == MISALIGNMENT else (other, probes[:, None])
         curves = table.ste(position[:, None, None], table.force[loads], *alignment)  # (R, probes, l)
-        truth = np.stack([truths[x] for x in at.tolist()], axis=1)
+        truth = np.stack([truths[value] for value in probes.tolist()], axis=1)
         error = AWAY * np.abs(curves - truth).max(axis=0)
         flat = curves.reshape(len(curves), -1), truth.reshape(len(truth), -1)
         change = AWAY * quantity_changes(position, *flat, 1).reshape(-1, *truth.shape[1:])
         # one pitch has no orders beside the mesh: they count as the harmonic that changes most
         change[OFF_MESH] = change[FIRST_HARMONIC:].max(axis=0)
         nodes = getattr(table, self.axis)
-        inside = [(at > low) & (at < high) for low, high in pairwise(nodes.tolist())]
+        inside = [(probes > low) & (probes < high) for low, high in pairwise(nodes.tolist())]
         return (
             np.stack([error[members].max(axis=0) for members in inside]),
             np.stack([change[:, members].max(axis=1) for members in inside], axis=1),
@@ -195,7 +212,7 @@ class ValidationAlignments:
     def _spread(
         self, made: SolvedTable, error: FloatArray, change: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Carry errors (I, l) and changes (23, I, l) on to all loads of a table."""
+        """Interpolate errors (I, l) and changes (23, I, l) to all loads of a table, (I, F) and (23, I, F)."""
         force, (_, loads) = made.table.force, self._sample(made)
         return spread(force, loads, error, 1), spread(force, loads, change, 2)
 
@@ -209,13 +226,16 @@ class ValidationAlignments:
         return float(min(getattr(table, self._other).tolist(), key=abs))
 
     def _sample(self, made: SolvedTable) -> tuple[IntArray, IntArray]:
-        """Return the positions of a pitch and the loads that are solved."""
+        """Return the indices of the positions (R,) and of the loads (l,) that are solved."""
         rows = sampled_positions(made.nodes.position.size)
         return rows, sample_of(made.table.force.size, LOADS)
 
 
 def first_pitch(table: SteDatabase) -> SteDatabase:
-    """Return the first base pitch of a longer period: interpolation at its positions needs no other pitch."""
+    """Return a table of a longer period as one of its first base pitch.
+
+    Interpolation at the positions of this pitch needs no other pitch.
+    """
     if table.period == 1:
         return table
     rows = int(np.searchsorted(table.position, 1.0))

@@ -56,7 +56,7 @@ class AxisError:
 class AxisValidation:
     """A table with its inserted nodes, and its errors between all nodes."""
 
-    made: SolvedTable
+    solved_table: SolvedTable
     """Solved table with its inserted alignments."""
     axes: Mapping[str, AxisError] = field(default_factory=dict)
     """Errors of the axes, by the name of the axis."""
@@ -64,7 +64,7 @@ class AxisValidation:
     """Solutions at the inserted loads."""
 
 
-def validation_axes(made: SolvedTable, goal_of: GoalOf | None = None) -> AxisValidation:
+def validation_axes(solved_table: SolvedTable, goal_of: GoalOf | None = None) -> AxisValidation:
     """Solve held-out points in every interval of every axis that has one.
 
     A held-out point is solved at positions of the table, so that the table is interpolated along the axis
@@ -73,7 +73,7 @@ def validation_axes(made: SolvedTable, goal_of: GoalOf | None = None) -> AxisVal
 
     Parameters
     ----------
-    made : SolvedTable
+    solved_table : SolvedTable
         Solved table without inserted nodes.
     goal_of : callable, optional
         Goal of a table; nodes are inserted until all intervals meet it. No node is inserted where some base
@@ -85,33 +85,36 @@ def validation_axes(made: SolvedTable, goal_of: GoalOf | None = None) -> AxisVal
         It has no axes where the table cannot be interpolated: a point failed, or the transmission error does
         not rise with load everywhere.
     """
-    table = made.table
+    table = solved_table.table
     several = [name for name in BETWEEN_NODES if getattr(table, name).size > 1]
     if table.n_failed or not several:
-        return AxisValidation(made)
+        return AxisValidation(solved_table)
     try:  # raises where the transmission error does not rise with load
         table.ste(table.position[0], table.force[0])
     except DatabaseError:
-        return AxisValidation(made)
-    if any(point.derived is not None for point in made.places.places):
+        return AxisValidation(solved_table)
+    if any(point.derived is not None for point in solved_table.places.places):
         goal_of = None
     axes: dict[str, AxisError] = {}
     for name in (MISALIGNMENT, CENTER_DISTANCE):
         if name in several:
-            errors = ValidationAlignments(name, goal_of).errors(made)
-            made, inserted = errors.made, getattr(errors.made.table, f"inserted_{name}")
-            middles = _middles(getattr(made.table, name))
+            errors = ValidationAlignments(name, goal_of).errors(solved_table)
+            solved_table, inserted = (
+                errors.solved_table,
+                getattr(errors.solved_table.table, f"inserted_{name}"),
+            )
+            middles = _middles(getattr(solved_table.table, name))
             axes[name] = AxisError(middles, errors.error, errors.change, inserted, errors.limit)
     if "force" not in several:
-        return AxisValidation(made, axes)
-    pitch = first_pitch(made.table)
-    goal = None if goal_of is None else goal_of(made.table)
+        return AxisValidation(solved_table, axes)
+    pitch = first_pitch(solved_table.table)
+    goal = None if goal_of is None else goal_of(solved_table.table)
     rows = sampled_positions(pitch.position.size)
-    loads = ValidationLoads(pitch, rows, made.places, made.solved).errors(goal)
+    loads = ValidationLoads(pitch, rows, solved_table.places, solved_table.solved).errors(goal)
     middles = np.sqrt(table.force[1:] * table.force[:-1])
     inserted = np.empty(0) if loads.inserted is None else loads.inserted.force
     of_loads = AxisError(middles, loads.error[:, None], loads.change[..., None], inserted, loads.limit)
-    return AxisValidation(made, {"force": of_loads} | axes, loads.inserted)
+    return AxisValidation(solved_table, {"force": of_loads} | axes, loads.inserted)
 
 
 def _middles(nodes: FloatArray) -> FloatArray:

@@ -134,9 +134,9 @@ class ValidationLoads:
     def _missing(self, ends: list[float], known: FloatArray) -> FloatArray:
         """Return the held-out loads of intervals that are not known yet."""
         probes = LOAD_PROBES if self.table.force.size <= WIDE_INTERVALS + 1 else MIDDLE
-        wanted = [low ** (1.0 - probes) * high**probes for low, high in pairwise(ends)]
+        probed = [low ** (1.0 - probes) * high**probes for low, high in pairwise(ends)]
         loads = np.concatenate([known, ends])
-        return np.array([x for x in np.concatenate(wanted) if not np.isclose(x, loads, rtol=1e-9).any()])
+        return np.array([x for x in np.concatenate(probed) if not np.isclose(x, loads, rtol=1e-9).any()])
 
     def _errors(self, table: SteDatabase, probes: SupportLoads) -> tuple[FloatArray, FloatArray]:
         """Largest difference (L,) of a table, and changes of the quantities (23, L), m."""

@@ -56,11 +56,11 @@ class DeformedPair:
     def wheel_lag(self) -> FloatArray:
         """Displacement (n, 3) of the wheel's nodes by the transmission error as a small rotation, m.
 
-        Added to the elastic displacements it closes the gap that bending opens: warped by any factor, the
-        loaded flanks stay together.
+        Added to the elastic displacements it closes the gap that bending opens. So the loaded flanks stay
+        together in pictures whose displacements are scaled by any factor.
         """
         arm = self.wheel.points - np.asarray(self.wheel_center)
-        # it turns counter-clockwise, a ring clockwise, and lags
+        # the wheel turns counter-clockwise, a ring gear (negative radius) clockwise; a lag is against that
         angle = -self.deflection / self.wheel_base_radius
         return angle * np.column_stack([-arm[:, 1], arm[:, 0], np.zeros(len(arm))])
 
@@ -88,7 +88,7 @@ def deformed_pairs(
     Parameters
     ----------
     pair : GearPair, InternalGearPair or Checked
-        A request that is checked already stands for pair, point and options.
+        Gear pair, or a checked request, which replaces pair, point and options.
     point : OperatingPoint, optional
     options : AnalysisOptions
         `positions`, `receipt` and `on_violation` are ignored.
@@ -160,13 +160,20 @@ def _placed_pair(pair: ParallelAxes, position: float, deflection: float, gears: 
     angle_1, angle_2 = mesh_angles(pair, position)
     wheel = gears[1].turned_over() if pair.internal else gears[1]
     pinion, wheel = gears[0].placed(angle_1, (0.0, 0.0, 0.0)), wheel.placed(angle_2, center)
-    return DeformedPair(position, deflection, pinion, wheel, sign * pair.wheel.base_radius, center)
+    return DeformedPair(
+        position=position,
+        deflection=deflection,
+        pinion=pinion,
+        wheel=wheel,
+        wheel_base_radius=sign * pair.wheel.base_radius,
+        wheel_center=center,
+    )
 
 
 def mesh_angles(pair: ParallelAxes, position: float) -> tuple[float, float]:
     """Return the angles in rad that turn both tooth frames into the mesh, counter-clockwise.
 
-    Whole base pitches are left out: tooth 0 is the one that is then at the place of pair 0.
+    Whole base pitches of the position are left out, so that tooth 0 is the tooth of pair 0.
     The base tangent leaves the pinion at pi/2 + alpha_wt from +x; from there the path of contact runs along
     (cos alpha_wt, sin alpha_wt). A ring gear's frame has been turned over before, see `DeformedGear`.
     """
@@ -178,8 +185,8 @@ def mesh_angles(pair: ParallelAxes, position: float) -> tuple[float, float]:
     angles = []
     for gear, roll, arm in zip((pair.pinion, pair.wheel), (roll_1, roll_2), arms, strict=True):
         point = tooth_profile(gear).involute(np.array([roll]))[0]
-        # at a wheel of another mid-face the section is turned by the helix of what lies between
         angles.append(math.atan2(arm[1], arm[0]) - math.atan2(point[1], gear.sign * point[0]))
+    # the wheel's mid-face section is turned by its helix over the distance from the pinion's mid-face
     offset = pair.axial_offset * math.tan(pair.wheel.helix_angle) / pair.wheel.reference_radius
     return angles[0], angles[1] + offset
 
@@ -196,7 +203,7 @@ def _write(path: Path, gear: DeformedGear, in_mesh: FloatArray) -> None:
             "von_mises_stress": gear.von_mises,
             "largest_principal_stress": principal[:, 2],
             "least_principal_stress": principal[:, 0],
-            "stress": stress[:, [0, 1, 2, 0, 1, 0], [0, 1, 2, 1, 2, 2]],
+            "stress": stress[:, [0, 1, 2, 0, 1, 0], [0, 1, 2, 1, 2, 2]],  # xx, yy, zz, xy, yz, xz
         },
         {"tooth": gear.tooth, **gear.quality},
     )

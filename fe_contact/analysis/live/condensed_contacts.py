@@ -31,7 +31,9 @@ class CondensedContacts:
     coarse: PairContact | None
     """The pair on the coarse meshes; None if their compliance was not computed."""
     patched: PairContact
-    """The pair without that correction, under the wider load patches of the coarse meshes."""
+    """The pair without the correction for the finite face width, under the wider load patches of the coarse
+    meshes.
+    """
 
     @classmethod
     def of(cls, nominal: PairContact, coarse: PairContact | None) -> CondensedContacts:
@@ -85,9 +87,9 @@ class CondensedContacts:
             self.fine.keep_rows(model, position, rows)
 
     def at_distance(self, change: float) -> CondensedContacts:
-        """Return the bodies at a center distance larger by `change`, m; nothing is assembled at it.
+        """Return the bodies at a center distance larger by `change`, m, with nothing assembled yet.
 
-        What is assembled (`_problems`) depends on the center distance, so it is not shared.
+        Assembled compliances (`_problems`) depend on the center distance, so they are not shared.
         """
         pair = self.fine.pair.at_center_distance(self.fine.pair.center_distance + change)
         nominal = replace(self.fine, pair=pair, _problems={})

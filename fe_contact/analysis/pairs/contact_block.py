@@ -82,6 +82,7 @@ def solve_block(bodies: Bodies, block: ContactBlock) -> SolvedBlock:
         solved_in_parts(point, where, block.loads, block.pitches, edges=block.edges)
         for point in _points(bodies, block)
     )
+    # all models and sets of loads have the compliance of the first
     condition = condition_numbers(contacts[0][0].problem.compliance) if block.conditioned else None
     return SolvedBlock(contacts, condition)
 

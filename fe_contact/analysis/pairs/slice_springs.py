@@ -69,16 +69,16 @@ class SpringContact(PairContact):
 
         Uncoupled slices need no start.
         """
-        acting = model if self.law.with_gaps else ContactModel()
+        effective_model = model if self.law.with_gaps else ContactModel()
         slices = Slices.of_pair(self.pair, SLICES, 1)
-        plain = contact_candidates(self.pair, acting, position, self.plan.patch, slices)
-        touching = with_gaps(self.pair, plain, acting)
+        plain = contact_candidates(self.pair, effective_model, position, self.plan.patch, slices)
+        touching = with_gaps(self.pair, plain, effective_model)
         modulus = contact_modulus(self.pair.pinion.material, self.pair.wheel.material)
         # without compliance matrices: slices are uncoupled
         problem = ContactProblem(touching, np.zeros((position.size, 0, 0)), modulus, 0.0, 0.0)
-        if pitch is not None or acting.tooth_gaps:
+        if pitch is not None or effective_model.tooth_gaps:
             first = np.zeros_like(position, int)
-            problem = in_pitches(self.pair, problem, acting, first if pitch is None else pitch)
+            problem = in_pitches(self.pair, problem, effective_model, first if pitch is None else pitch)
         stiffness = slice_stiffness(self.pair, problem.candidates, self.law)
         return problem, _solve_springs(problem.candidates, stiffness, load)
 

@@ -274,8 +274,8 @@ def _said(choice: tuple[Checked, MeshChoice]) -> tuple[Checked, MeshChoice]:
 
 def _reason(tells: bool, text: str, parts: str) -> str:
     """Return why an effect that decides about the model was switched; reasons of other effects stay."""
-    mine = tells and text in ("taken", "left out")
-    return f"{text} for the requested accuracy: expected error {parts}" if mine else text
+    decided_here = tells and text in ("taken", "left out")
+    return f"{text} for the requested accuracy: expected error {parts}" if decided_here else text
 
 
 def _planned(checked: Checked, mesh: MeshChoice) -> Decision:

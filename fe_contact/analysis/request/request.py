@@ -36,8 +36,10 @@ class Request:
     """
     neglected: Mapping[str, str] = field(default_factory=dict)
     turned_on: Mapping[str, str] = field(default_factory=dict)
-    """`neglected`, `turned_on`: Automatic effects that are neglected because the accuracy does not need them,
-    or on because a run without them showed that it does, and why.
+    """`neglected`, `turned_on`: Reason, by name of an automatic effect, why it is neglected or on.
+
+    An effect is neglected because the accuracy does not need it, or on because a run without it showed that
+    the accuracy does.
     """
     loads_as: str = "torques"
     """Kind of loads in the request: "torques" or "normal_forces"."""
@@ -70,20 +72,20 @@ class Request:
 
     @property
     def complete_scene(self) -> ContactScene:
-        """The scene that the effects assess by, before any was neglected."""
+        """The scene with all effects, from which each effect assesses whether it is needed."""
         alignments = self.misalignment, self.center_distance_change
         return ContactScene(self.pair, self.torque, self.registry, *alignments, pitches=self.pitches)
 
     @property
     def scene(self) -> ContactScene:
-        """Scene by which effects decide, without neglected parts."""
+        """The scene without the parts of neglected effects."""
         scene = self.complete_scene
         for name in self.neglected:
             scene = scene.effect(name).without(scene) or scene
         return scene
 
     def named(self, brings: str) -> str:
-        """Return the name of the effect that brings something; empty where there is none."""
+        """Return the name of the effect that brings a part of the model; empty: the registry has none."""
         return named(self.registry, brings)
 
     @property
@@ -126,9 +128,9 @@ class Request:
 
 @dataclass(frozen=True)
 class Checked:
-    """A request that can be computed, with the model its effects compose and their ledger.
+    """A request that can be computed, with the contact model its effects compose, and their ledger.
 
-    `cycle` is what a table over several base pitches costs, None for one pitch.
+    `cycle` is the cost of a table over several base pitches; None: the table has one pitch.
     """
 
     request: Request
@@ -149,8 +151,15 @@ class Checked:
     def planned(self, cache: Path | None) -> Plan:
         """Return the plan with the mesh and slices that the accuracy asks for; see `chosen_mesh`."""
         request = self.request
-        wish = request.pair, request.load, request.options, self.model
-        choice = chosen_mesh(*wish, request.alignments, cache, model_chosen=request.model_chosen)
+        choice = chosen_mesh(
+            request.pair,
+            request.load,
+            request.options,
+            self.model,
+            request.alignments,
+            cache,
+            model_chosen=request.model_chosen,
+        )
         return self.plan(choice.level, choice.slices)
 
     def predicted(self, plan: Plan, cache: Path | None, *, with_errors: bool = True) -> Prediction:
@@ -171,8 +180,8 @@ class Checked:
     def assessing(self, name: str) -> tuple[ContactScene, dict[str, str]]:
         """Return the scene and the decisions by which the influence of an effect is estimated.
 
-        Those of a neglected effect are of the scene with everything in it: without it there may be no model
-        left that can show it.
+        For a neglected effect they are those of the complete scene: the model without the effect may not be
+        able to show its influence.
         """
         request = self.request
         if name not in request.neglected:

@@ -126,22 +126,22 @@ def ablate(
     Parameters
     ----------
     pair : GearPair, InternalGearPair or Checked
-        What `Ablation.request` returns stands for pair, axes and options.
+        Gear pair, or a checked request (see `Ablation.request`), which replaces pair, axes and options.
     axes : TableAxes, optional
         The tables are at the nominal center distance.
     options : AnalysisOptions
         All tables have the mesh level that the accuracy requires and a minimal receipt; violated assumptions
         are reported.
     run : Run
-        With a cache the gears are condensed once for each body and model. Workers take the blocks of each
-        table where a single one pays for itself, and else an effect each.
+        With a cache the gears are condensed once for each body and model. Where a single table is worth
+        several workers, they share each table by blocks; else each worker computes the table of one effect.
     only : sequence of str, optional
         Effects to toggle; default all.
 
     Returns
     -------
     Ablation
-        Of every effect of the scene that can be toggled.
+        Changes by every effect of the scene that can be toggled.
     """
     checked = Ablation.request(pair, axes, options)
     names = chosen("only", only, [effect.name for effect in EFFECTS])
@@ -181,10 +181,10 @@ def predicted_ablation(checked: Checked, only: Sequence[str] | None, cache: Path
             variant = checked if entry is None else toggled(checked, entry.name, "off" if entry.on else "on")
             plan = variant.planned(cache)
             complete = variant.predicted(plan, cache, with_errors=False)
-            made = plan.discretization
-            bodies[plan.bodies(variant.request.pair), made.recipes, made.corrected] = complete.stages[
-                "compliance"
-            ]
+            mesh = plan.discretization
+            # tables of equal bodies on equal meshes share their compliance
+            key = plan.bodies(variant.request.pair), mesh.recipes, mesh.corrected
+            bodies[key] = complete.stages["compliance"]
             contacts.append(complete.stages["contact"])
             memory = max(memory, complete.memory_bytes)
     return PredictedTables(sum(bodies.values()), tuple(contacts), memory)
@@ -206,7 +206,7 @@ def _toggled(
 
 
 def _on_one_mesh(checked: Checked, cache: Path | None) -> Checked:
-    """Return the request with the model and the level that its accuracy asks for: all tables compare."""
+    """Return the request with the model and mesh level that its accuracy requires, for all tables alike."""
     choice = decide(checked, cache)
     request = choice.checked.request
     return checked_request(
@@ -222,9 +222,11 @@ def _figures(checked: Checked, run: Run) -> Figures:
     curves = [table.curve(force=float(force), misalignment=skew) for force in table.force]
     predicted = checked.predicted(checked.planned(run.cache), None)
     return Figures(
-        np.array([curve.mean.value for curve in curves]),
-        np.array([curve.peak_to_peak.value for curve in curves]),
-        float(table.metadata.receipt["stages"]["contact"]["cpu_seconds"]),
-        np.array([[harmonic.value for harmonic in curve.harmonics[:HARMONICS]] for curve in curves]),
-        predicted.cpu_seconds,
+        mean=np.array([curve.mean.value for curve in curves]),
+        peak_to_peak=np.array([curve.peak_to_peak.value for curve in curves]),
+        cpu_seconds=float(table.metadata.receipt["stages"]["contact"]["cpu_seconds"]),
+        harmonics=np.array(
+            [[harmonic.value for harmonic in curve.harmonics[:HARMONICS]] for curve in curves]
+        ),
+        predicted_cpu_seconds=predicted.cpu_seconds,
     )

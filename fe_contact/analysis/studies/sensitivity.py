@@ -28,8 +28,9 @@ class RippleCurve:
     error: FloatArray = field(metadata=in_unit("m", "deviation"))
     """`peak_to_peak`, `error`: Peak-to-peak STE and the half-width of its error band, m. Shape (N,) each."""
     carrying: FloatArray = field(metadata=in_unit("1", "deviation"))
-    """Mean number of pairs that carry load over a period: the contact ratio under load. The ends of contact
-    are known to the distance of the positions. Shape (N,).
+    """Mean number of pairs that carry load over a period: the contact ratio under load.
+
+    Its resolution is the spacing of the positions, at which contact is seen to begin and end. Shape (N,).
     """
 
     @property
@@ -69,7 +70,7 @@ def study_sensitivity(
     Parameters
     ----------
     pair : GearPair, InternalGearPair or Checked
-        What `Sensitivity.request` returns stands for pair, axes and options.
+        Gear pair, or a checked request (see `Sensitivity.request`), which replaces pair, axes and options.
     axes : TableAxes, optional
         One load, and the deviations; zero is added to both.
     options : AnalysisOptions
@@ -111,7 +112,7 @@ def _ripple(table: SteDatabase, axis: str) -> RippleCurve:
     deviation: FloatArray = getattr(table, axis)
     ripples = [table.peak_to_peak(force=float(table.force[0]), **{axis: float(x)}) for x in deviation]
     values, errors = (np.array([getattr(ripple, name) for ripple in ripples]) for name in ("value", "error"))
-    return RippleCurve(deviation, values, errors, _carrying(table))
+    return RippleCurve(deviation=deviation, peak_to_peak=values, error=errors, carrying=_carrying(table))
 
 
 def _carrying(table: SteDatabase) -> FloatArray:

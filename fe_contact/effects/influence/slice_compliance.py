@@ -1,14 +1,17 @@
 """Compliance between loaded slices without finite elements: coupled springs in closed form.
 
-A slice bends its own tooth (`tooth_bending`) and, less and less, the slices beside it: exponentially over a
-decay length, as a beam on an elastic foundation, reflected at the free ends of the face, so that an even load
-is met evenly. All teeth of a gear twist and shift its body, and the surface of the body sinks with the
-logarithm of the distance, as that of a half plane:
+A force on a slice bends the tooth there (`tooth_bending`) and, with the distance along the face, less and
+less at other slices: exponentially over a decay length, like a beam on an elastic foundation. The decay is
+reflected at the free ends of the face, so that a uniform load bends the tooth uniformly.
 
-    u_j = body + k ln(2 D/(j p)),    k = 2 (1 - nu^2)/(pi E),
+The forces on all teeth also rotate and shift the gear's body. Around a loaded tooth the surface of the body
+sinks as that of a half plane, with the logarithm of the distance:
 
-j pitches p away on a body of depth D. Finite elements of 17 to 60 teeth give the same within 10 %. The axial
-part of a helical tooth's force moves the body too (`_axial_shear`).
+    u_j = body + k ln(2 D/(j p)),    k = 2 (1 - nu^2)/(pi E).
+
+u_j is the displacement j pitches p away on a body of depth D, `body` that by rotation and shift. Finite
+elements of 17 to 60 teeth give the same within 10 %. The axial component of a helical tooth's force moves the
+body too (`_axial_shear`). Shapes: P positions, n slices.
 """
 
 from __future__ import annotations
@@ -33,14 +36,17 @@ from fe_contact.geometry.web_compliance import shear_modulus, shift_compliance, 
 from fe_contact.types import FloatArray
 
 TOOTH_DECAY = 1.7
-"""Modules over which the bending of a tooth fades along the face: by the compliance (1.4 to 1.7) and the
-ripple (1.6 to 1.9) of nine helical pairs of finite elements, 15 to 30 degrees, faces of 7 to 17 modules."""
+"""Decay length of a tooth's bending along the face, modules.
+
+Fitted to the compliance (1.4 to 1.7) and the ripple (1.6 to 1.9) of nine helical pairs of finite elements,
+helix angles of 15 to 30 degrees, faces of 7 to 17 modules.
+"""
 BODY_DECAY = 2.0 / math.pi
-"""Depths of the body over which its shear fades along the face."""
+"""Decay length of the body's shear along the face, depths of the body."""
 SUNK_DEPTH = 3.75
-"""Modules of body depth that Weber and Banaschek's half plane stands for."""
+"""Depth of the body, modules, whose sinking is in the foundation of `tooth_bending` (Weber and Banaschek)."""
 WEB_EXCESS = 2.1
-"""Compliance that a web adds over its own twist: 1.9 to 2.3 measured (docs/effects.md#thin_rim)."""
+"""Compliance that a web adds over that of its torsion: 1.9 to 2.3 measured (docs/effects.md#thin_rim)."""
 
 
 class _GearCompliance(NamedTuple):
@@ -57,7 +63,7 @@ class _GearCompliance(NamedTuple):
 def slice_compliance(pair: ParallelAxes, slices: LoadedSlices, model: ContactModel) -> FloatArray:
     """Return the normal approach (P, n, n) in m of each slice per N on each other, both gears.
 
-    The sum of `slice_compliances`, whose parameters it has.
+    It is the sum of `slice_compliances` over gears and sources; the parameters are the same.
     """
     return np.asarray(sum(part for gear in slice_compliances(pair, slices, model) for part in gear))
 
@@ -72,7 +78,7 @@ def slice_compliances(
     slices : LoadedSlices
         P positions, n slices.
     model : ContactModel
-        What of it a compliance can show: coupling, finite width, rim, seats.
+        Contact model, of which coupling of teeth, finite width, rim and seats change the compliance.
     """
     touch = slices.touch
     wider = finite_width_excess(pair)[1] if model.finite_width or model.across_face else 0.0
@@ -108,10 +114,11 @@ def _of_gear(
     decay = TOOTH_DECAY * gear.normal_module
     on_tooth = (distance == 0) * _along_face(face, decay, slices.slice_width)
     tooth = root[:, :, None] * root[:, None, :] * on_tooth
+    # approach between the middle of the tooth and the load patch, over the half plane's k
     depth = 2.0 * bending.at(bending.depth, s) / patch
     ratio = gear.material.poissons_ratio
     local = np.log(depth) - 0.5 * ratio / (1.0 - ratio) - 0.25
-    # what is within the reference length is in the local law, and never more than there is
+    # at least the approach within the reference length, which the local law takes from it
     local = np.maximum(local, np.log(slices.law_length / patch))
     local *= math.cos(gear.helix_angle) * half_plane(gear) / slices.slice_width
     body = _body(gear, slices, model)
@@ -121,7 +128,7 @@ def _of_gear(
 
 
 def _body(gear: Toothing, slices: LoadedSlices, model: ContactModel) -> FloatArray:
-    """Return the displacement (n, n) of teeth by the motion of the body under them."""
+    """Return the displacement (n, n) of teeth per force by the motion of the body under them, m/N."""
     distance, face = np.abs(slices.pair[:, None] - slices.pair), slices.face_position
     inner, outer = sorted((gear.seat_radius, gear.root_radius))
     depth = outer - inner
@@ -142,7 +149,10 @@ def _body(gear: Toothing, slices: LoadedSlices, model: ContactModel) -> FloatArr
 
 
 def _axial_shear(gear: Toothing, distance: FloatArray) -> FloatArray:
-    """Axial displacement (n, n) of the body; what is near the tooth is in the half plane it is clamped in."""
+    """Return the axial displacement (n, n) of the body per axial force, for unit length of the face.
+
+    The displacement near the loaded tooth is left out, since `tooth_bending` has it in its foundation.
+    """
     near = math.log(SUNK_DEPTH * gear.normal_module / (0.5 * math.pi * gear.transverse_module))
     shear = antiplane_shear(gear)[distance % gear.teeth] - (distance == 0) * near / (
         math.pi * shear_modulus(gear.material)
@@ -151,18 +161,19 @@ def _axial_shear(gear: Toothing, distance: FloatArray) -> FloatArray:
 
 
 def _seat(gear: Toothing) -> float:
-    """Displacement of the line of action as the rigid gear turns and shifts on an elastic seat, m/N."""
+    """Return the displacement along the line of action of a rigid gear on an elastic seat, m/N."""
     low, high = gear.seat.ends(gear.face_width)
-    stiffness = sum(k for k in gear.seat.stiffness[:2])
+    stiffness = sum(k for k in gear.seat.stiffness[:2])  # radial and tangential
     shift = 1.0 / (math.pi * gear.seat_radius * (high - low) * stiffness) if stiffness > 0.0 else 0.0
     return seat_compliance(gear) + shift
 
 
 def _along_face(face: FloatArray, decay: float, width: float) -> FloatArray:
-    """Displacement (n, n) per force, unit compliance per length, over a face with free ends, 1/m.
+    """Return the displacement (n, n) per force over a face with free ends, unit compliance per length, 1/m.
 
-    The Green's function of u - decay^2 u'' = q, u' = 0 at both ends: cosh(a) cosh(b)/(decay sinh(c)), a and b
-    the distances of the outer points from the ends and c the length, over the decay. One slice is all of it.
+    It is the Green's function of u - decay^2 u'' = q with u' = 0 at both ends: cosh(a) cosh(b)/(decay
+    sinh(c)). Over the decay, a is the distance of the lower of the two points from the low end, b that of the
+    upper point from the high end, and c the length. A face of one slice moves as a whole.
     """
     if np.ptp(face) == 0.0:
         return np.full((face.size, face.size), 1.0 / width)

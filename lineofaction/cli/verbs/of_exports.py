@@ -102,10 +102,13 @@ def _export(
         Path | None,
         typer.Option(help="REXS file of the unit to which the results are added."),
     ] = None,
+    library: Annotated[
+        str, typer.Option("--for", help="Mesh stiffness of a table for: ross, opentorsion or json.")
+    ] = "",
     fmu: _FmuOptions,
     part: _RunPart,
     json: AsJson = False,
 ) -> None:
-    """Write gears as they bend in mesh, the mesh force as FMU, results into REXS, a run as UFF or CSV."""
-    further = asdict(fmu) | asdict(part)
+    """Write bent gears, the mesh force as FMU, mesh stiffness, results into REXS, a run as UFF or CSV."""
+    further = asdict(fmu) | asdict(part) | {"library": library}
     export.run_export(case, output, asdict(point), rexs, at=at, beside=beside, as_json=json, **further)

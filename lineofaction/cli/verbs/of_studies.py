@@ -59,8 +59,8 @@ def _command(study: Study) -> Any:
     verb = typer.Typer(add_completion=False, rich_markup_mode=None)
     example = f"Example: loa {study.name} {study.example}"
     called = overridable(study.argument, study.takes.subject)(_verb(study))
-    about: dict[str, Any] = {"short_help": study.description, "rich_help_panel": study.group}
-    verb.command(study.name, epilog=example, **about)(computing(called))
+    help_texts: dict[str, Any] = {"short_help": study.description, "rich_help_panel": study.group}
+    verb.command(study.name, epilog=example, **help_texts)(computing(called))
     return typer.main.get_command(verb)
 
 

@@ -1,4 +1,8 @@
-"""Answers of an STE database in boundary units: curves, summaries, metadata, drafts."""
+"""Answers of an STE database in boundary units: curves, summaries, metadata, drafts.
+
+A draft is a table that is not yet refined to its tolerance. A figure whose error was not estimated has the
+error NaN in the table and no error in an answer.
+"""
 
 from __future__ import annotations
 
@@ -20,10 +24,11 @@ from lineofaction.gearbox.problems import JobFailed
 from lineofaction.gearbox.units import MM, MPA, UM, as_typed, boundary_ledger
 
 GEARS = "pinion", "wheel"
+"""Names of the driving and the driven gear in an answer."""
 _RIPPLE = np.linspace(0.0, 2.0, 49)
-"""Positions of a ripple that is drawn small, base pitches: six for a period of the fourth harmonic."""
-_NOTHING = 1e-12
-"""Length in m below which a value is rounding."""
+"""Positions of the small ripple of a headline, base pitches: six in a period of the fourth harmonic."""
+_ROUNDING = 1e-12
+"""Length, m, below which an error is rounding."""
 
 
 def curve_json(
@@ -63,9 +68,11 @@ def curve_json(
         "load_share": curve.load_share.tolist(),
         **_figures(curve),
     }
-    if inserted := inserted_json(database):
+    inserted = inserted_json(database)
+    if inserted:
         answer["inserted"] = inserted
-    if teeth := tooth_loads_json(database, curve.point):
+    teeth = tooth_loads_json(database, curve.point)
+    if teeth:
         answer["tooth_loads"] = teeth
     if curve.period > 1:  # over one base pitch the orders are the harmonics
         answer["order"] = curve.spectrum.order.tolist()
@@ -88,9 +95,10 @@ def _bands(curve: Curve) -> Json:
 
 def inserted_json(database: SteDatabase) -> Json:
     """Return the nodes that were inserted to meet a tolerance, by the names of the axes that have any."""
-    force, newton_metre = database.inserted_force, float(database.torque[-1] / database.force[-1])
+    force = database.inserted_force
+    torque_per_force = float(database.torque[-1] / database.force[-1])  # m, the same at all loads
     axes = {
-        "torque_n_m": _typed(force, 1.0 / newton_metre),
+        "torque_n_m": _typed(force, 1.0 / torque_per_force),
         "normal_force_n": force.tolist(),
         "misalignment_um": _typed(database.inserted_misalignment, UM),
         "center_distance_change_mm": _typed(database.inserted_center_distance_change, MM),
@@ -145,8 +153,9 @@ def _figures(curve: Curve) -> Json:
         figures["mean_over_face_um"], figures["mean_over_face_error_um"] = mean.value / UM, mean.error / UM
         figures["peak_to_peak_over_face_um"] = ripple.value / UM
         figures["peak_to_peak_over_face_error_um"] = ripple.error / UM
-    known = np.isfinite([item.error for item in (curve.mean, curve.peak_to_peak, *curve.harmonics)]).all()
-    return {name: value for name, value in figures.items() if known or "error" not in name}
+    errors = [item.error for item in (curve.mean, curve.peak_to_peak, *curve.harmonics)]
+    estimated = np.isfinite(errors).all()
+    return {name: value for name, value in figures.items() if estimated or "error" not in name}
 
 
 def headline_json(table: SteDatabase) -> Json:
@@ -191,6 +200,7 @@ def summary_json(database: SteDatabase) -> Json:
 def metadata_json(database: SteDatabase) -> Json:
     """Return the metadata of a database with its axes, and the loads of teeth that differ."""
     teeth = _tooth_loads_by_load(database)
+    inserted = inserted_json(database)
     return {
         "schema_version": database.metadata.schema_version,
         "content_hash": database.metadata.content_hash,
@@ -206,13 +216,16 @@ def metadata_json(database: SteDatabase) -> Json:
         "normal_force_n": database.force.tolist(),
         "misalignment_um": _typed(database.requested_nodes(MISALIGNMENT), UM),
         "center_distance_change_mm": _typed(database.requested_nodes(CENTER_DISTANCE), MM),
-        **({"inserted": inserted} if (inserted := inserted_json(database)) else {}),
+        **({"inserted": inserted} if inserted else {}),
         **({"tooth_loads": teeth} if any(teeth) else {}),
     }
 
 
 def _tooth_loads_by_load(database: SteDatabase) -> list[Json]:
-    """Return the loads of teeth at every load, of the alignment nearest to zero; none with failed points."""
+    """Return the loads of teeth at every load of the table, at the alignment nearest to zero.
+
+    The list is empty if the table has failed points.
+    """
     axes = (database.requested_nodes(axis) for axis in (MISALIGNMENT, CENTER_DISTANCE))
     aligned = [float(axis[np.argmin(np.abs(axis))]) for axis in axes]
     if database.n_failed:
@@ -221,12 +234,15 @@ def _tooth_loads_by_load(database: SteDatabase) -> list[Json]:
 
 
 def source_rows(receipt: Json, load: int) -> list[tuple[str, float, float, float]]:
-    """Return the errors of mean, peak-to-peak and first harmonic at a load by source, m."""
+    """Return the errors at a load by source: its words, then those of mean, peak-to-peak, first harmonic, m.
+
+    `load` is the index of the load; sources whose errors are rounding are left out.
+    """
     rows = []
     for name, parts in receipt.get("curve_error", {}).items():
         mean, ripple, harmonic = (float(parts[quantity][load]) for quantity in BY_SOURCE)
         rows.append((source_words(name), mean, ripple, harmonic))
-    return [row for row in rows if max(row[1:]) > _NOTHING]
+    return [row for row in rows if max(row[1:]) > _ROUNDING]
 
 
 def draft_line(table: SteDatabase, refining: str) -> str:

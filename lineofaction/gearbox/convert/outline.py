@@ -38,9 +38,11 @@ def pair_outline(pair: ParallelAxes) -> Json:
     sign = pair.wheel.sign
     gears = {"pinion": _gear(pair.pinion), "wheel": _gear(pair.wheel)}
     centers = ((0.0, 0.0), (0.0, sign * pair.center_distance))
+    # sense in which the gear turns as the position grows: 1 is counter-clockwise
     turns = (-1.0, -1.0 if pair.internal else 1.0)
     middles = (0.0, pair.axial_offset)
-    # the wheel rolls with every section of the pinion
+    # the transverse sections are turned along z: the pinion's by `twist` in deg/mm, and the wheel's by as
+    # much as it rolls with the pinion's
     rises = (1.0, -sign * pair.pinion.teeth / pair.wheel.teeth)
     twist = math.tan(pair.base_helix_angle) / pair.pinion.base_radius * MM / DEGREE
     for gear, angle, center, turn in zip(gears.values(), angles, centers, turns, strict=True):
@@ -58,7 +60,7 @@ def _gear(gear: Toothing) -> Json:
     root = np.linspace(profile.s_space, profile.s_form, _ROOT_POINTS, endpoint=False)
     flank = np.linspace(profile.s_form, profile.s_tip, _FLANK_POINTS)
     right = profile.flank(np.concatenate((root, flank)))
-    tip = profile.tip_land(np.linspace(0.0, 1.0, _TIP_POINTS)[1:-1])
+    tip = profile.tip_land(np.linspace(0.0, 1.0, _TIP_POINTS)[1:-1])  # its ends are the flanks' last points
     tooth = np.concatenate((right, tip, right[::-1] * (-1.0, 1.0)))
     circles = {"tip": gear.tip_radius, "root": gear.root_radius, "base": gear.base_radius}
     circles |= {"reference": gear.reference_radius, "held": gear.seat_radius, "form": gear.form_radius}
@@ -96,4 +98,5 @@ def _figures(pair: ParallelAxes) -> Json:
 
 
 def _points(points: FloatArray) -> list[list[float]]:
+    # four digits of a millimeter: 0.1 um, far below the width of a drawn line
     return [[round(float(x) / MM, 4), round(float(y) / MM, 4)] for x, y in points]

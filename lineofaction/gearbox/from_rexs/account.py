@@ -70,16 +70,16 @@ class Account:
         return tuple(line for part in self._parts.values() for line in self._lines(part))
 
     def _lines(self, part: Component) -> Iterator[Line]:
-        said = dict(self._said[id(part)])
-        component_entry = said.pop("", None)
+        fates = dict(self._said[id(part)])
+        component_entry = fates.pop("", None)
         for attribute in part.attributes:
-            fate, text = said.setdefault(attribute.id, ("ignored", UNUSED))
+            fate, text = fates.setdefault(attribute.id, ("ignored", UNUSED))
             if attribute.origin == ASSUMED and fate in ("taken", "ignored"):
-                said[attribute.id] = _assumed(attribute, fate, text)
-        used = any(fate in ("taken", "derived", "assumed") for fate, _ in said.values())
+                fates[attribute.id] = _assumed(attribute, fate, text)
+        used = any(fate in ("taken", "derived", "assumed") for fate, _ in fates.values())
         component_entry = component_entry or (("taken", "") if used else ("ignored", UNUSED))
         location, name = self.location(part), part.name or ""
-        for item, (fate, text) in {"": component_entry, **said}.items():
+        for item, (fate, text) in {"": component_entry, **fates}.items():
             yield Line(location, part.id, part.type, name, item, fate, text, part.line)
 
 

@@ -12,29 +12,30 @@ from lineofaction.gearbox.rexs.values import entry_kind, kind_of, scalar_of, tex
 from lineofaction.gearbox.rexs.vocabulary import listed_unit
 
 ASSUMED, FORMER = "assumed", "former"
-"""Origin of an assumed attribute, and name of the field that stores the value of the file."""
+"""Origin of an assumed attribute, and name of its additional field with the value of the file."""
 
 _FORM = re.compile(r"(\d{1,18})\.([A-Za-z]\w*)=(.+)")
 
 _EXAMPLE = "COMPONENT.ATTRIBUTE=VALUE, as in 14.helix_angle_reference_diameter=-12"
 
 _ATTRIBUTE_FIELD = re.compile(r"component (\d+), (\w+)$")
-"""The end of a field that names an attribute of a component."""
+"""End of the field of a fault that names an attribute of a component."""
 
-_SEVERAL = re.compile(r"[,\s]+")
+_SEPARATOR = re.compile(r"[,\s]+")
+"""Separators of the numbers of an array."""
 
 
 @dataclass(frozen=True)
 class Assumption:
-    """A value of an attribute."""
+    """A value of an attribute that a caller assumes."""
 
     component: int
     """Id of the component."""
     attribute: str
     """Name of the attribute in the newest version of REXS."""
     value: str
-    """Value as XML writes it, in the unit of the file, else in the unit of REXS; commas separate numbers of
-    an array.
+    """Value as text. Its unit is that of the attribute in the file, or the unit of REXS if the file lacks the
+    attribute. Commas separate the numbers of an array.
     """
 
     @classmethod
@@ -50,7 +51,10 @@ class Assumption:
 
 
 def assumed(model: Model, assumptions: Iterable[Assumption]) -> Model:
-    """Return a model of the newest version with the assumed values, in load cases that state them too."""
+    """Return a model of the newest version of REXS with the assumed values.
+
+    A value replaces that of the component, and those of load cases that state the attribute.
+    """
     for assumption in assumptions:
         if model.component(assumption.component) is None:
             bound = "the id of a component of the file"
@@ -66,7 +70,7 @@ def attribute_text(attribute: Attribute) -> str:
 
 
 def mend(error: BadInput) -> str:
-    """Return the assumptions that replace the values at fault; empty: no component has one."""
+    """Return a sentence with the options that replace the values at fault; empty: no fault is of a value."""
     places = [_ATTRIBUTE_FIELD.search(fault.field) for fault in error.faults]
     known = [match for match in places if match is not None and listed_unit(match[2]) is not None]
     options = ", ".join(f"--assume {match[1]}.{match[2]}=VALUE" for match in known)
@@ -87,10 +91,10 @@ def _with(model: Model, assumption: Assumption) -> Model:
 
 
 def _attribute(assumption: Assumption, former: Attribute | None) -> Attribute:
-    """Return the attribute, of the file's kind and unit where it has them."""
+    """Return the assumed attribute, with the kind and the unit of the file's attribute if there is one."""
     name, field = assumption.attribute, f"assume, {assumption.component}.{assumption.attribute}"
     several = "," in assumption.value
-    texts = _SEVERAL.split(assumption.value.strip("[] ")) if several else [assumption.value]
+    texts = _SEPARATOR.split(assumption.value.strip("[] ")) if several else [assumption.value]
     kind = kind_of(name, texts) if former is None else entry_kind(former.kind)
     values = tuple(scalar_of(kind, text, field) for text in texts)
     before = "no value" if former is None or former.value is None else attribute_text(former)

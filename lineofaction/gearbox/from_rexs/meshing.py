@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,8 +16,12 @@ STAGES = ("cylindrical_stage",)
 OTHER_STAGES = ("bevel_stage", "worm_stage", "hypoid_stage", "beveloid_stage")
 _DATA = ("cylindrical_stage_gear_data", "stage_gear_data")
 
-_Sense = tuple[float, str]
-"""Sense of a gear or shaft about its u axis, 1 or -1, and the shaft whose speed determines it."""
+
+class _Sense(NamedTuple):
+    """Sense of a gear or shaft about its u axis, 1 or -1, and the shaft whose speed determines it."""
+
+    sense: float
+    shaft: str
 
 
 @dataclass(frozen=True)
@@ -91,8 +96,9 @@ def _senses(unit: GearUnit) -> dict[int, _Sense]:
     the senses relative to the carrier, if the sun turns faster than it.
     """
     shafts = unit.of_type("shaft")
-    known = {shaft.id: (sense, shaft.name) for shaft in shafts if (sense := _sense_of_speed(shaft))}
+    known = {shaft.id: _Sense(sense, shaft.name) for shaft in shafts if (sense := _sense_of_speed(shaft))}
     gears = unit.of_type("cylindrical_gear", "ring_gear")
+    # two components, and the sense of the second over that of the first
     links = [(shaft, gear, _aligned(shaft, gear)) for gear in gears if (shaft := gear.shaft) is not None]
     for stage in unit.of_type(*STAGES):
         if (pair := _stage_gears(stage)) is not None:
@@ -103,8 +109,7 @@ def _senses(unit: GearUnit) -> dict[int, _Sense]:
         for first, second, ratio in links:
             for source, target in ((first, second), (second, first)):
                 if source.id in known and target.id not in known:
-                    sense, shaft_name = known[source.id]
-                    known[target.id] = ratio * sense, shaft_name
+                    known[target.id] = _Sense(ratio * known[source.id].sense, known[source.id].shaft)
         if len(known) == count:
             return known
 
@@ -159,7 +164,7 @@ def _sense(stage: Part, driver: Part, torques: tuple[float, ...]) -> float:
     if signs:
         return signs.pop()
     if (known := _senses(stage.unit).get(driver.id)) is not None:
-        stage.say("sense_of_rotation", "derived", f"from the speed of {known[1]}")
-        return known[0]
+        stage.say("sense_of_rotation", "derived", f"from the speed of {known.shaft}")
+        return known.sense
     stage.say("sense_of_rotation", "defaulted", f"{driver.name} turns about +u: the file gives no speed")
     return 1.0

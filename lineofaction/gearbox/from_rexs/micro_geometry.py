@@ -17,13 +17,15 @@ from lineofaction.gearbox.units import MM, UM
 
 Table = dict[str, Any]
 
+_LEAST_CHAMFER = 1e-9
+"""Height of a tip chamfer, m, below which it is the rounding of diameters."""
+
 
 def micro_geometry(gear: Toothing, loaded: LoadedFlank) -> Table:
     """Return the fields of the loaded flank's modifications, empty for an involute helicoid.
 
-    What has no field, or a field that another modification takes, is summed on the case's `flank_grid`; the
-    account has the grid's largest difference.
-    `gear` is without modifications.
+    Modifications without a field of the case, or whose field another one has already, are summed on the
+    case's `flank_grid`; the account states the grid's largest difference. `gear` is without modifications.
     """
     if loaded.flank is None:
         return {}
@@ -37,7 +39,7 @@ def micro_geometry(gear: Toothing, loaded: LoadedFlank) -> Table:
         else:
             rest.append(entry)
     if rest:
-        for count in COUNTS:
+        for count in COUNTS:  # finer until the difference is allowed; else the finest is taken
             raster = raster_of(helicoid, rest, count)
             if raster.difference <= ALLOWED_DIFFERENCE:
                 break
@@ -49,7 +51,7 @@ def micro_geometry(gear: Toothing, loaded: LoadedFlank) -> Table:
 
 
 def _modifications(helicoid: PlainFlank, flank: Part) -> Iterator[Modification]:
-    """Yield the modifications of a flank; state which are left aside, or read otherwise than written."""
+    """Yield the modifications of a flank; the account gets those that are ignored or read with a change."""
     for part in (*flank.referenced, *flank.children()):
         if part.type in UNREAD:
             part.say("", *UNREAD[part.type])
@@ -65,11 +67,15 @@ def _modifications(helicoid: PlainFlank, flank: Part) -> Iterator[Modification]:
 
 
 def _at_both_ends(helicoid: PlainFlank, modifications: Sequence[Modification]) -> list[Modification]:
-    """Return the modifications with end reliefs that are alike at both faces as one."""
+    """Return the modifications; two equal end reliefs, one at each face, become one of both ends.
+
+    They stay two if they are longer than half the face, where they overlap.
+    """
     ends = [entry for entry in modifications if entry.part.type.startswith("end_relief_")]
     plain = [{_both(name): value for name, value in entry.fields.items()} for entry in ends]
     alike = len(ends) == 2 and ends[0].part.type != ends[1].part.type and plain[0] == plain[1]
-    if not alike or not plain[0] or plain[0]["end_relief_length_mm"] > 0.5e3 * helicoid.width:
+    half_face_mm = 0.5e3 * helicoid.width
+    if not alike or not plain[0] or plain[0]["end_relief_length_mm"] > half_face_mm:
         return list(modifications)
     first, second = ends
     both = replace(
@@ -93,7 +99,7 @@ def _tip_edge(helicoid: PlainFlank, flank: Part) -> Table:
     if form:
         height = helicoid.towards_tip * (helicoid.gear.tip_radius - 0.5 * abs(form))
         gear.say("tip_form_diameter", "derived", f"tip_chamfer_mm {height / MM:.6g} = (d_a - d_Fa) / 2")
-    if not height or height <= 1e-9:
+    if not height or height <= _LEAST_CHAMFER:
         return {}
     flank.say("tip_chamfer_angle", "defaulted", "30 deg to the flank")
     return {"tip_chamfer_mm": rounded(height / MM)}

@@ -1,4 +1,8 @@
-"""A gear unit opened from a REXS file: its cases, a scene, load cases and the account of the import."""
+"""A gear unit opened from a REXS file: its cases, a scene, load cases and the account of the import.
+
+The account states the fate of each component and attribute of the file ("taken", "derived", "defaulted",
+"assumed", "refused") with a reason. The operating points of the file become load cases of the scene.
+"""
 
 from __future__ import annotations
 
@@ -51,7 +55,7 @@ class OpenedUnit:
     """A gear unit as cases and a scene."""
 
     cases: tuple[StageCase, ...]
-    """Cases of the cylindrical stages, of equal stages the first."""
+    """Cases of the cylindrical stages; equal stages have one case, that of the first."""
     scene: SceneInput | None
     """Scene of the whole unit; its meshes name the case files ``NAME.toml`` of `cases`. None: the file lacks
     what a scene needs, and the account says why.
@@ -63,7 +67,7 @@ class OpenedUnit:
     changes: tuple[Change, ...]
     """Changes by the upgrade to the newest version of REXS."""
     parts: SceneParts = field(default_factory=SceneParts)
-    """The components that the parts of the scene are; none without a scene."""
+    """Components of the file by the parts of the scene that they became; empty without a scene."""
 
     @property
     def omitted(self) -> tuple[str, ...]:
@@ -72,7 +76,7 @@ class OpenedUnit:
 
     @property
     def headline(self) -> str:
-        """Return all that is left out on one line, with its attributes in brackets; empty for nothing."""
+        """Return one line that names all components left out, with attributes in brackets; empty: none."""
         parts: dict[str, list[str]] = {}
         for line in refused_lines(self.lines):
             parts.setdefault(line_name(line), []).append(line.item)
@@ -97,7 +101,7 @@ class OpenedUnit:
     ) -> Iterator[str]:
         """Yield the lines of the account that an engineer reads, in order of the fates.
 
-        Components of one type of which the same is said share a line.
+        Components of one type with the same fate, attribute and reason share a line.
         """
         groups: dict[tuple[str, str, str, str], list[Line]] = {}
         for line in self.lines:
@@ -114,14 +118,14 @@ class OpenedUnit:
         """Return the cases and the scene of a gear unit.
 
         The scene runs at the load case of the largest share of the time. Raises `BadInput`: a value has the
-        wrong type or unit, or a place, a section, the version or an assumption is none.
+        wrong type or unit, or a placement, a section, the version or an assumption is not valid.
 
         Parameters
         ----------
         document : Document
             Document in any version of REXS.
         assumptions : iterable of Assumption
-            Values over those of the file.
+            Values that replace those of the file, or stand in for missing ones.
         """
         newest, changes = upgrade(document.model)
         model = assumed(newest, assumptions)
@@ -167,24 +171,25 @@ def _flows(layout: Layout) -> list[PowerFlow]:
 def _torques(layout: Layout, flows: Sequence[PowerFlow]) -> Mapping[int, tuple[float, ...]]:
     """Return the torques of the shaft on the driving gear about its u, N m, by stage.
 
-    Of all load cases whose flanks are those of the first.
+    They are those of the load cases that load the same flanks as the first one.
     """
     torques: dict[int, tuple[float, ...]] = {}
     for stage in layout.stages if flows else ():
         number = flows[0].driver(stage)
         sense = layout.sense(stage.shafts[number].id)
         values = [-sense * flow.on_gear(stage, number) for flow in flows]
-        same = {float(f"{value:.{_DIGITS}g}") for value in values if value * values[0] > 0.0}
-        if same:
-            torques[stage.stage.id] = tuple(sorted(same, key=abs))
-        if len(same) < len({float(f"{value:.{_DIGITS}g}") for value in values}):
+        rounded = {float(f"{value:.{_DIGITS}g}") for value in values}
+        same_flanks = {value for value in rounded if value * values[0] > 0.0}
+        if same_flanks:
+            torques[stage.stage.id] = tuple(sorted(same_flanks, key=abs))
+        if len(same_flanks) < len(rounded):
             text = "load cases on the other flanks are not in the case: they are load cases of the scene"
             stage.stage.say("torques", "derived", text)
     return torques
 
 
 def _scene(layout: Layout, table: SceneTable) -> SceneInput | None:
-    """Return the validated scene with its omissions; None: it lacks parts, named in the account."""
+    """Return the validated scene with its omissions; None: it is not valid, and the account says why."""
     omitted = refusal_texts(layout.unit.account.lines())
     try:
         return validated(SceneInput, table.table | ({"left_out": list(omitted)} if omitted else {}))
@@ -194,12 +199,13 @@ def _scene(layout: Layout, table: SceneTable) -> SceneInput | None:
 
 
 def _load_cases(flows: Sequence[PowerFlow], table: SceneTable | None) -> tuple[LoadCase, ...]:
-    """Return the load cases of a scene, each with its forces that are others than the scene's."""
+    """Return the load cases of a scene, each with the forces that differ from those of the scene."""
     if table is None or table.leader is None:
         return ()
     cases = []
     for flow in flows:
-        both = [(force.entry(flow.point), force.entry(flows[0].point)) for force in table.forces]
-        forces = tuple(case_force for case_force, of_scene in both if case_force != of_scene)
+        # the scene has the forces of the first flow
+        pairs = [(force.entry(flow.point), force.entry(flows[0].point)) for force in table.forces]
+        forces = tuple(case_force for case_force, scene_force in pairs if case_force != scene_force)
         cases.append(LoadCase.of(flow, table.leader, forces))
     return tuple(sorted(cases, key=lambda case: case.number))

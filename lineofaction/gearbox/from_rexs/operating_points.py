@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit, Part
 
@@ -20,10 +21,13 @@ FORCES: Mapping[str, str] = {
     "torque_around_v_axis": "moment about v of the shaft, N m",
     "torque_around_w_axis": "moment about w of the shaft, N m",
 }
-"""Force and moment of an external load, in words; the torque about u is none of them, and stays 0."""
+"""Attributes of the force and moment of an external load, with their meaning for the account.
+
+The torque about u has the empty meaning: it is read on its own (`torques`), and its entry here stays 0.
+"""
 
 LARGEST = 1e9
-"""Largest force or moment of a scene, N or N m."""
+"""Largest force or moment that a scene takes, N or N m."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +59,7 @@ class OperatingPoint:
             for part in (part for case in spectrum.cases for part in case.components):
                 unit.account.say(part, "", "refused", f"load spectrum {number}; the first is taken")
         if not cases:
-            return (_point("nominal", (1, 1.0), unit_parts, ()),)
+            return (_point(_Entry("nominal", 1, 1.0), unit_parts, ()),)
         shares = [_share(case) for case in cases]
         total = sum(share for share in shares if share is not None)
         if total > 0.0 and None not in shares:
@@ -65,7 +69,17 @@ class OperatingPoint:
             for root in unit.of_type("gear_unit"):
                 root.say(_SHARES[0], "defaulted", "equal shares: not every load case states one")
         rows = enumerate(zip(cases, parts, strict=True), 1)
-        return tuple(_point(f"load case {n}", (n, share), unit_parts, case) for n, (case, share) in rows)
+        return tuple(
+            _point(_Entry(f"load case {n}", n, share), unit_parts, case) for n, (case, share) in rows
+        )
+
+
+class _Entry(NamedTuple):
+    """Name, number and share of the time of an operating point in the spectrum."""
+
+    name: str
+    number: int
+    share: float
 
 
 def _share(case: tuple[Part, ...]) -> float | None:
@@ -77,11 +91,9 @@ def _share(case: tuple[Part, ...]) -> float | None:
     return None
 
 
-def _point(
-    name: str, number_and_share: tuple[int, float], unit_parts: tuple[Part, ...], case: tuple[Part, ...]
-) -> OperatingPoint:
+def _point(entry: _Entry, unit_parts: tuple[Part, ...], case: tuple[Part, ...]) -> OperatingPoint:
     """Return an operating point; values of a load case replace values of the component itself."""
-    parts = [*unit_parts, *case]
+    parts = [*unit_parts, *case]  # later entries of a part's id replace earlier ones
     loads = [part for part in parts if part.type == "external_load"]
     speeds = {
         part.id: speed
@@ -94,7 +106,7 @@ def _point(
     for part in loads:
         _enter_torque(part, torques, powers)
         _enter_forces(part, forces)
-    return OperatingPoint(name, *number_and_share, speeds, torques, powers, forces)
+    return OperatingPoint(*entry, speeds, torques, powers, forces)
 
 
 def _enter_forces(part: Part, forces: dict[int, tuple[float, ...]]) -> None:
@@ -107,7 +119,7 @@ def _enter_forces(part: Part, forces: dict[int, tuple[float, ...]]) -> None:
             continue
         if not abs(value) <= LARGEST:
             raise part.refusal(item, value, f"from {-LARGEST:g} to {LARGEST:g} N or N m")
-        if value == 0.0 == wrench[index]:
+        if value == 0.0 == wrench[index]:  # a zero that replaces nothing
             part.say(item, "ignored", "0")
         wrench[index], has_value = value, True
     if has_value:
@@ -115,7 +127,10 @@ def _enter_forces(part: Part, forces: dict[int, tuple[float, ...]]) -> None:
 
 
 def _enter_torque(part: Part, torques: dict[int, float | None], powers: dict[int, float]) -> None:
-    """Enter the torque of a load, or its power; one that transmits torque without a value is open."""
+    """Enter the torque of a load in N m, or its power in W.
+
+    A load that transmits torque but states neither has the torque None, which follows from the other loads.
+    """
     torque = part.number(_TORQUE, "torque about u from outside, N m")
     power = part.number(_POWER, "power into the unit, kW")
     if torque is not None:

@@ -1,4 +1,8 @@
-"""Placement of components: points and axes u, v, w, composed over the components they refer to."""
+"""Placement of components: points and axes u, v, w in the frame of the model.
+
+A file places a component in the frame of another one, its reference component, up to the component that is
+placed in the frame of the model: the root, often the gear unit. u is the axis of rotation.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +17,9 @@ from lineofaction.gearbox.from_rexs.gear_unit import Part
 PARALLEL = 1e-6
 """Sine of the angle up to which two directions are the same."""
 _MAX_REFERENCES = 100
+"""Longest chain of reference components."""
+_NEARLY_ALONG_Z = 0.9
+"""z of the unit vector u from which on the default of w is y, as u is too close to z."""
 _REFERENCE = "reference_component_for_position"
 
 
@@ -31,7 +38,7 @@ class Placement:
         return np.asarray(self.axes[0])
 
     def along(self, point: FloatArray) -> float:
-        """Return u of a point, m."""
+        """Return the coordinate of a point along u, m."""
         return float(self.u @ (point - self.origin))
 
     def within(self, outer: Placement) -> Placement:
@@ -40,21 +47,23 @@ class Placement:
 
     @staticmethod
     def of(part: Part, inner: tuple[int, ...] = ()) -> Placement | None:
-        """Return the placement of a component, None: the file states none; `inner` as of `frame_of`."""
+        """Return the placement of a component, None: the file states none; `inner` is that of `frame_of`."""
         origin = _vector(part, "support_vector", "place")
         return None if origin is None else _in_reference(part, origin, inner)
 
 
 FIXED = Placement(np.zeros(3), np.eye(3))
+"""Frame of the model."""
 
 
 def frame_of(part: Part, inner: tuple[int, ...] = ()) -> Placement:
     """Return the placement of a component by the file, else by the component that carries it.
 
-    On a shaft it stands at its u coordinate, along the shaft's axes; without one it has the origin of the
-    component that its place refers to.
-    `inner` are the components whose places refer to this one, the innermost first. Raises `BadInput` as
-    `Placement.of`.
+    A component on a shaft has the axes of the shaft, at its u coordinate. A component without shaft has the
+    origin of its reference component.
+
+    `inner` are the ids of the components whose placement needs this one, the innermost first: a component
+    among them refers to itself. Raises `BadInput`: it does, or an axis or a vector is not valid.
     """
     if part.id in inner or len(inner) > _MAX_REFERENCES:
         bound = "a component that is not placed by this one itself"
@@ -70,9 +79,10 @@ def frame_of(part: Part, inner: tuple[int, ...] = ()) -> Placement:
 
 
 def u_on_shaft(part: Part) -> float | None:
-    """Return u of a component on its shaft, m: by the places of both, else by its coordinate.
+    """Return the coordinate of a component along its shaft, m.
 
-    One writer gives the begin of a gear as its coordinate: its place, that of its middle, counts.
+    It follows from the placements of both, else from the stated coordinate. Placements come first because one
+    program writes the coordinate of the end of a gear, but the placement of its middle.
     """
     shaft, placement = part.shaft, Placement.of(part)
     base = None if shaft is None else Placement.of(shaft)
@@ -81,8 +91,9 @@ def u_on_shaft(part: Part) -> float | None:
 
 
 def _in_reference(part: Part, origin: FloatArray, inner: tuple[int, ...]) -> Placement:
+    """Return the placement of a component by an origin, m, and its axes in the frame of its reference."""
     u = _unit(part, "u_axis_vector", np.array([1.0, 0.0, 0.0]))
-    axis = _unit(part, "w_axis_vector", np.eye(3)[2 if abs(u[2]) < 0.9 else 1])
+    axis = _unit(part, "w_axis_vector", np.eye(3)[2 if abs(u[2]) < _NEARLY_ALONG_Z else 1])
     across = axis - (axis @ u) * u
     length = float(np.linalg.norm(across))
     if length < PARALLEL:
@@ -93,7 +104,7 @@ def _in_reference(part: Part, origin: FloatArray, inner: tuple[int, ...]) -> Pla
 
 
 def _reference(part: Part) -> Part | None:
-    """Return the component that a place refers to, None for one that is placed by itself: the root."""
+    """Return the reference component; None for the root, which has none or refers to itself."""
     attribute = part.attribute(_REFERENCE)
     if attribute is None or attribute.kind != "reference_component" or not isinstance(attribute.value, int):
         return None
@@ -102,6 +113,7 @@ def _reference(part: Part) -> Part | None:
 
 
 def _unit(part: Part, item: str, usual: FloatArray) -> FloatArray:
+    """Return the unit vector of an attribute, by default `usual`."""
     vector = _vector(part, item, "axis")
     if vector is None:
         if part.value(item) is None:

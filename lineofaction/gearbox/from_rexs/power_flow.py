@@ -1,4 +1,9 @@
-"""The flow of power through a gear unit at an operating point: speeds, torques, and which gear drives."""
+"""The flow of power through a gear unit at an operating point: speeds, torques, and which gear drives.
+
+Components, external loads, shafts and rotors are named by the integer ids of the file. A rotor is a set of
+shafts that turn as one. A train is all stages and couplings; it has an open end where a rotor of a single
+stage has no external load. Speeds and torques are about z.
+"""
 
 from __future__ import annotations
 
@@ -16,6 +21,8 @@ from lineofaction.gearbox.from_rexs.operating_points import OperatingPoint
 
 DEFAULT_SPEED = 1000.0 * math.pi / 30.0
 """Speed of the first loaded shaft if the file states no speed, rad/s."""
+
+# remarks of the account of an import
 NO_SPEED = "no speed is stated: the first loaded shaft turns at 1000/min"
 UNBALANCED = "the torques stated do not balance: the first is taken, the others follow from it"
 REPLACED = "it does not balance the first torque stated, from which the scene's follows"
@@ -32,21 +39,21 @@ class PowerFlow:
     speeds: FloatArray
     """Speeds of the rotors, rad/s. Shape (rotors,)."""
     loads: Mapping[int, float]
-    """Torque from outside by external load, N m; by shaft where the train's open end has no load that states
-    or leaves open its torque.
+    """Torque from outside, N m, by the id of the external load. At an open end of the train without external
+    load it is by the id of a shaft.
     """
     flow: Flow
     """Torques of the stages on the rotors."""
     remarks: tuple[str, ...]
     """Sentences about assumed values."""
     joined: frozenset[int]
-    """The rotors that the train joins to a speed that is known."""
+    """Rotors that stages and couplings join to a rotor of known speed."""
     replaced: tuple[int, ...] = ()
     """Loads whose stated torques do not balance the first load. The torques used for them follow from the
     balance."""
 
     def moves(self, stage: GearStage) -> bool:
-        """Return whether the train joins a stage to a speed that is known."""
+        """Return whether all rotors of a stage are joined to a rotor of known speed."""
         return all(self.layout.rotor(shaft.id) in self.joined for shaft in stage.shafts)
 
     def speed(self, rotor: int) -> float:
@@ -63,6 +70,7 @@ class PowerFlow:
         """Return the torque about z of the stage on its gear 1 (0) or 2 (1), N m."""
         row = self.train.stages.index(stage)
         column = self.train.rotors.index(self.layout.rotor(stage.shafts[0].id))
+        # the rotor may also be the carrier of the stage: the part of the torque by the teeth alone
         share = stage.teeth[0] / float(self.train.rows[row, column])
         first = share * float(self.flow.on_rotor[row, column])
         ratio = stage.teeth[1] / stage.teeth[0] * (-1.0 if stage.internal else 1.0)
@@ -71,7 +79,8 @@ class PowerFlow:
     def driver(self, stage: GearStage) -> int:
         """Return which gear drives: 0 for gear 1, 1 for gear 2.
 
-        The stage does negative work on it, seen from the carrier. Without load or speed gear 1 is said to.
+        The stage does negative work on the driving gear, seen from the carrier. Without load or speed it is
+        gear 1.
         """
         return 1 if self.on_gear(stage, 0) * self.relative_speed(stage, 0) > 0.0 else 0
 
@@ -87,11 +96,11 @@ class PowerFlow:
             return f"{speeds_text} contradict the ratios of the stages, or leave some open"
         known = problem.known(speeds)
         for loads, remark in problem.attempts(known):
-            opened = [load for load in problem.owner if load not in loads]
-            flow = problem.balanced(loads, opened)
+            open_loads = [load for load in problem.owner if load not in loads]
+            flow = problem.balanced(loads, open_loads)
             if flow is not None:
-                torques = loads | {load: flow.outside[problem.rotor(load)] for load in opened}
-                torques |= problem.at_open_ends(flow, opened)
+                torques = loads | {load: flow.outside[problem.rotor(load)] for load in open_loads}
+                torques |= problem.at_open_ends(flow, open_loads)
                 shared = [SHARED] if flow.is_shared else []
                 remarks = (*problem.remarks, *([remark] if remark else ()), *shared)
                 replaced = tuple(load for load in known if load not in loads)
@@ -101,7 +110,10 @@ class PowerFlow:
 
 
 class _Problem:
-    """Speeds and torques of an operating point by rotor, about z."""
+    """Speeds and torques that the file states for an operating point, by rotor.
+
+    `owner` has the shaft of each external load, without loads on rotors that nothing joins to a known speed.
+    """
 
     def __init__(self, point: OperatingPoint, layout: Layout, train: Train) -> None:
         self._point, self._layout, self._train = point, layout, train
@@ -118,8 +130,8 @@ class _Problem:
     def default_speed(self) -> dict[int, float]:
         """The speed of the first loaded shaft, in the sense of its torque."""
         load, shaft = next(iter(self.owner.items()))
-        way = math.copysign(1.0, self._point.torques[load] or 1.0) * self._layout.sense(shaft)
-        return {self._layout.rotor(shaft): way * DEFAULT_SPEED}
+        sense = math.copysign(1.0, self._point.torques[load] or 1.0) * self._layout.sense(shaft)
+        return {self._layout.rotor(shaft): sense * DEFAULT_SPEED}
 
     def rotor(self, load: int) -> int:
         """Return the rotor that a load acts on."""
@@ -138,32 +150,40 @@ class _Problem:
         return known
 
     def attempts(self, known: dict[int, float]) -> Iterator[tuple[dict[int, float], str]]:
-        """Yield the torques to start from: all that are stated, else the first alone."""
+        """Yield the known torques to balance, with a remark: all of them, then the first alone."""
         yield known, ""
         if len(known) > 1:
             first = next(iter(known))
             yield {first: known[first]}, UNBALANCED
 
-    def balanced(self, loads: Mapping[int, float], opened: list[int]) -> Flow | None:
-        """Return the torques that balance the known ones; with no open load the train's other end has one."""
+    def balanced(self, loads: Mapping[int, float], open_loads: list[int]) -> Flow | None:
+        """Return the torques of stages and open loads that balance the known `loads`; None: there are none.
+
+        If no load is open and the known ones do not balance, the one open end of the train has a torque.
+        """
         torques: dict[int, float] = {}
         for load, torque in loads.items():
             torques[self.rotor(load)] = torques.get(self.rotor(load), 0.0) + torque
-        rotors = list(dict.fromkeys(map(self.rotor, opened)))
-        if len(rotors) < len(opened):
+        rotors = list(dict.fromkeys(map(self.rotor, open_loads)))
+        if len(rotors) < len(open_loads):  # two open loads of one rotor: statics does not tell them apart
             return None
-        if not opened and any(torques.values()) and (flow := self._train.forces(torques, ())) is None:
-            ends = self._ends(set(torques))
-            return self._train.forces(torques, ends) if len(ends) == 1 else flow
-        return self._train.forces(torques, rotors)
+        flow = self._train.forces(torques, rotors)
+        if flow is None and not open_loads and any(torques.values()):
+            ends = self._open_ends(set(torques))
+            return self._train.forces(torques, ends) if len(ends) == 1 else None
+        return flow
 
-    def at_open_ends(self, flow: Flow, opened: list[int]) -> dict[int, float]:
-        """Return the torques of the train's open end, by its load if it has one, else by the shaft."""
-        loaded = set(map(self.rotor, opened))
-        return {self._at(rotor): torque for rotor, torque in flow.outside.items() if rotor not in loaded}
+    def at_open_ends(self, flow: Flow, open_loads: list[int]) -> dict[int, float]:
+        """Return the torques of a balance on rotors without an open load, by external load or shaft."""
+        loaded = set(map(self.rotor, open_loads))
+        return {
+            self._load_or_shaft(rotor): torque
+            for rotor, torque in flow.outside.items()
+            if rotor not in loaded
+        }
 
-    def _at(self, rotor: int) -> int:
-        """Return the external load of a rotor that states no torque, else the rotor's shaft."""
+    def _load_or_shaft(self, rotor: int) -> int:
+        """Return the external load of a rotor that the operating point does not name, else its shaft."""
         unit = self._layout.unit
         for load in unit.of_type("external_load"):
             owner = load.shaft
@@ -171,8 +191,8 @@ class _Problem:
                 return load.id
         return next(part.id for part in unit.of_type("shaft") if self._layout.rotor(part.id) == rotor)
 
-    def _ends(self, loaded: set[int]) -> list[int]:
-        """Return the rotors of a single stage that no load acts on and nothing holds."""
+    def _open_ends(self, loaded: set[int]) -> list[int]:
+        """Return the rotors of one stage or coupling that are neither `loaded` nor at rest."""
         counts = np.count_nonzero(self._train.rows, axis=0)
         bound = loaded | {self._train.rotors[column] for column in self._train.grounded}
         return [

@@ -1,4 +1,8 @@
-"""Tip and root relief, profile crowning and slope (ISO 21771-1, clause 7.2)."""
+"""Tip and root relief, profile crowning and slope (ISO 21771-1, clause 7.2).
+
+A place on the profile is its roll length, m. The evaluation reference is the place where a file states the
+amount of a modification; it need not be the end of the involute.
+"""
 
 from __future__ import annotations
 
@@ -16,20 +20,27 @@ from lineofaction.gearbox.units import MM, UM
 
 @dataclass(frozen=True)
 class Growth:
-    """A relief along roll lengths or face coordinates (m): from its start to its depth (m) where stated."""
+    """A relief that grows by a law along roll lengths or face coordinates."""
 
     depth: float
+    """Depth at `reference`, m."""
     shape: str
+    """Name of the law, a key of `LAWS`."""
     start: float
     reference: float
+    """`start`, `reference`: Coordinates, m, where the relief begins and where its depth is stated."""
 
     def at(self, coordinate: FloatArray) -> FloatArray:
-        """Return the depths (m) at places (m) along the flank."""
+        """Return the depths (m) at coordinates (m) along the flank; 0 before the start."""
         fraction = np.maximum((coordinate - self.start) / (self.reference - self.start), 0.0)
         return self.depth * np.asarray(LAWS[self.shape](fraction))
 
     def fields(self, flank: PlainFlank, name: str, end: float, length_mm: float) -> dict[str, Any]:
-        """Return the fields of a relief that runs to an end of the flank, none where its law has no place."""
+        """Return the fields of a case for a relief that runs to an `end` of the flank, m.
+
+        There are none where a case cannot state it: the depth is not stated at the end, and the shape of the
+        law would change with the place where it is.
+        """
         if self.shape not in SCALABLE and not flank.same(self.reference, end):
             return {}
         at_end = float(self.at(np.asarray(end)))
@@ -41,9 +52,10 @@ class Growth:
 
 
 def profile_relief(flank: PlainFlank, part: Part) -> Modification:
-    """Return a tip or root relief by the type of its component: it runs to one end of the involute.
+    """Return the tip or root relief of a component; the type of the component says which of the two.
 
-    It starts at its diameter, or its length before the end.
+    It runs to one end of the involute. It starts at the diameter that the component states, else at the
+    stated length before that end.
     """
     name = part.type
     end = flank.tip if name == "tip_relief" else flank.root
@@ -70,7 +82,7 @@ def profile_relief(flank: PlainFlank, part: Part) -> Modification:
 
 
 def _transition(flank: PlainFlank, part: Part, growth: Growth) -> tuple[float, float] | None:
-    """Return the fractions between which the slope of a linear relief grows, None without a transition."""
+    """Return the fractions of its length between which the slope of a linear relief grows; None: nowhere."""
     if part.text("specify_tangential_transition", "slope grows where the relief starts") != "True":
         return None
     first, last = (
@@ -91,17 +103,21 @@ def _transition(flank: PlainFlank, part: Part, growth: Growth) -> tuple[float, f
 def both_amounts(
     part: Part, items: tuple[str, str], field: str, bound: str, text: str
 ) -> tuple[float, float]:
-    """Return the amounts of a crowning on both sides, one that is left out as on the other."""
+    """Return the amounts of a crowning on both sides, m; an amount that is left out equals the other one.
+
+    `field`, `bound` and `text` word the account of the file: the field of the case, the rule that a file
+    without both amounts breaks, and the remark on an amount that is left out.
+    """
     amounts = [part.number(item, field) for item in items]
     if amounts == [None, None]:
         raise part.refusal(items[0], None, bound)
     for item, value in zip(items, amounts, strict=True):
         if value is None:
             part.say(item, "defaulted", text)
-    first, second = (
-        value if value is not None else other or 0.0 for value, other in (amounts, amounts[::-1])
-    )
-    return first, second
+    first, second = amounts
+    if first is None:
+        return second or 0.0, second or 0.0  # never None here; `or` says so to the type checker
+    return first, first if second is None else second
 
 
 def profile_crowning(flank: PlainFlank, part: Part) -> Modification:
@@ -128,6 +144,7 @@ def profile_crowning(flank: PlainFlank, part: Part) -> Modification:
         sides = zip(("tip", "root"), (flank.tip, flank.root), ends, amounts, strict=True)
         for side, end, reference, amount in sides:
             name = f"profile_crowning_{side}"
+            # the parabola through the stated amount, evaluated at the end of the involute
             fields[f"{name}_um"] = rounded(amount * ((end - highest) / (reference - highest)) ** 2 / UM)
             fields[f"{name}_length_mm"] = rounded(flank.radial(highest, end))
     return Modification(

@@ -37,13 +37,16 @@ class SceneTable:
     leader: AppliedTorque | None
     """Torque that drives the scene and is named first."""
     forces: tuple[SceneForce, ...]
-    """The external loads that its forces are."""
+    """External loads of the file, in the order of the scene's forces."""
     parts: SceneParts
-    """The components that its parts are."""
+    """Components of the file from which the scene's parts are made."""
 
     @staticmethod
     def of(layout: Layout, flows: Sequence[PowerFlow], cases: Sequence[StageCase]) -> SceneTable:
-        """Return the scene at the operating point of the first flow; stages without a case are cut off."""
+        """Return the scene at the operating point of the first flow.
+
+        Stages without a case, without a computed layout or without power have no mesh; torques replace them.
+        """
         flow = flows[0]
         by_stage, names = _by_stage(cases), Names()
         known = [stage for stage in layout.stages if stage.stage.id in by_stage]
@@ -76,15 +79,15 @@ class SceneTable:
             for stage, mesh in zip(shafts.stages, meshes, strict=True)
         ]
         return SceneTable(
-            {key: value for key, value in table.items() if value != []},
-            motion.drivers[0] if motion.drivers else None,
-            forces,
-            scene_parts(layout, flow, shafts, bearings.seats, named),
+            table={key: value for key, value in table.items() if value != []},
+            leader=motion.drivers[0] if motion.drivers else None,
+            forces=forces,
+            parts=scene_parts(layout, flow, shafts, bearings.seats, named),
         )
 
 
 def _by_stage(cases: Sequence[StageCase]) -> dict[int, StageCase]:
-    """Return the case of each stage, of equal ones too."""
+    """Return the case of each stage by the stage's id; equal stages share one case."""
     return {stage: case for case in cases for stage in (case.stage, *case.equal)}
 
 
@@ -127,7 +130,7 @@ def _gravity(layout: Layout) -> list[float]:
             break
         placement = Placement.of(part) or FIXED
         turned = layout.axes.rotation(placement) @ vector / length * (size or STANDARD_GRAVITY)
-        return [float(value) + 0.0 for value in np.round(turned, 12)]
+        return [float(value) + 0.0 for value in np.round(turned, 12)]  # no rounding of a rotation, no -0
     return [0.0, 0.0, 0.0]
 
 
@@ -139,14 +142,14 @@ def _planets(layout: Layout, names: dict[int, str]) -> list[dict[str, Any]]:
         if first.id not in names:
             planets.stage.say("", "refused", "no stage of the scene has its planets")
             continue
-        places = [layout.shafts[p.id].origin[:2] for p in planets.planets if p.id in layout.shafts]
+        positions = [layout.shafts[p.id].origin[:2] for p in planets.planets if p.id in layout.shafts]
         central = next((layout.shafts[c.id] for c in planets.central if c.id in layout.shafts), None)
-        middle = np.mean(places, axis=0) if central is None else central.origin[:2]
-        offsets = [position - middle for position in places]
+        middle = np.mean(positions, axis=0) if central is None else central.origin[:2]
+        offsets = [position - middle for position in positions]
         angles = [math.degrees(math.atan2(y, x)) for x, y in offsets]
         turned = sorted((angle - angles[0]) % 360.0 for angle in angles)
-        table: dict[str, Any] = {"planet": names[first.id], "number": len(places)}
-        equal = [index * 360.0 / len(places) for index in range(len(places))]
+        table: dict[str, Any] = {"planet": names[first.id], "number": len(positions)}
+        equal = [index * 360.0 / len(positions) for index in range(len(positions))]
         if not np.allclose(turned, equal, atol=1e-6):
             table["angles_deg"] = turned
         for planet in planets.planets[1:]:

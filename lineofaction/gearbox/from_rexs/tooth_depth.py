@@ -1,4 +1,9 @@
-"""Tip and root of a gear: from its diameters, its tool, or the basic rack (ISO 53, ISO 21771-1)."""
+"""Tip and root of a gear: from its diameters, its tool, or the basic rack (ISO 53, ISO 21771-1).
+
+Symbols: d reference, d_a tip and d_f root diameter, m_n normal module, x profile shift and k tip alteration
+coefficient, h_aP addendum and h_fP dedendum of the basic rack in normal modules, x_E the x at which the gear
+is cut, A_s the thickness allowance. The sign of a gear is -1 for a ring gear.
+"""
 
 from __future__ import annotations
 
@@ -12,9 +17,14 @@ from lineofaction.gearbox.from_rexs.tooth_thickness import thickness_allowance
 from lineofaction.gearbox.from_rexs.toothing import ToothingData
 from lineofaction.gearbox.units import MM
 
-_ADDENDUM, _DEDENDUM, _RADIUS, _CUTTER_RADIUS = 1.0, 1.25, 0.38, 0.2
+_ADDENDUM, _DEDENDUM, _RADIUS = 1.0, 1.25, 0.38
+"""h_aP, h_fP and root radius, normal modules, where the file states none: basic rack A of ISO 53."""
+
+_CUTTER_RADIUS = 0.2
+"""Tip rounding of a ring gear's pinion cutter, normal modules, where the file states none."""
 
 _ADDENDUM_BOUND, _DEDENDUM_BOUND = (0.1, 3.0), (0.1, 4.0)
+"""h_aP and h_fP of real gears: diameters that imply others are errors of the file."""
 
 _TOOLS = ("rack_shaped_tool", "cutter_wheel_tool", "profile_tool")
 
@@ -40,7 +50,11 @@ class ToothDepth:
 
     @classmethod
     def of(cls, gear: ToothingData, shift: float, tip_alteration: float) -> ToothDepth:
-        """Return tip and root of a gear: x stated or derived, k <= 0 of a tip that the file leaves out."""
+        """Return tip and root of a gear.
+
+        `shift`: x, stated by the file or derived. `tip_alteration`: k, at most 0, of a tip diameter that the
+        file does not state.
+        """
         tool, tip = _tool(gear.loaded), _tip_of_file(gear, shift)
         allowance = thickness_allowance(gear)
         root = _generated_root(gear, tool, shift, allowance)
@@ -62,7 +76,7 @@ class ToothDepth:
 
 
 def _tip_of_file(gear: ToothingData, shift: float) -> float | None:
-    """Return the tip diameter of the file in m, None if it gives none that a tip can have."""
+    """Return the tip diameter of the file in m, None if it states none or one that no tip can have."""
     value = gear.part.number("tip_diameter", "tip_diameter_mm")
     if value is None:
         return None

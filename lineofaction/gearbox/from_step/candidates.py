@@ -46,11 +46,11 @@ def _once(points: FloatArray) -> FloatArray:
 
 def _directions(bores: Sequence[Bore]) -> Iterator[FloatArray]:
     """Yield the directions of bores, each once."""
-    seen: list[FloatArray] = []
+    directions: list[FloatArray] = []
     for bore in bores:
-        if not any(_along(bore, other) for other in seen):
-            seen.append(np.array(bore.axis))
-            yield seen[-1]
+        if not any(_along(bore, other) for other in directions):
+            directions.append(np.array(bore.axis))
+            yield directions[-1]
 
 
 def _along(bore: Bore, direction: FloatArray) -> bool:

@@ -1,7 +1,7 @@
 """Results as Klingelnberg's measuring machines print them: value files, KS.MW.FILE (.mew).
 
-The heading is that of the curve file. A result is a numbered line ``20115 : fHa links 44 : 13.7``: profile
-and lead by tooth and flank, pitches by flank, in um.
+The heading is that of the curve file. A result is a numbered line ``20115 : fHa links 44 : 13.7``, in um:
+profile and lead by tooth and flank (links: left, rechts: right), pitches by flank, run-out Fr by neither.
 """
 
 from __future__ import annotations
@@ -20,10 +20,16 @@ _TOOTH = re.compile(r"(?P<figure>fHa|ffa|Fa|fHb|ffb|Fb)\s+(?P<flank>links|rechts
 _PITCH = re.compile(r"(?P<figure>fp max|fu max|Rp|Fpz/8|Fp)\s+(?P<flank>links|rechts)")
 _FLANKS: dict[str, Flank] = {"links": "left", "rechts": "right"}
 _NO_VALUES = (-9999.0, 8999.0)
-"""Numbers that stand for: not measured, and no statistic."""
+"""Numbers that stand for a missing value: not measured, and no mean or maximum formed."""
 _IDENTITY = (2, 3, 7)
 """Lines of the heading with date, time and number of the gear."""
 _MOST_LINES = 20_000
+"""Lines above which a text is refused before it is read."""
+_LABEL_OF_RUN_OUT = "Fr"
+_TEETH_LABEL, _TEETH_LINE = "hnezahl z", "22"
+"""End of "Zähnezahl z" (number of teeth z), whose umlaut depends on the coding, and number of its line."""
+_MAX_TEETH = 2000
+"""Largest number of teeth that a heading may state."""
 
 
 class Printed(NamedTuple):
@@ -70,7 +76,7 @@ def value_file(text: str) -> ValueFile:
         if result is None:
             heading.take(line, number)
             continue
-        key = result[1:4]
+        key = (result.figure, result.flank, result.tooth)
         if key in seen:
             raise ValueError(
                 f"a value file that prints each result once; line {number} repeats line {seen[key]}"
@@ -89,7 +95,7 @@ def printed_value(line: str, number: int) -> Printed | None:
         return None
     label = match["label"].strip()
     named = _TOOTH.fullmatch(label) or _PITCH.fullmatch(label)
-    if named is None and label != "Fr":
+    if named is None and label != _LABEL_OF_RUN_OUT:
         return None
     text = match["value"].strip()
     if not NUMBER.fullmatch(text):
@@ -98,7 +104,9 @@ def printed_value(line: str, number: int) -> Printed | None:
         return None
     parts = {} if named is None else named.groupdict()
     flank = _FLANKS[parts["flank"]] if parts else None
-    return Printed(number, parts.get("figure", "Fr"), flank, int(parts.get("tooth") or 0), float(text))
+    return Printed(
+        number, parts.get("figure", _LABEL_OF_RUN_OUT), flank, int(parts.get("tooth") or 0), float(text)
+    )
 
 
 def identity(lines: Iterable[str]) -> tuple[str, ...]:
@@ -106,6 +114,7 @@ def identity(lines: Iterable[str]) -> tuple[str, ...]:
     texts = dict.fromkeys(_IDENTITY, "")
     for line in lines:
         code, colon, text = line.partition(":")
+        # a short code, so that no endless row of digits is read as a number
         if colon and code.strip().isdecimal() and len(code) < 8 and int(code) in texts:
             texts[int(code)] = " ".join(text.split())
     return tuple(texts.values())
@@ -113,10 +122,10 @@ def identity(lines: Iterable[str]) -> tuple[str, ...]:
 
 def _teeth(lines: Iterable[str]) -> int:
     for number, line in enumerate(lines, 1):
-        label, _, rest = line.partition("hnezahl z")
-        if rest and label.strip()[:2] == "22":
+        label, _, rest = line.partition(_TEETH_LABEL)
+        if rest and label.strip()[:2] == _TEETH_LINE:
             values = NUMBER.findall(rest)
-            if values and 1 <= float(values[0]) <= 2000:
+            if values and 1 <= float(values[0]) <= _MAX_TEETH:
                 return int(float(values[0]))
-            raise ValueError(f"a value file of a gear of 1 to 2000 teeth; line {number} has none")
+            raise ValueError(f"a value file of a gear of 1 to {_MAX_TEETH} teeth; line {number} has none")
     raise ValueError("a value file whose heading has the number of teeth; it has none")

@@ -1,4 +1,8 @@
-"""Deviations of a gear in a case from the sheet of an inspection, and a sheet from deviations."""
+"""Deviations of a gear in a case from the sheet of an inspection, and a sheet from deviations.
+
+A sheet has traces of tooth flanks, each a list of points: "profile" along the roll length, "helix" along the
+face, "topography" over both, and pitch deviations of one point a tooth.
+"""
 
 from __future__ import annotations
 
@@ -21,6 +25,8 @@ OTHER_FLANK = f"{OMITTED}not the loaded flank"
 _AXES = ("roll_length_mm", "face_position_mm")
 _LISTED = 61
 """Number of points of a trace that is written."""
+_ROUNDING = 1e-9
+"""Distance, m, by which a point may lie beyond the usable flank: sheets round their coordinates."""
 
 
 @dataclass(frozen=True)
@@ -43,9 +49,10 @@ class Chart:
         return (1 if self.loaded == "right" else -1) * self.gear.sign
 
     def meshing(self, tooth: int) -> int:
-        """Return the number from 1 in the order of meshing of a tooth of the sheet, or the other way round.
+        """Return the number from 1, in the order of meshing, of a tooth numbered as on the sheet.
 
-        Tooth 1 is the first.
+        Tooth 1 is the first in both. The map is its own inverse: it also gives the number on the sheet of a
+        tooth numbered in the order of meshing.
         """
         step = -self.facing if self.drives else self.facing
         return (tooth - 1) * step % self.gear.teeth + 1
@@ -53,12 +60,12 @@ class Chart:
 
 @dataclass(frozen=True)
 class MeasuredGear:
-    """Deviations of a gear as a case has them, and what became of every line of the sheet."""
+    """Deviations of a gear as a case has them, and the use of every line of the sheet."""
 
     fields: Mapping[str, Any]
     """Fields of the gear's table in the case."""
     account: Mapping[str, int]
-    """Number of lines by what became of them."""
+    """Number of lines by their use: the trace that a line belongs to, or the reason why it is left out."""
     splits: Mapping[tuple[int, str], Split]
     """Evaluated traces by tooth of the sheet and trace."""
     recomputed: int = 0
@@ -72,9 +79,9 @@ class MeasuredGear:
     def omitted(self) -> list[str]:
         """Return which points of the loaded flanks are left out."""
         counts = (
-            (fate.removeprefix(OMITTED), count)
-            for fate, count in self.account.items()
-            if fate.startswith(OMITTED) and fate != OTHER_FLANK
+            (use.removeprefix(OMITTED), count)
+            for use, count in self.account.items()
+            if use.startswith(OMITTED) and use != OTHER_FLANK
         )
         return [f"{why} (points: {count})" for why, count in counts]
 
@@ -82,20 +89,21 @@ class MeasuredGear:
 def measured_gear(
     sheet: Sheet, chart: Chart, name: str, cutoff: float | None = None, *, mean_of_others: bool = False
 ) -> MeasuredGear:
-    """Return the deviations of the loaded flanks of a gear by a sheet; `cutoff` in m as of `split`.
+    """Return the deviations of the loaded flanks of the gear `name` that a sheet states.
 
-    Teeth that were not measured are as designed or, with `mean_of_others`, the mean of those that were.
-    Raises `BadInput`: pitches of some teeth alone or stated twice, a trace that cannot be evaluated.
+    `cutoff` is the wavelength of the filter of traces, m; None: the default of `split`. Teeth that were not
+    measured are as designed or, with `mean_of_others`, the mean of those that were. Raises `BadInput`: some
+    teeth lack a pitch deviation, pitches are stated in both forms, or a trace cannot be evaluated.
     """
     account = Counter(sheet.account)
     traces: dict[tuple[int, str], list[Point]] = defaultdict(list)
-    over_flank = {point.tooth for point in sheet.points if _taken(point, chart) == "topography"}
+    over_flank = {point.tooth for point in sheet.points if _use(point, chart) == "topography"}
     for point in sheet.points:
-        fate = _taken(point, chart)
-        if fate in ("profile", "helix") and point.tooth in over_flank:
-            fate = f"{OMITTED}the tooth has a topography"
-        account[fate] += 1
-        if not fate.startswith(OMITTED):
+        use = _use(point, chart)
+        if use in ("profile", "helix") and point.tooth in over_flank:
+            use = f"{OMITTED}the tooth has a topography"
+        account[use] += 1
+        if not use.startswith(OMITTED):
             traces[point.tooth, point.trace].append(point)
     try:
         pitches = _pitches(traces, chart)
@@ -110,19 +118,25 @@ def measured_gear(
         raise BadInput.of(FIELD, name, str(fault), REMEDY) from None
     if flanks:
         fields["tooth_flanks"].sort(key=lambda flank: int(flank["tooth"]))
-    judgement = sheet.recomputed, sheet.differences, bool(sheet.intervals)
-    return MeasuredGear(fields | pitches, dict(account), splits, *judgement)
+    return MeasuredGear(
+        fields | pitches,
+        dict(account),
+        splits,
+        recomputed=sheet.recomputed,
+        differences=sheet.differences,
+        ranged=bool(sheet.intervals),
+    )
 
 
-def _taken(point: Point, chart: Chart) -> str:
+def _use(point: Point, chart: Chart) -> str:
     """Return the trace that a point belongs to, or why it is left out."""
     gear = chart.gear
     if point.flank != chart.loaded:
         return OTHER_FLANK
     ends = sorted((gear.form_roll_length, gear.tip_roll_length))
-    if point.roll is not None and not ends[0] - 1e-9 <= point.roll <= ends[1] + 1e-9:
+    if point.roll is not None and not ends[0] - _ROUNDING <= point.roll <= ends[1] + _ROUNDING:
         return f"{OMITTED}beyond the usable profile"
-    if point.face is not None and abs(point.face) > 0.5 * gear.face_width + 1e-9:
+    if point.face is not None and abs(point.face) > 0.5 * gear.face_width + _ROUNDING:
         return f"{OMITTED}beyond the face width"
     return point.trace
 
@@ -133,14 +147,15 @@ def _pitches(traces: Mapping[tuple[int, str], list[Point]], chart: Chart) -> dic
         return {}
     if len(names) > 1:
         raise ValueError("single or cumulative pitch deviations, not both")
-    (name,), teeth = names, chart.gear.teeth
+    (name,) = names  # the only one
+    teeth = chart.gear.teeth
     missing = [tooth for tooth in range(1, teeth + 1) if not traces.get((tooth, name))]
     if missing:
         raise ValueError(
             f"{name} of all {teeth} teeth; {len(missing)} are missing, the first is {missing[0]}"
         )
     values = np.array([traces[tooth, name][0].deviation for tooth in range(1, teeth + 1)])
-    if name == "pitch":
+    if name == "pitch":  # single pitch deviations; their sum around the gear closes
         values = np.cumsum(values - values.mean())
     order = [chart.meshing(tooth) - 1 for tooth in range(1, teeth + 1)]
     return {"pitch_deviation_um": _um(chart.facing * values[order])}
@@ -187,15 +202,17 @@ def _flank(
         return entry | {"flank_grid": surfaces[tooth]}
     gear = chart.gear
     form, tip, half = gear.form_roll_length, gear.tip_roll_length, 0.5 * gear.face_width
+    # length of the whole flank along each trace, and its ends
     over = {"profile": (tip - form, np.sort([form, tip])), "helix": (2.0 * half, np.array([-half, half]))}
-    places, rests = [], []
+    coordinates, rests = [], []
     for name, (length, ends) in over.items():
         trace = splits.get((tooth, name))
-        places.append(ends if trace is None else trace.coordinate)
+        coordinates.append(ends if trace is None else trace.coordinate)
         rests.append(np.zeros(2) if trace is None else trace.rest)
         if trace is not None:
             (entry[f"{name}_slope_um"],) = _um(np.array([trace.slope / trace.length * length]))
-    return entry | {"flank_grid": _grid(places[0], places[1], np.add.outer(rests[0], rests[1]))}
+    roll_length, face = coordinates
+    return entry | {"flank_grid": _grid(roll_length, face, np.add.outer(rests[0], rests[1]))}
 
 
 def _about_mean(flanks: list[dict[str, Any]]) -> dict[str, Any]:
@@ -222,6 +239,7 @@ def _about_mean(flanks: list[dict[str, Any]]) -> dict[str, Any]:
 
 
 def _grid(rolls: FloatArray, faces: FloatArray, excess: FloatArray) -> dict[str, Any]:
+    """Return the flank grid of a case, which states removed material, from the excess (rolls, faces), m."""
     return {
         "roll_length_mm": np.round(rolls / MM, 6).tolist(),
         "face_position_mm": np.round(faces / MM, 6).tolist(),
@@ -230,7 +248,7 @@ def _grid(rolls: FloatArray, faces: FloatArray, excess: FloatArray) -> dict[str,
 
 
 def _um(values: FloatArray) -> list[float]:
-    return [float(value) for value in np.round(values / UM, 5) + 0.0]
+    return [float(value) for value in np.round(values / UM, 5) + 0.0]  # + 0.0 turns -0.0 into 0.0
 
 
 def inspected(chart: Chart) -> Iterator[Point]:

@@ -1,9 +1,10 @@
 """A population of measured gears: mean and covariance of their deviations, between gears and between teeth.
 
 Traits are deviations as a case states them of single teeth: slopes over the usable profile and the face
-width, and forms, once as a parabola (from curves) and once as a range. A gear deviates by the mean of its
-teeth; the part of the variance that its teeth differ by is taken out of that between gears (analysis of
-variance, one way).
+width, and forms, as a range, and, where the file has the measured curves (traces), as the height of a
+parabola. The deviation of a gear is the mean of its measured teeth. The variance of these means has a part by
+the differences of teeth, which is subtracted to get the variance between gears (analysis of variance, one
+way).
 """
 
 from __future__ import annotations
@@ -32,15 +33,16 @@ from lineofaction.gearbox.units import MM, UM
 
 ENDINGS = (".csv", ".mka", ".mew")
 MOST_FILES = 2000
+"""Most files of a folder."""
 SLOPES = ("profile_slope", "helix_slope")
 _FIGURES = {"fHa": "profile_slope", "ffa": "profile_range", "fHb": "helix_slope", "ffb": "helix_range"}
 _PITCHES = {"fp max": "single_pitch", "Fp": "cumulative_pitch", "Fr": "run_out"}
 _STATIONS = 41
-"""Places of a trace, even over the usable profile or the face width."""
+"""Number of places of a trace, evenly over the usable profile or the face width."""
 _EXPLAINED = 0.99
-"""Part of the variance of traces that the principal components give."""
+"""Least part of the variance of traces that the stated principal components explain."""
 _LEAST = 1e-9
-"""Standard deviation from which gears differ, m."""
+"""Standard deviation between gears, m, below which gears do not differ."""
 Traits = dict[str, float]
 
 
@@ -55,7 +57,7 @@ class InspectedGear:
     traces: Mapping[str, tuple[FloatArray, ...]]
     """Profiles and helices at even places, (k,) each."""
     differences: tuple[str, ...] = ()
-    """Values that the machine printed otherwise than they are recomputed."""
+    """Values that the machine printed and that the curves do not confirm, in words."""
 
 
 @dataclass(frozen=True)
@@ -109,7 +111,7 @@ class Population:
 
 
 def gear_files(folder: Path) -> list[Path]:
-    """Return the files of inspections in a folder, sorted; a value file beside its curve file is none.
+    """Return the files of inspections in a folder, sorted, but no value file whose curve file is there.
 
     Raises `BadInput`: too many files. A link that leads out of the folder is left out.
     """
@@ -128,7 +130,10 @@ def gear_files(folder: Path) -> list[Path]:
 
 
 def values_beside(path: Path) -> str | None:
-    """Return the text of the value file of the same name beside a curve file, or None; no link leads out."""
+    """Return the text of the value file of a curve file's name in its folder, or None.
+
+    Links that lead out of the folder are not followed.
+    """
     if path.suffix.lower() != ".mka":
         return None
     folder = path.resolve().parent
@@ -183,15 +188,15 @@ def population(gears: Sequence[InspectedGear], name: str) -> Population:
             pitches[trait].append(value)
     of_gears = np.array([block.mean(axis=0) for block in rows])
     return Population(
-        tuple(gear.name for gear in gears),
-        tuple(names),
-        sum(map(len, rows)),
-        of_gears.mean(axis=0),
-        between,
-        within,
-        of_gears,
-        {trait: np.array(values) for trait, values in pitches.items()},
-        _traces(gears),
+        gears=tuple(gear.name for gear in gears),
+        names=tuple(names),
+        teeth=sum(map(len, rows)),
+        mean=of_gears.mean(axis=0),
+        between=between,
+        within=within,
+        of_gears=of_gears,
+        pitches={trait: np.array(values) for trait, values in pitches.items()},
+        traces=_traces(gears),
     )
 
 
@@ -216,7 +221,7 @@ def _covariances(rows: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
     centered = np.concatenate([block - mean for block, mean in zip(rows, means, strict=True)])
     freedom = total - len(rows)
     within = centered.T @ centered / freedom if freedom else np.zeros((means.shape[1],) * 2)
-    # of gears by their means, each with its share of what teeth differ by
+    # the covariance of the means, less the part by the differences of teeth: a mean of n teeth has 1/n of it
     between = np.atleast_2d(np.cov(means, rowvar=False)) - within * float(np.mean(1.0 / counts))
     values, vectors = np.linalg.eigh(between)
     return (vectors * np.maximum(values, 0.0)) @ vectors.T, within
@@ -251,7 +256,7 @@ def _by_splits(
         teeth[tooth][f"{kind}_range"] = trace.form
         part = evaluated.get(kind) or Interval(trace.coordinate[0], trace.coordinate[-1], trace.length)
         middle = 2.0 * (trace.coordinate - part.first) / (part.last - part.first) - 1.0
-        inside = np.abs(middle) <= 1.0 + 1e-9
+        inside = np.abs(middle) <= 1.0 + 1e-9  # the evaluated interval, with rounding
         # material is in excess in the middle of a flank of positive form
         teeth[tooth][f"{kind}_form"] = -float(np.polyfit(middle[inside], trace.rest[inside], 2)[0])
     return teeth
@@ -286,7 +291,10 @@ def _by_values(name: str, file: ValueFile, chart: Chart) -> InspectedGear:
 
 
 def _scale(trait: str, conventions: Conventions, chart: Chart) -> float:
-    """Return the slope that a case states over the one that the machine prints."""
+    """Return the quotient of the slope that a case states by the slope that the machine prints.
+
+    The case's is over the usable profile or face width, the machine's over its evaluation range.
+    """
     kind, gear = trait.partition("_")[0], chart.gear
     ends = conventions.ranges.get((kind, chart.loaded))
     if ends is None:

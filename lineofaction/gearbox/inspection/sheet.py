@@ -86,9 +86,9 @@ def sheet_text(points: Iterable[Point]) -> str:
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(("tooth", "flank", "trace", PROFILE[0], FACE[0], "deviation_um"))
     for point in points:
-        places = (_written(point.roll, MM), _written(point.face, MM))
+        coordinates = (_written(point.roll, MM), _written(point.face, MM))
         deviation = _written(point.deviation, UM)
-        writer.writerow((point.tooth, point.flank, point.trace, *places, deviation))
+        writer.writerow((point.tooth, point.flank, point.trace, *coordinates, deviation))
     return text.getvalue()
 
 

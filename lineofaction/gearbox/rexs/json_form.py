@@ -1,4 +1,8 @@
-"""REXS's JSON form (``.rexsj``): a model from it and back, every doubt refused."""
+"""REXS's JSON form (``.rexsj``), read into a model and written from one; anything ambiguous is refused.
+
+The kind of a value is REXS's name of its type: an entry ("integer", "floating_point", ...), or an array or
+matrix of entries. Large arrays are coded in base64, in a field of the kind's name and ``_coded``.
+"""
 
 from __future__ import annotations
 
@@ -20,17 +24,23 @@ _TYPES: dict[str, tuple[type, ...]] = {
     "boolean": (bool,),
 }
 _TEXT = (str,)
+"""Type of values of all other kinds."""
 _CODED = "_coded"
+"""End of the name of a field with a coded value."""
 _TYPE_NAMES = {dict: "a table", list: "a list", str: "a text", int: "an integer"}
 
 
 @dataclass(slots=True)
 class _Table(Element):
-    """A table of the JSON form with its place."""
+    """A table of the JSON form with its location in the file.
+
+    Fields are removed as they are read, so that the rest is what REXS does not define (`extra`).
+    """
 
     location: str
     fields: dict[str, Any]
     line: None = None
+    """Line in the file, which JSON's reader does not state."""
 
     @classmethod
     def of(cls, value: Any, location: str) -> _Table:
@@ -66,6 +76,7 @@ class _Table(Element):
         return tuple((name, self.text(name)) for name in list(self.fields))
 
     def type_of(self, inherited: str | None) -> str:
+        """Return the type of a component; one without it has the inherited type."""
         kind = self.fields.get("type")
         if kind in (None, "") and inherited is not None:
             self.fields.pop("type", None)
@@ -87,11 +98,14 @@ class _Table(Element):
         else:
             value = _value(kind, plain, location)
         unit, origin = self.optional_text("unit"), self.optional_text("origin")
-        return Attribute(name, kind, value, unit, code, origin, self.extra())
+        return Attribute(
+            id=name, kind=kind, value=value, unit=unit, code=code, origin=origin, extra=self.extra()
+        )
 
     def _decoded(self, kind: str, code: str) -> Value:
         """Return the value of an array or a matrix in base64."""
         entry = entry_kind(kind)
+        # a single entry is never coded; int32 is the one code of integers
         if entry != ("integer" if code == "int32" else "floating_point") or kind == entry:
             raise BadInput.of(self.location, code, f"a code of {kind}")
         values = decoded(code, self.text("value"), self.location)
@@ -132,10 +146,11 @@ def _spectra(further: dict[str, Any], types: dict[int, str]) -> Iterator[LoadSpe
     if further.get("accumulation") is not None:
         parts = _Table.of(further["accumulation"], "model.accumulation").parts("component")
         accumulation = tuple(part.component(types) for part in parts)
-    yield LoadSpectrum(number, loads, accumulation, extra)
+    yield LoadSpectrum(id=number, cases=loads, accumulation=accumulation, extra=extra)
 
 
 def _json(data: bytes) -> Any:
+    # count values before they are read: they take far more memory than their text
     if sum(data.count(mark) for mark in (b",", b"[", b"{")) > MAX_ENTRIES:
         raise BadInput.of("file", f"more than {MAX_ENTRIES} values", "smaller", "Code arrays in base64.")
     try:
@@ -180,6 +195,7 @@ def _no_number(text: str) -> NoReturn:
 
 
 def _value(kind: str, plain: Any, location: str) -> Value:
+    """Return a value of a kind from plain JSON; None for null and for blank text."""
     entry = entry_kind(kind)
     if plain is None or (isinstance(plain, str) and not plain.strip()):
         return None

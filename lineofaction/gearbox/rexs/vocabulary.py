@@ -59,9 +59,11 @@ def si_value(value: float, unit: str | None, expected: str, location: str) -> fl
         Component and attribute, for the error.
     """
     written = units().get("none" if unit is None else unit)
-    wanted = units()[expected]
-    if written is None or written.si != wanted.si:
-        fit = ", ".join(name for name, unit_row in units().items() if unit_row.si == wanted.si and name)
+    expected_unit = units()[expected]
+    if written is None or written.si != expected_unit.si:
+        fit = ", ".join(
+            name for name, unit_row in units().items() if unit_row.si == expected_unit.si and name
+        )
         raise BadInput.of(f"{location}, unit", unit, f"one of {fit}")
     return value * written.factor + written.offset
 

@@ -26,6 +26,7 @@ from lineofaction.gearbox.rexs.values import (
 )
 
 _MAX_DEPTH = 32
+"""Largest depth of nested elements that is read."""
 _PREVIEW = 60
 """Number of characters quoted of a line that is not well-formed."""
 
@@ -33,10 +34,14 @@ _ENCODINGS = ("utf-8", "utf-16", "utf-16le", "utf-16be", "us-ascii", "iso-8859-1
 """Encodings of XML files: those that expat decodes itself, and those of writers on Windows."""
 
 _KIND_FIELD = "valueType"
-"""Our field of XML's attributes, with the kind of a value whose text shows another; REXS allows it."""
+"""XML field, of ours, with the kind of a value whose text would be read as another kind. REXS allows
+additional fields.
+"""
 
 _STEP = "  "
+"""Indentation of a level."""
 _NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+"""Characters that XML cannot hold."""
 _WRAPPED = {"model": ("relations", "components"), "load_spectrum": ("accumulation",)}
 """Groups of parts that XML wraps in an element, by the outer element."""
 
@@ -83,10 +88,13 @@ class _XmlElement(Element):
         return tuple(self.fields.items())
 
     def groups(self, known: dict[str, int | None]) -> dict[str, list[_XmlElement]]:
-        """Return the elements inside by their names, where `known` says how many there may be."""
+        """Return the elements inside by their names.
+
+        `known` are the names that there may be: None for any number of elements, 1 for at most one.
+        """
         groups: dict[str, list[_XmlElement]] = {name: [] for name in known}
         for part in self.inside:
-            name = part.name.rpartition(":")[2]
+            name = part.name.rpartition(":")[2]  # without a prefix of a namespace
             if name not in groups:
                 raise BadInput.of(part.location, part.name, "one of " + ", ".join(known))
             groups[name].append(part)
@@ -96,7 +104,7 @@ class _XmlElement(Element):
 
     def group(self, name: str) -> list[_XmlElement]:
         """Return the elements of a group, which has no fields of its own."""
-        for field_name in self.fields:
+        for field_name in self.fields:  # the first one is at fault
             raise BadInput.of(self.location, field_name, "left out: a group has no fields")
         return self.parts(name)
 
@@ -113,7 +121,7 @@ class _XmlElement(Element):
         return Attribute(name, kind, value, unit, code, origin, self.extra())
 
     def _scalar(self, name: str, kind_name: str | None) -> tuple[str, Value, None]:
-        """Return kind, value and no code; an empty one has no value."""
+        """Return kind and value of a scalar, and None for the code; without text the value is None."""
         text = self.content()
         if not text:
             return kind_name or kind_of(name, []), None, None
@@ -121,7 +129,10 @@ class _XmlElement(Element):
         return kind, scalar_of(kind, text, f"{self.location}, {name}"), None
 
     def _shaped(self, name: str, kind_name: str | None) -> tuple[str, Value, str | None]:
-        """Return kind, value and code of an array, a matrix or an array of arrays."""
+        """Return kind, value and code of an array, a matrix or an array of arrays.
+
+        The code is the type of numbers in base64; None: the entries are elements.
+        """
         location = f"{self.location}, {name}"
         code = self.fields.get("code")
         if code is not None:
@@ -174,6 +185,7 @@ def read_xml(data: bytes) -> Model:
 
 
 def _root(data: bytes) -> _XmlElement:
+    """Return the root element of an XML text."""
     builder = _Builder()
     try:
         builder.parser.Parse(data, True)
@@ -190,8 +202,8 @@ class _Builder:
     """Builds the elements from expat's events; document types, entities and depth are refused."""
 
     def __init__(self) -> None:
-        self.root = _XmlElement("", 0, {})
-        self._open = [self.root]
+        self.root = _XmlElement("", 0, {})  # around the root element of the text
+        self._open = [self.root]  # elements that have begun and not ended, the outermost first
         self.parser = expat.ParserCreate()
         self.parser.buffer_text = True
         self.parser.StartElementHandler = self._start
@@ -229,9 +241,10 @@ class _Builder:
 
 
 def xml_of(model: Model) -> bytes:
-    """Return a model as XML in UTF-8, the same bytes at every time."""
+    """Return a model as XML in UTF-8; the same model gives the same bytes."""
     text = "\n".join(['<?xml version="1.0" encoding="UTF-8"?>', *_lines(written(model)), ""])
-    if unfit := _NO_XML.search(text):
+    unfit = _NO_XML.search(text)
+    if unfit:
         raise BadInput.of("model", unfit[0], "of characters that XML can hold")
     return text.encode("utf-8")
 

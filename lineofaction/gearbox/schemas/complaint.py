@@ -19,7 +19,10 @@ _MIN = (
     ("road_speed_km_h", 1.0, ("km/h", "Write kilometers per hour, such as 40.0.")),
     ("tire_radius_mm", 50.0, ("mm", "In meters? Then write {:g}.")),
 )
-"""Fields, the least value of each, and the message about a lower value, which is in another unit."""
+"""Least values of fields: field, value, and its unit with the remedy for a lower value.
+
+A lower value is probably in a unit 1000 times as large; {:g} in a remedy stands for the converted value.
+"""
 
 
 class ComplaintFields(BoundaryModel):
@@ -126,10 +129,10 @@ class ComplaintInput(ComplaintFields):
                 refuse(name, value, "left out without road_speed_km_h", "Give the road speed too.")
         if self.road_speed_km_h is not None and self.tire_radius_mm is None:
             refuse("tire_radius_mm", None, "given with a road speed", "Its rolling radius, such as 310.0.")
-        for name, minimum, unit in _MIN:
+        for name, minimum, (unit, remedy) in _MIN:
             value = getattr(self, name)
             if value is not None and value < minimum:
-                refuse(name, value, f"at least {minimum:g} {unit[0]}", unit[1].format(1e3 * value))
+                refuse(name, value, f"at least {minimum:g} {unit}", remedy.format(1e3 * value))
         return self
 
 

@@ -1,4 +1,8 @@
-"""Conversion of pydantic's errors to faults: field, value, bound, suggestion."""
+"""Conversion of pydantic's errors to faults: field, value, bound, suggestion.
+
+A bound is the rule that the value breaks, in words that follow "must be". The `loc` of an error is the path
+to its value: names of fields, and indices of lists.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +22,11 @@ from lineofaction.gearbox.schemas.model import MAX_FAULTS
 Loc = Sequence[int | str]
 
 _LONGEST_NAME = 200
+"""Characters of a field's name that a fault repeats: a request may have names of any length."""
 _LONGEST_GUESS = 64
+"""Characters of an unknown name that are compared with the known names."""
+_ALTERNATIVES = ("[key]", "[one]", "[many]")
+"""Parts of a `loc` that name a key of a table or an alternative of a union; the user did not write them."""
 
 _KINDS = {
     "int_type": "an integer",
@@ -52,13 +60,10 @@ def faults_of(error: ValidationError, model: type[BaseModel]) -> tuple[Fault, ..
 
 
 def innermost(items: Sequence[Any]) -> list[Any]:
-    """Return the errors without errors of a list or table whose parts are at fault already.
-
-    At most the first 50; see `lineofaction.gearbox.schemas.model`.
-    """
+    """Return at most `MAX_FAULTS` errors, without those of a list or table of which a part has an error."""
     locations = [tuple(item["loc"]) for item in items]
-    around = {location[:depth] for location in locations for depth in range(len(location))}
-    inner = (item for item, location in zip(items, locations, strict=True) if location not in around)
+    outer = {location[:depth] for location in locations for depth in range(len(location))}
+    inner = (item for item, location in zip(items, locations, strict=True) if location not in outer)
     return list(islice(inner, MAX_FAULTS))
 
 
@@ -74,16 +79,21 @@ def fault_of(item: Mapping[str, Any], model: type[BaseModel] | None, loc: Loc) -
 
 
 def _dotted(loc: Loc) -> str:
-    """Place as the user writes it: pair.pinion.teeth, load.torque_n_m[2]."""
+    """Return the path to a value as the user writes it: pair.pinion.teeth, load.torque_n_m[2]."""
     text = ""
-    for part in (part for part in loc if part not in ("[key]", "[one]", "[many]")):
+    for part in loc:
+        if part in _ALTERNATIVES:
+            continue
         name = str(part)[:_LONGEST_NAME]
-        text += f"[{name}]" if isinstance(part, int) else f".{name}" if text else name
+        if isinstance(part, int):
+            text += f"[{name}]"
+        else:
+            text += f".{name}" if text else name
     return text or "input"
 
 
 def _field_at(model: type[BaseModel] | None, loc: Loc) -> tuple[type[BaseModel] | None, FieldInfo | None]:
-    """Model that holds the last named field of `loc`, and that field if it exists."""
+    """Return the model that holds the last named field of `loc`, and that field; None: not known."""
     current, info = model, None
     for index, part in enumerate(loc):
         if isinstance(part, int):
@@ -111,6 +121,7 @@ def model_in(annotation: object) -> type[BaseModel] | None:
 
 
 def _constraints(info: FieldInfo | None) -> dict[str, float]:
+    """Return the limits of a field, or of the elements of its list, by the names in `_LIMITS`."""
     limits: dict[str, float] = {}
     for item in _metadata(info.metadata if info else (), info.annotation if info else None):
         for name, kind in _LIMITS.items():
@@ -120,7 +131,7 @@ def _constraints(info: FieldInfo | None) -> dict[str, float]:
 
 
 def _metadata(constraints: Iterable[object], annotation: object) -> Iterable[object]:
-    """Metadata of a field, its `Annotated` parts unfolded, down to the elements of a list."""
+    """Yield the metadata of a field and of the annotations inside its own, down to the elements of a list."""
     for item in constraints:
         yield from getattr(item, "metadata", None) or [item]
     for argument in get_args(annotation):

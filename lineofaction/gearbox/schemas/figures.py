@@ -1,7 +1,8 @@
 """Figures of results: the documents that verbs print by ``--json`` and the service answers with.
 
-Each kind declares its own: a study in its package, a table and a run here. Units are in the names;
-what is not known is None.
+A study declares its figures in its package; those of tables and runs are declared here. Units are in the
+names. A figure that is not known is None. The type of a figure may be annotated with its `Source`; without
+one the figure is the member of the result that has its name.
 """
 
 from __future__ import annotations
@@ -16,21 +17,23 @@ from lineofaction.gearbox.units import boundary_ledger
 
 Json = dict[str, Any]
 REQUIRED = object()
+"""Mark of a figure that every result has."""
 LINEAR: Json = {"source": "linear response"}
+"""`BearingForces` of a linear response."""
 
 
 @dataclass(frozen=True)
 class Source:
-    """Source of a figure in a result, if the names differ: members joined by dots, or a function.
-
-    Results are in SI. `missing` is the figure for results of versions that did not know it. A `document`
-    stands in the result in the shape in which it is shown, or `turned` brings it into that shape.
-    """
+    """Source of a figure in a result whose members have other names than the figures, or other shapes."""
 
     of: str | Callable[[Any], Any]
+    """Name of the member, several joined by dots, or a function of the result. Its values are in SI."""
     missing: Any = REQUIRED
+    """Figure of a result of a version that did not know it."""
     document: bool = False
+    """Whether the member is a JSON document, which is shown without conversion of units."""
     turned: Callable[[Any], Any] = lambda document: document
+    """Function that brings a document into the shape in which it is shown."""
 
 
 class Part(BaseModel):

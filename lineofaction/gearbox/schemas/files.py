@@ -95,10 +95,10 @@ def _modes(file: Path, field: str) -> Content:
         fault = f"a housing that a scene takes: {error.field} {error.bound}"
         raise BadInput.of(field, file.name, fault, str(error.suggestion)) from None
     matrices = {f"{name}_matrix": getattr(part, name) for name in ("stiffness", "damping", "mass")}
-    places = [[as_typed(value, MM) for value in point] for point in part.seat_positions or ()]
+    positions_mm = [[as_typed(value, MM) for value in point] for point in part.seat_positions or ()]
     derived = {"bushings": list(part.bushings), "modal_coordinates": part.modal_coordinates}
     present = {name: rows for name, rows in matrices.items() if rows is not None}
-    return derived | {"seat_positions_mm": places}, present
+    return derived | {"seat_positions_mm": positions_mm}, present
 
 
 def _content(file: Path, field: str) -> Content:

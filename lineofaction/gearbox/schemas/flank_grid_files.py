@@ -14,6 +14,7 @@ FIELD = "flank_grid_csv"
 COLUMNS = ("roll_length_mm", "face_position_mm", "removed_um")
 _HELP = "See docs/case-file.md: one row per node, in any order."
 _MAX_NODES = 1_000_000
+"""Most nodes that a CSV file is read for."""
 
 
 def with_flank_grids(

@@ -17,7 +17,7 @@ Direction = Annotated[Listed[Annotated[float, Field(ge=-1.0, le=1.0)]], _THREE]
 Node = Annotated[int, Field(ge=0, le=2**31 - 1)]
 Rates = Annotated[Listed[Annotated[float, Field(ge=0.0, le=1e15)]], _THREE]
 PERPENDICULAR = 1e-6
-"""Cosine of the angle between axes."""
+"""Largest cosine of the angle between two axes that count as perpendicular."""
 
 
 @with_fields(declared_in(Material))
@@ -26,11 +26,16 @@ class HousingMaterialInput(BoundaryModel):
 
 
 def material_by_name(value: object) -> object:
-    """Return the figures of a material by name, without figures that are newer than stored results."""
+    """Return the figures of a material by name; any other value comes back as it is.
+
+    Figures that were added after results had been stored are left out, so that a scene without them keeps
+    the address of its result.
+    """
     return _figures_of(value, later=False)
 
 
 def _figures_of(value: object, *, later: bool) -> object:
+    """Return the figures of a material by name, with those added `later` than stored results, or without."""
     if isinstance(value, str) and value in MATERIALS:
         declared = (figure for figure in figures(Material) if later or not figure.what.later)
         return {

@@ -12,8 +12,13 @@ from typing import Any
 from lineofaction.gearbox.problems import BadInput, Fault
 
 _MAX_PARTS = 32
+"""Largest number of parts of a dotted key."""
 _PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
+"""Pattern of a part of a key, bare or in quotes; ++ and *+ never go back, so the search takes linear time."""
 _FORM = "Write NAME = VALUE (a number, a text in quotes, a list in brackets) or a [table]."
+"""Remedy of a text that is not TOML."""
+_TABLE, _TABLE_OF_LIST = "[{}]", "[[{}]]"
+"""Heads of a table and of a table in a list, for its dotted name."""
 _LONG_KEY = re.compile(rf"(?<![\w-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{_MAX_PARTS}}}")
 
 
@@ -42,7 +47,7 @@ def toml_table(text: str, field: str) -> dict[str, Any]:
 
 
 def _fault(field: str, text: str, message: str) -> Fault:
-    """Return the fault of a TOML text, with the line and the expected text there."""
+    """Return the fault of a TOML text, with the line that the reader's `message` names, if it names one."""
     reason, at, where = message.partition(" (at line ")
     number = where.partition(",")[0]
     if not at or not number.isdigit():
@@ -53,15 +58,19 @@ def _fault(field: str, text: str, message: str) -> Fault:
 
 
 def toml_text(content: Mapping[str, Any]) -> str:
-    """Return tables, lists of them, numbers, texts, switches and (nested) lists as TOML; None is left out."""
+    """Return a table as TOML: tables, lists of tables, numbers, texts, booleans, nested lists.
+
+    Fields that are None are left out.
+    """
     return "\n".join(_table(content, ())).strip() + "\n"
 
 
-def _table(content: Mapping[str, Any], path: tuple[str, ...], head: str = "[{}]") -> Iterator[str]:
-    """Write a table: its values first, then the tables in it."""
+def _table(content: Mapping[str, Any], path: tuple[str, ...], head: str = _TABLE) -> Iterator[str]:
+    """Yield the lines of a table: its head, its values, then the tables in it."""
     present = {name: value for name, value in content.items() if value is not None}
     values = {name: value for name, value in present.items() if not _holds_tables(value)}
-    if path and (values or not present or head != "[{}]"):
+    # a table that holds tables alone needs no head: theirs name it
+    if path and (values or not present or head != _TABLE):
         yield f"\n{head.format('.'.join(path))}"
     for name, value in values.items():
         yield f"{name} = {_value(value)}"
@@ -70,7 +79,7 @@ def _table(content: Mapping[str, Any], path: tuple[str, ...], head: str = "[{}]"
             yield from _table(value, (*path, name))
         elif _holds_tables(value):
             for item in value:
-                yield from _table(item, (*path, name), "[[{}]]")
+                yield from _table(item, (*path, name), _TABLE_OF_LIST)
 
 
 def _holds_tables(value: Any) -> bool:

@@ -46,7 +46,7 @@ REMEDY = (
 def radiation_of(
     body: ReducedHousing, model: PanelModel, frequency: FloatArray, means: Means
 ) -> HousingRadiation:
-    """Return the radiation of a housing by a model at frequencies, Hz, kept by its content."""
+    """Return the radiation of a housing by a model at frequencies, Hz, from the cache where it is known."""
     return cached_radiation(
         body,
         model,
@@ -60,10 +60,10 @@ def radiation_of(
 def bearing_forces(
     subject: TabledScene, inputs: OverOrders, means: Means, quantity: LevelQuantity | None = None
 ) -> ReportedHarmonics:
-    """Return the orders of the bearing forces in the run, without one in the linear response.
+    """Return the orders of the bearing forces: in the run if there is one, else in the linear response.
 
-    The metadata of both have `forces`: where they come from, and of a run how its windows hold. The quantity
-    is that of `response_of`.
+    `forces` of the metadata names the source of the forces, and for a run states the errors by its windows
+    (`_run_forces`). `quantity` sizes the effects of the linear response, as in `response_of`.
     """
     if means.run is None:
         response = response_of(subject, inputs, means, quantity)
@@ -77,15 +77,19 @@ def bearing_forces(
 
 
 def _run_forces(orders: BearingOrders) -> Json:
-    """Return facts on the quality of a run's windows, by order, then by window."""
-    known = bool(np.all(np.isfinite(orders.smearing)))
+    """Return the windows of a run, over which its orders are averaged, with their errors.
+
+    `smearing` is the relative error of an amplitude by the change of speed in a window, by order, then by
+    window; None where the run does not state it.
+    """
+    smearing_known = bool(np.all(np.isfinite(orders.smearing)))
     return {
         "source": "run",
         "time_s": orders.time.tolist(),
         "window_pitches": orders.metadata["pitches"],
         "windows_left_out": orders.metadata["windows_left_out"],
         "speed_change": orders.sweep.tolist(),
-        "smearing": orders.smearing.T.tolist() if known else None,
+        "smearing": orders.smearing.T.tolist() if smearing_known else None,
         "remainder": dict(zip(orders.bearing, orders.remainder.tolist(), strict=True)),
     }
 
@@ -93,9 +97,9 @@ def _run_forces(orders: BearingOrders) -> Json:
 def response_of(
     subject: TabledScene, inputs: OverOrders, means: Means, quantity: LevelQuantity | None = None
 ) -> ForcedResponse:
-    """Return the `sized_response` of a scene; among its facts are the `excitations`.
+    """Return the `sized_response` of a scene; its metadata also list the `excitations`.
 
-    Effects are sized by the quantity, by default by that of the scene.
+    The influence of effects is that on `quantity`, by default on the quantity that the scene names.
     """
     scene = subject.scene if quantity is None else replace(subject.scene, quantity=quantity)
     response, system = sized_response(scene, inputs, means)
@@ -104,7 +108,10 @@ def response_of(
 
 
 def sized_response(scene: Scene, inputs: OverOrders, means: Means) -> tuple[ForcedResponse, System]:
-    """Return the forced response of a scene with the effects that its tolerance decides, and their sizes."""
+    """Return the forced response of a scene and its system, with the effects that its tolerance decides.
+
+    The effect ledger in the metadata states the influence of each effect.
+    """
     speed = np.array([value * RPM for value in inputs.speed_rpm])
     sized = partial(response_influences, speed=speed)
     with boundary_errors():
@@ -118,17 +125,18 @@ def sized_response(scene: Scene, inputs: OverOrders, means: Means) -> tuple[Forc
     seconds = cpu_seconds() - began + decision.taken.cpu_seconds
     metadata = response.metadata
     ledger = sized_ledger(metadata["effect_ledger"], decision.automatic, influences)
-    known = {"effect_ledger": ledger, "seconds": {**metadata["seconds"], "influence_estimates": seconds}}
-    return replace(response, metadata=metadata | known), system
+    additions = {"effect_ledger": ledger, "seconds": {**metadata["seconds"], "influence_estimates": seconds}}
+    return replace(response, metadata=metadata | additions), system
 
 
 def predicted_response(
     scene: SceneInput, inputs: OverOrders, further: Callable[[Scene], int] | None = None
 ) -> StudyCost | None:
-    """Return the cost of the `sized_response` of a scene before its tables; None: nothing predicts it.
+    """Return the predicted cost of the `sized_response` of a scene whose tables are not yet computed.
 
-    `further`: how many responses of varied scenes there are beside it. Modes that a solid housing keeps are
-    not known before and do not count. Raises `BadInput`: no such scene.
+    None: the scene cannot be assembled without its tables. `further` returns the number of additional
+    responses, of varied scenes. The number of modes of a solid housing is known only after its reduction, so
+    their cost is left out. Raises `BadInput`: the scene is not valid.
     """
     with boundary_errors():
         before = scene_before_tables(scene)
@@ -153,7 +161,7 @@ def predicted_response(
 def predicted_forces(
     scene: SceneInput, inputs: OverSpeedsOrRun, further: Callable[[Scene], int] | None = None
 ) -> StudyCost | None:
-    """Return the cost of the `bearing_forces`, as `predicted_response`; None: they are those of a run."""
+    """Return the cost of the `bearing_forces`, as `predicted_response`; None: the forces come from a run."""
     return predicted_response(scene, inputs, further) if inputs.run is None else None
 
 

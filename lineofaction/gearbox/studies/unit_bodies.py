@@ -30,14 +30,15 @@ WIDTH = 1.1
 """Width of a bearing over its height."""
 ADDENDUM, DEDENDUM = 1.0, 1.25
 """Addendum and dedendum over the module, for gears without a case."""
-
+_ROUNDING = 1e-12
+"""Rounding of a sum of lengths, m."""
 
 MAX_FACETS = 2_000
 """Most facets of a housing in a picture: 32 kB of the result."""
 
 
 def bodies_of(subject: TabledScene) -> list[Json]:
-    """Return the bodies of a scene, planets that it copies too, as a result has them among its facts."""
+    """Return the bodies of a scene as plain JSON for its results; copies of planets are bodies too."""
     scene = subject.scene
     parts = (*_shafts(scene), *_gears(subject), *_bearings(subject))
     bodies: list[Json] = [
@@ -47,7 +48,10 @@ def bodies_of(subject: TabledScene) -> list[Json]:
 
 
 def _hulls(subject: TabledScene) -> Iterator[tuple[Hull, IntArray]]:
-    """Yield the surfaces of the housings that are reduced from their solids, and which points each has."""
+    """Yield the drawn surface of each housing that is reduced from a solid, and the indices of its points.
+
+    The indices are those of points of `housing.surface`.
+    """
     from dynamics.housings.drawn_surface import DrawnSurface  # noqa: PLC0415 (start-up time)
 
     for name, housing in subject.housings.items():
@@ -61,7 +65,7 @@ def _hulls(subject: TabledScene) -> Iterator[tuple[Hull, IntArray]]:
 def surface_motion(subject: TabledScene, freedom: Sequence[str]) -> NDArray[np.float32]:
     """Return the motion of all points of a scene's surfaces per freedom, (p, 3, n), 32 bits.
 
-    `freedom` are the names of a system's freedoms. No points: none of these moves a housing.
+    `freedom` are the names of a system's freedoms. The array has no points if no freedom moves a housing.
     """
     from dynamics.housings import scene_axes  # noqa: PLC0415 (start-up time)
 
@@ -80,7 +84,7 @@ def surface_motion(subject: TabledScene, freedom: Sequence[str]) -> NDArray[np.f
 
 
 def _body(kind: str, name: str, shaft: Shaft, *rings: Ring) -> Body:
-    """Return a body on a shaft; its rings count from the left end of that."""
+    """Return a body on a shaft; the positions of `rings` count from the shaft's left end, m."""
     x, y, z = map(float, shaft.origin)
     at = (
         Ring(ring.low + z, ring.high + z, ring.inner, ring.outer, ring.outer_high)
@@ -96,6 +100,7 @@ def _shafts(scene: Scene) -> Iterator[Body]:
 
 
 def _sections(shaft: Shaft) -> Iterator[Ring]:
+    """Yield the sections of a shaft from its left end; a shaft without sections is one slender cylinder."""
     if not shaft.sections:
         radius = 0.5 * shaft.length / SLENDER
         yield Ring(0.0, shaft.length, 0.0, radius, radius)
@@ -110,7 +115,7 @@ def _sections(shaft: Shaft) -> Iterator[Ring]:
 def _radius(shaft: Shaft, position: float) -> float:
     """Return the radius of a shaft at a position along it, m."""
     rings = list(_sections(shaft))
-    ring = next((ring for ring in rings if position <= ring.high + 1e-12), rings[-1])
+    ring = next((ring for ring in rings if position <= ring.high + _ROUNDING), rings[-1])
     part = min(max((position - ring.low) / (ring.high - ring.low), 0.0), 1.0)
     return ring.outer + part * (ring.outer_high - ring.outer)
 
@@ -128,7 +133,7 @@ def _gears(subject: TabledScene) -> Iterator[Body]:
 
 
 def _gear_radii(subject: TabledScene) -> dict[str, tuple[float, float]]:
-    """Return the radii of tip and root of every gear, m; by the module of gears that no case has."""
+    """Return the radii of tip and root of every gear, m: of its case, or else of its operating module."""
     scene, of_cases = subject.scene, _radii_of_cases(subject)
     lines = mechanism_of(scene).lines if scene.meshes else ()
     cosine: dict[str, float] = {}

@@ -40,6 +40,7 @@ def _undercut_pinion() -> Sequence[Measured]:
     problem, solution = cases[-1].solve(position)
     errors = [mean_off(curve, curves[-1]) for curve in curves]
     ranges = [range_off(curve, curves[-1]) for curve in curves]
+    # without corner contact, since the contact ratio knows none
     alone = cases[0].with_model(corner_contact=False).solve(even_positions(2000), cases[0].plan.load)[1]
     pairs = float((alone.force[:, 0] > 0.0).sum(axis=1).mean())
     return (
@@ -54,7 +55,10 @@ def _undercut_pinion() -> Sequence[Measured]:
 
 
 def _undercut_pair() -> GearPair:
-    """Return 9 teeth of little profile shift, and a wheel whose tip spares what is left of them."""
+    """Return 9 teeth of little profile shift, and a wheel whose tip reaches the end of their involute.
+
+    The tip stays off the undercut by 1/1000 module.
+    """
     module, shift = 3e-3, 0.15
     common = {"normal_module": module, "face_width": 20e-3, "root_radius_coefficient": 0.3}
     pinion = Gear(teeth=9, bore_diameter=10e-3, profile_shift_coefficient=shift, **common)  # type: ignore[arg-type]
@@ -78,6 +82,7 @@ def _twenty_to_two_hundred() -> Sequence[Measured]:
     there = posed(GearPair(pinion, wheel), [20.0]).with_model(corner_contact=False)
     back = posed(GearPair(wheel, pinion), [200.0]).with_model(corner_contact=False)
     problem, driven = there.solve(position)
+    # position x by the pinion is -x by the wheel
     driving = back.solve((1.0 - position) % 1.0, there.plan.load)[1]
     cornered, solution = posed(GearPair(pinion, wheel), [20.0]).solve(position, there.plan.load)
     return (

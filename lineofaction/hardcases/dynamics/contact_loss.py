@@ -32,8 +32,11 @@ from lineofaction.hardcases.scene import Measured, Scenes
 SCENES = Scenes("dynamics")
 
 _BACKLASH, _RIPPLE = 20e-6, 15e-6
+"""Backlash and amplitude of the transmission error, m."""
 _PERIODS, _SAMPLES = 60, 64
+"""Mesh periods of the rattle, and samples in each."""
 _IMPACTS, _SPEED, _TOLERANCE = 40, 0.1, 1e-9
+"""Number of impacts, speed in the gap in m/s, and tolerance of the integrators, m."""
 
 
 @SCENES.add(
@@ -117,8 +120,9 @@ def _impacts() -> Sequence[Measured]:
         key: (abs(float(np.diff(run.stored.sum(axis=1))[0] - run.work.sum())) / (0.5 * MASS * _SPEED**2))
         for key, run in runs.items()
     }
-    depth = _SPEED / NATURAL
-    # an error of one tolerance at an impact is one of speed, which every flight after it makes more of
+    depth = _SPEED / NATURAL  # deflection of the flank at an impact, m
+    # An error e at an impact is one of speed, e / depth relative. It delays every later flight: e backlash /
+    # depth each. So the error after all impacts is the sum over impacts of the flights that follow.
     grown = _TOLERANCE * _BACKLASH / depth * _IMPACTS**2 / 2.0
     difference = rms(
         _transmission_error(runs[METHODS[0], fine]) - _transmission_error(runs[METHODS[1], fine])
@@ -142,7 +146,7 @@ def _impacts() -> Sequence[Measured]:
 
 
 def _thrown(method: str, tolerance: float) -> Trajectory:
-    """Let the gear leave the driving flank at the speed given."""
+    """Let the gear leave the driving flank at `_SPEED`, and integrate over all impacts."""
     duration = 0.5 * _IMPACTS * cycle(_BACKLASH, _SPEED, NATURAL)
     scene = torsional(
         torque=0.0, back=coast(_BACKLASH), duration=duration, outputs=Outputs(2e5),

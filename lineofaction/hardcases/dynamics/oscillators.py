@@ -16,29 +16,37 @@ from dynamics.shafts import GearBody, Inertia, Shaft
 from dynamics.types import FloatArray
 
 TEETH = 20
+"""Number of teeth of both gears, of 4 mm module."""
 
 BASE_RADIUS = 0.04 * math.cos(math.radians(20.0))
+"""Base radius of both gears, m."""
 
 STIFFNESS = 4e8
 """Mesh stiffness along the line of action, N/m."""
 
 INERTIA = Inertia(1.0, 1e-3, 1e-3)
+"""Mass, kg, polar and transverse moment of inertia, kg m^2, of each gear."""
 
 MASS = INERTIA.polar / BASE_RADIUS**2
+"""Moment of inertia as a mass on the line of action, kg."""
 
 NATURAL = math.sqrt(STIFFNESS / MASS)
 """Natural frequency of the driven gear on its mesh, rad/s."""
 
 RPM = math.pi / 30.0
+"""1 rpm in rad/s."""
 
 TORQUE = 100.0
+"""Torque of the load, N m."""
 
 DEFLECTION = TORQUE / BASE_RADIUS / STIFFNESS
 """Deflection of the mesh under that torque, m."""
 
 _LEVEL = TORQUE / BASE_RADIUS
+"""Mesh force under that torque, N: the upper level of the tables, which are linear in the force."""
 
 POSITIONS = 64
+"""Positions of a base pitch in the tables."""
 
 
 def spring(amplitude: float = 0.0, positions: int = POSITIONS, stiffness: float = STIFFNESS) -> PlainTable:
@@ -116,12 +124,12 @@ def _table(
         return np.broadcast_to(np.asarray(values, float), (position.size, level.size))[None, None].copy()
 
     return PlainTable(
-        position,
-        level,
-        np.zeros(1),
-        np.zeros(1),
-        spread(deflection),
-        spread(deflection_slope),
-        spread(stiffness),
-        spread(stiffness_slope),
+        position=position,
+        level=level,
+        misalignment=np.zeros(1),
+        center_distance_change=np.zeros(1),
+        deflection=spread(deflection),
+        deflection_slope=spread(deflection_slope),
+        stiffness=spread(stiffness),
+        stiffness_slope=spread(stiffness_slope),
     )

@@ -125,7 +125,7 @@ def _unloaded_in_clearance() -> Sequence[Measured]:
         Measured("off the closed form, likewise", max(off for off, _ in energies) / path_error, maximum=1.0),
         Measured(
             "energy lost over twenty impacts, over a tolerance per impact",
-            max(lost for _, lost in energies) / (0.5 * _DISC.mass * _SPEED**2)
+            max(loss for _, loss in energies) / (0.5 * _DISC.mass * _SPEED**2)
             / (2.0 * speed_error * _BOUNCES), maximum=1.0,
         ),
     )  # fmt: skip

@@ -20,9 +20,10 @@ from service.store.places import DATABASE_FILE
 
 Json = dict[str, Any]
 Settle = Callable[[float], Json]
-"""Settings of the service for the job, from the elapsed seconds that the small one took."""
+"""Function from the elapsed seconds of the small job, undisturbed, to the settings of the service."""
 
 _SETTLING_S = 2.0
+"""Time within which workspaces of ended jobs are removed, s."""
 
 _GEAR = {"teeth": 20, "face_width_mm": 25.0, "bore_diameter_mm": 40.0, "thickness_allowance_um": 90.0}
 
@@ -53,8 +54,8 @@ def aftermath(
 ) -> Aftermath:
     """Run a job that is disturbed, another that is dismissed behind it, and the small one after both.
 
-    With `resubmit` the first is submitted once more at the end, undisturbed. `overtaken`: it waits before it
-    is begun again, and the others need not.
+    With `resubmit` the first job is submitted once more at the end, undisturbed. `overtaken`: the first job
+    waits before its next attempt, so that the others end before it.
     """
     before = undisturbed()
     with fresh_service(**settle(before.seconds)) as service:
@@ -106,7 +107,7 @@ def undisturbed() -> _Undisturbed:
 
 
 def _left(service: JobService) -> tuple[Measured, ...]:
-    """Nothing may be left of jobs that have ended."""
+    """Return figures on what is left of jobs that have ended, of which there may be nothing."""
     waiting = sum(service.submissions.counts().get(state, 0) for state in ("accepted", "running"))
     with closing(sqlite3.connect(service.directory / DATABASE_FILE)) as table:
         sound = table.execute("PRAGMA integrity_check").fetchone()[0] == "ok"
@@ -131,6 +132,7 @@ def _others(
     disturbed, dismissed, after = ended
     as_wished = (dismissed.status, dismissed.attempts, after.status) == ("dismissed", 0, "successful")
     served = disturbed.status != "successful" and service.store.find(disturbed.key, "database") is not None
+    # RFC 3339 in UTC: the order of the texts is that of the instants
     in_turn = (str(after.started) < str(disturbed.finished)) == overtaken
     off = largest_difference(service.errors(after), before) if after.status == "successful" else np.inf
     return (

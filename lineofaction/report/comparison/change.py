@@ -15,6 +15,8 @@ from lineofaction.report.presentation import Presentation
 
 GETS_LOUDER = "gets louder"
 BAND = f"{100 * (HIGH - LOW):.0f} %"
+LOWER, MEDIAN, UPPER = range(3)  # indices of quantiles
+TOTAL = 0  # index of all orders together among the lines of a level
 
 
 def _loads(result: FlankChange) -> tuple[str, ...]:
@@ -24,15 +26,15 @@ def _loads(result: FlankChange) -> tuple[str, ...]:
 
 
 def _change_figure(result: FlankChange) -> Figure:
-    change = result.change_quantiles[:, :, 0]
-    worst = int(np.argmax(change[1]))
+    median = result.change_quantiles[MEDIAN, :, TOTAL]
+    worst = int(np.argmax(median))
     quantity = f"{result.quantity.replace('_', ' ')}, {result.over_speeds.replace('_', ' ')} over the speeds"
     return Figure(
         key="change",
         title="Levels of the pairs before and after",
         caption=f"{len(result.deviation)} pairs, deviating alike before (dashed) and after. All orders of "
         f"{result.mesh} together: {quantity}.",
-        alternative=f"The median change is {change[1, worst]:+.1f} dB at {_loads(result)[worst]}.",
+        alternative=f"The median change is {median[worst]:+.1f} dB at {_loads(result)[worst]}.",
         content=(_levels_panel(result), _change_panel(result)),
     )
 
@@ -41,15 +43,15 @@ def _levels_panel(result: FlankChange) -> Panel:
     lines = []
     for k, load in enumerate(_loads(result)):
         color = palette.ordered(k, result.torque.size)
-        lines.append(_distribution(f"{load}, before", result.before.pairs[:, k, 0], color, dashed=True))
-        lines.append(_distribution(load, result.after.pairs[:, k, 0], color))
+        lines.append(_distribution(f"{load}, before", result.before.pairs[:, k, TOTAL], color, dashed=True))
+        lines.append(_distribution(load, result.after.pairs[:, k, TOTAL], color))
     limit = () if result.requirement is None else (Reference("requirement", result.requirement),)
     return Panel(Axis(result.unit), Axis("share of all pairs"), tuple(lines), limit, title="Level")
 
 
 def _change_panel(result: FlankChange) -> Panel:
     lines = tuple(
-        _distribution(load, result.change[:, k, 0], palette.ordered(k, result.torque.size))
+        _distribution(load, result.change[:, k, TOTAL], palette.ordered(k, result.torque.size))
         for k, load in enumerate(_loads(result))
     )
     return Panel(
@@ -84,7 +86,7 @@ def _rows(result: FlankChange) -> Iterator[tuple[str, ...]]:
 
 
 def _banded(nominal: float, band: FloatArray, sign: str = "") -> str:
-    return f"{nominal:{sign}.1f} ({band[0]:{sign}.1f} to {band[2]:{sign}.1f})"
+    return f"{nominal:{sign}.1f} ({band[LOWER]:{sign}.1f} to {band[UPPER]:{sign}.1f})"
 
 
 def _influence_table(result: FlankChange) -> Table:

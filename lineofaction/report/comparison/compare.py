@@ -93,8 +93,8 @@ def compare_runs(runs: dict[str, RunResult], view: RunView, measured: MeasuredOr
 
 
 def _side(source: RunSignal) -> _Side:
-    seen = along_direction(source.run, source.signal)
-    return _Side(source.name, source.run, source.signal, seen, order_blocks(seen, source.signal))
+    projected = along_direction(source.run, source.signal)
+    return _Side(source.name, source.run, source.signal, projected, order_blocks(projected, source.signal))
 
 
 def _differences(sides: tuple[_Side, ...], orders: tuple[int, ...]) -> Iterator[Difference]:

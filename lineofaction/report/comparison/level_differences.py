@@ -103,10 +103,10 @@ def _largest(powers: tuple[OrderPower, OrderPower], span: tuple[float, float]) -
     """Return the largest difference at one speed, dB, where both stand out of the noise; NaN if nowhere."""
     grid = np.linspace(*span, PLACES)
     first, second = (np.interp(grid, one.frequency, one.clean) for one in powers)
-    seen = (first > _OUT * powers[0].noise) & (second > _OUT * powers[1].noise)
-    if not seen.any():
+    above_noise = (first > _OUT * powers[0].noise) & (second > _OUT * powers[1].noise)
+    if not above_noise.any():
         return math.nan
-    return float(np.max(np.abs(10.0 * np.log10(second[seen] / first[seen]))))
+    return float(np.max(np.abs(10.0 * np.log10(second[above_noise] / first[above_noise]))))
 
 
 def _level(mean: OrderPower) -> float:

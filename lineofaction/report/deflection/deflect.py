@@ -274,9 +274,9 @@ def agreement(result: GearboxDeflection) -> str:
 
 
 def _alarms(result: GearboxDeflection) -> tuple[str, ...]:
-    lost = [case for case in result.deflection.cases if case.status != "converged"]
-    alarms = [f'No equilibrium was found under the load case "{case.name}".' for case in lost]
-    if not lost and not result.agreed:
+    unsolved = [case for case in result.deflection.cases if case.status != "converged"]
+    alarms = [f'No equilibrium was found under the load case "{case.name}".' for case in unsolved]
+    if not unsolved and not result.agreed:
         alarms.append("Mesh loads and deflections do not agree yet: the misalignments still change.")
     outside = sorted({m.name for case in result.deflection.cases for m in case.meshes if not m.in_table})
     alarms += [

@@ -109,9 +109,9 @@ def _exaggeration(outline: Outline, case: CaseDeflection) -> float:
     if largest == 0.0:
         return 1.0
     axis_distance = float(np.max(np.ptp(outline.origin[:, :2], axis=0)))
-    wanted = DRAWN * max(float(np.max(outline.length)), axis_distance) / largest
-    power = 10.0 ** math.floor(math.log10(wanted))
-    return max(step * power for step in STEPS if step * power <= wanted)
+    exact_scale = DRAWN * max(float(np.max(outline.length)), axis_distance) / largest
+    power = 10.0 ** math.floor(math.log10(exact_scale))
+    return max(step * power for step in STEPS if step * power <= exact_scale)
 
 
 def _view_direction(outline: Outline, case: CaseDeflection) -> FloatArray:

@@ -20,14 +20,17 @@ from lineofaction.report.presentation import Presentation
 from model_studies.spread import quantiles
 
 _STEPS = 400
+"""Most points of a drawn distribution."""
+_HIGHEST = -1
+"""Index of the highest torque: torques rise."""
 _CAPTION = " Uppermost: the same of the limited order, with its limit."
 
 
 def _scatter_figure(study: ToleranceStudy) -> Figure:
     count = study.peak_to_peak.shape[0]
     last = study.quantiles[-1]
-    part, size = f"{100 * last.fraction:g} %", number(last.value[-1] / UM, 3)
-    designed = number(study.nominal[-1] / UM, 3)
+    part, size = f"{100 * last.fraction:g} %", number(last.value[_HIGHEST] / UM, 3)
+    designed = number(study.nominal[_HIGHEST] / UM, 3)
     return Figure(
         key="scatter",
         title="Peak-to-peak transmission error within tolerances",
@@ -90,8 +93,8 @@ def _quantile_table(study: ToleranceStudy) -> Table:
             value, error = float(values[k]) / UM, float(errors[k]) / UM
             row += [to_error(value, error), error_text(value, error)]
         for quantile in study.quantiles:
-            at_once = float(quantiles(study.first_order[:, k], quantile.fraction))
-            row += [number(float(quantile.value[k]) / UM, 3), _bounds(quantile, k), number(at_once / UM, 3)]
+            linear = float(quantiles(study.first_order[:, k], quantile.fraction))
+            row += [number(float(quantile.value[k]) / UM, 3), _bounds(quantile, k), number(linear / UM, 3)]
         rows.append(tuple(row))
     count = study.peak_to_peak.shape[0]
     caption = f"Peak to peak of {count} pairs; to first order by the derivatives of the curves as designed"
@@ -107,7 +110,7 @@ def _bounds(quantile: Quantile, k: int) -> str:
 def _influence_table(study: ToleranceStudy) -> Table:
     """Return the rank correlation of each deviation, the strongest at the highest load first."""
     head = ("deviation", *(f"{name} N m" for name in thousands(study.torque.tolist())))
-    order = np.argsort(-np.abs(study.influence[:, -1]), kind="stable")
+    order = np.argsort(-np.abs(study.influence[:, _HIGHEST]), kind="stable")
     rows = tuple(
         (boundary_name(study.names[i]), *(f"{value:+.2f}" for value in study.influence[i])) for i in order
     )
@@ -166,15 +169,15 @@ def _above_limit(study: ToleranceStudy, above: PairsAbove) -> list[str]:
     part = f"it makes {alone} % of the variance of the level alone, {all_of} % with others"
     lines.append(f"{names[maximum]} decides: {part}.")
     if above.cure is None:
-        none = "no pair is above" if not above.share[k] else "no tolerance a class finer lowers the share"
-        return [*lines, f"No cure: {none}."]
+        reason = "no pair is above" if not above.share[k] else "no tolerance a class finer lowers the share"
+        return [*lines, f"No cure: {reason}."]
     cured = _percent(above.cured[above.cure])
     return [*lines, f"Cheapest cure: {names[above.cure]} a class finer leaves {cured} above."]
 
 
 def _class_error(study: ToleranceStudy, of_class: WithinClass) -> str:
     """Return what the class says in place of the measured gears."""
-    torque, mean, measured = (values[-1] for values in (study.torque, of_class.mean, study.mean))
+    torque, mean, measured = (values[_HIGHEST] for values in (study.torque, of_class.mean, study.mean))
     text = (
         f"Within the class in place of the measured gears the mean is {number(mean / UM, 3)} µm at "
         f"{number(torque, 3)} N m, where it is {number(measured / UM, 3)} µm"
@@ -231,12 +234,14 @@ def _tables(study: ToleranceStudy) -> tuple[Table, ...]:
 
 def _page(study: ToleranceStudy) -> Page:
     last = study.quantiles[-1]
-    bounds = f"{_bounds(last, -1)} with {100 * study.confidence:g} % confidence"
+    bounds = f"{_bounds(last, _HIGHEST)} with {100 * study.confidence:g} % confidence"
     heads: tuple[Headline, ...] = (
-        Headline("as designed", f"{number(study.nominal[-1] / UM, 3)} µm", "at the highest torque"),
-        Headline("mean", f"{number(study.mean[-1] / UM, 3)} µm"),
+        Headline("as designed", f"{number(study.nominal[_HIGHEST] / UM, 3)} µm", "at the highest torque"),
+        Headline("mean", f"{number(study.mean[_HIGHEST] / UM, 3)} µm"),
         Headline(
-            f"{100 * last.fraction:g} % of all pairs below", f"{number(last.value[-1] / UM, 3)} µm", bounds
+            f"{100 * last.fraction:g} % of all pairs below",
+            f"{number(last.value[_HIGHEST] / UM, 3)} µm",
+            bounds,
         ),
     )
     figure = replace(_scatter_figure(study), table=None)

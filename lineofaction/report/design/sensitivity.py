@@ -95,8 +95,8 @@ def _alternative(studies: Sequence[PairStudy]) -> str:
                 100.0 * float(curve.relative_change[abs(curve.relative_change).argmax()])
                 for curve in (curves.misalignment, curves.center_distance_change)
             )
-            how = "with" if curves.corner_contact else "without"
-            parts.append(f"{study.name} {how} corner contact {skew:+.0f} % and {distance:+.0f} %")
+            preposition = "with" if curves.corner_contact else "without"
+            parts.append(f"{study.name} {preposition} corner contact {skew:+.0f} % and {distance:+.0f} %")
     return f"Largest change with misalignment and with center distance: {'; '.join(parts)}."
 
 
@@ -110,11 +110,12 @@ def _reason(study: PairStudy, curves: Sensitivity) -> str:
     maximum = int(abs(curve.relative_change).argmax())
     change = float(curve.relative_change[maximum])
     before, after = float(curve.carrying[curve.deviation == 0.0][0]), float(curve.carrying[maximum])
-    how = "with" if curves.corner_contact else "without"
+    preposition = "with" if curves.corner_contact else "without"
     deviation = f"{round(float(at[maximum]), 9):+g} % of center distance"
     verb = "lowers" if change < 0.0 else "raises"
     return (
-        f"{study.name} {how} corner contact: {deviation} {verb} the ripple by {100.0 * abs(change):.0f} %, "
+        f"{study.name} {preposition} corner contact: {deviation} {verb} the ripple by "
+        f"{100.0 * abs(change):.0f} %, "
         f"{_by_pairs(before, after, change)}."
     )
 

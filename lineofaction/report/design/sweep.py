@@ -25,7 +25,9 @@ from lineofaction.report.drawing.page import Headline, Page, Section
 from lineofaction.report.presentation import Presentation
 
 MAX_CURVES = 6
+"""Largest number of curves in a panel over one of two axes."""
 BEYOND = "by more than the errors"
+"""End of the remark on a least value that no other value equals within both errors."""
 
 
 def _maps(result: SweepResult) -> Figure:
@@ -34,16 +36,19 @@ def _maps(result: SweepResult) -> Figure:
     return Figure(
         "sweep_map",
         f"Map over {over}",
-        f"Colors run from the least to the largest value. Dots: {_alike(result)}.",
+        f"Colors run from the least to the largest value. Dots: {_least_label(result)}.",
         "",
         tuple(_map(result, quantity) for quantity in result.quantities),
     )
 
 
 def _curves(result: SweepResult) -> Figure:
-    """Draw quantities over one axis; over two the first one, a curve for some values of the other axis."""
-    one = len(result.axes) == 1
-    quantities = result.quantities if one else result.quantities[:1]
+    """Draw curves over the horizontal axis.
+
+    A sweep of one axis has a panel for each quantity. A sweep of two axes has the first quantity alone, with
+    a curve for each of at most `MAX_CURVES` values of the other axis.
+    """
+    quantities = result.quantities if len(result.axes) == 1 else result.quantities[:1]
     x = Axis(result.axes[result.across].label)
     title = QUANTITIES[result.quantities[0].name].description
     return Figure(
@@ -59,21 +64,24 @@ def _curves(result: SweepResult) -> Figure:
 
 
 def _map(result: SweepResult, quantity: SweptQuantity) -> Panel:
-    """One quantity over both axes, the torque across."""
-    across = result.across
+    """Draw one quantity over both axes as a panel; a swept torque is the horizontal axis."""
+    across = result.across  # index (0 or 1) of the horizontal axis
     x, y = result.levels(across), result.levels(1 - across)
     kind = QUANTITIES[quantity.name]
-    z = result.grid(quantity.value) / kind.one
+    z = result.grid(quantity.value) / kind.one  # from SI to the unit of the plot
     shade = HeatMap.spanning(x, y, z, kind.label)
-    at = np.argwhere(result.like_least(quantity))
-    dots = x[at[:, 1]], y[at[:, 0]]
-    marks = Line(_alike(result), *dots, palette.VERMILLION, width=0.0, markers=True)
+    rows, columns = np.nonzero(result.like_least(quantity))
+    marks = Line(_least_label(result), x[columns], y[rows], palette.VERMILLION, width=0.0, markers=True)
     axes = Axis(result.axes[across].label), Axis(result.axes[1 - across].label)
     return Panel(*axes, (marks,), title=kind.description, shade=shade)
 
 
 def _lines(result: SweepResult, quantity: SweptQuantity) -> tuple[Line, ...]:
-    """Draw a curve with its band; of two axes one for each of some values of the other."""
+    """Return the curves of a quantity over the horizontal axis with their error bands.
+
+    One swept axis gives one curve, two give at most `MAX_CURVES`, whose values of the other axis are spaced
+    evenly by index.
+    """
     kind = QUANTITIES[quantity.name]
     value, error = (result.grid(values) / kind.one for values in (quantity.value, quantity.error))
     x = result.levels(result.across)
@@ -85,9 +93,10 @@ def _lines(result: SweepResult, quantity: SweptQuantity) -> tuple[Line, ...]:
     return ordered_lines(x, [f"{levels[row]:.6g} {other.unit}" for row in rows], value[rows], error[rows])
 
 
-def _alike(result: SweepResult) -> str:
-    at = "at the same torque " if TORQUE in result.sweep.axes else ""
-    return f"as low as the least {at}within both errors"
+def _least_label(result: SweepResult) -> str:
+    """Return the label of the points that equal the least value within both errors."""
+    condition = "at the same torque " if TORQUE in result.sweep.axes else ""
+    return f"as low as the least {condition}within both errors"
 
 
 def figure(result: SweepResult) -> Figure:
@@ -96,14 +105,17 @@ def figure(result: SweepResult) -> Figure:
 
 
 def _figures(result: SweepResult) -> tuple[Figure, ...]:
-    """Draw all: of two axes maps, and curves of the first quantity."""
+    """Return the figures: of two axes the maps and the curves of the first quantity, of one the curves."""
     text = " ".join(f"{h.name[0].upper()}{h.name[1:]}: {h.value} {h.remark}." for h in _headlines(result))
     drawn = (_maps(result), _curves(result)) if len(result.axes) == 2 else (_curves(result),)
     return tuple(replace(figure, alternative=text) for figure in drawn)
 
 
 def _table(result: SweepResult, quantity: SweptQuantity) -> Table:
-    """Return a quantity with its errors: over two axes a row for each value of the one that runs down."""
+    """Return the table of a quantity with its errors.
+
+    Over two axes it has a column for each value of the horizontal axis and a row for each of the other.
+    """
     kind, across = QUANTITIES[quantity.name], result.across
     texts = [
         with_error(value / kind.one, error / kind.one) if np.isfinite(value) else "none"
@@ -132,22 +144,26 @@ def _series(result: SweepResult) -> Table:
 
 
 def _headlines(result: SweepResult) -> tuple[Headline, ...]:
-    """Return the best value of the first quantity with points as low within the errors, and the largest."""
+    """Return the least and the largest value of the first quantity.
+
+    The remark on the least one counts the points that equal it within the errors.
+    """
     if not result.sweep.usable:
         return ()
     quantity = result.quantities[0]
     kind = QUANTITIES[quantity.name]
     worst = int(np.nanargmax(quantity.value))
-    largest = Headline(f"largest {kind.description}", *_figure(result, quantity, worst))
+    largest = Headline(f"largest {kind.description}", *_value_and_remark(result, quantity, worst))
     if len(result.axes) == 2 and TORQUE in result.sweep.axes:
         return (_best_level(result, quantity), largest)
-    best = Headline(f"least {kind.description}", *_figure(result, quantity, quantity.minimum))
-    like = int(quantity.like_least.sum()) - 1
-    others = f"as low within the errors: {like} others" if like else f"below all others {BEYOND}"
+    best = Headline(f"least {kind.description}", *_value_and_remark(result, quantity, quantity.minimum))
+    equals = int(quantity.like_least.sum()) - 1  # without the least point itself
+    others = f"as low within the errors: {equals} others" if equals else f"below all others {BEYOND}"
     return (replace(best, remark=f"{best.remark}; {others}"), largest)
 
 
-def _figure(result: SweepResult, quantity: SweptQuantity, point: int) -> tuple[str, str]:
+def _value_and_remark(result: SweepResult, quantity: SweptQuantity, point: int) -> tuple[str, str]:
+    """Return a value as text with its unit, and its error with the values of the axes at the point."""
     kind = QUANTITIES[quantity.name]
     where = " and ".join(
         f"{axis.description} {result.sweep.point[point, k] / axis.factor:.6g} {axis.unit}"
@@ -159,15 +175,16 @@ def _figure(result: SweepResult, quantity: SweptQuantity, point: int) -> tuple[s
 
 
 def _best_level(result: SweepResult, quantity: SweptQuantity) -> Headline:
-    down, kind = 1 - result.across, QUANTITIES[quantity.name]
+    """Return the value of the other axis at which the mean of a quantity over the torques is least."""
+    down, kind = 1 - result.across, QUANTITIES[quantity.name]  # the torque is the horizontal axis
     axis, levels = result.axes[down], result.levels(down)
     value, error = (
         result.grid(values).mean(axis=1) / kind.one for values in (quantity.value, quantity.error)
     )
     best = int(np.nanargmin(value))
-    alike = value - value[best] <= error + error[best]
-    alike[best] = False
-    others = ", ".join(f"{level:.6g}" for level in levels[alike])
+    within_errors = value - value[best] <= error + error[best]
+    within_errors[best] = False
+    others = ", ".join(f"{level:.6g}" for level in levels[within_errors])
     also = f"as low within the errors: {others} {axis.unit}" if others else f"below all others {BEYOND}"
     text = f"{to_error(value[best], error[best])} {kind.unit}".strip()
     band = f"± {error_text(value[best], error[best])} {kind.unit}".strip()

@@ -63,8 +63,8 @@ class Camera:
         low, high = points.min(axis=0), points.max(axis=0)
         eye = 0.5 * (low + high) + 1.1 * FIELD * 0.5 * float(np.linalg.norm(high - low)) * back
         camera = cls(eye, axes, 1.0, np.zeros(2), size)
-        seen = camera.pixels(points)
-        minimum, maximum = seen.min(axis=0), seen.max(axis=0)
+        pixels = camera.pixels(points)
+        minimum, maximum = pixels.min(axis=0), pixels.max(axis=0)
         within = np.array(size) - 2.0 * np.array(margins)
         scale = float(np.min(within / np.maximum(maximum - minimum, 1e-12)))
         return cls(eye, axes, scale, 0.5 * np.array(size) - 0.5 * scale * (minimum + maximum), size)
@@ -114,9 +114,9 @@ class _Window:
     @classmethod
     def about(cls, camera: Camera, points: FloatArray) -> _Window:
         """Return the part that holds points."""
-        seen = camera.pixels(points)
-        low = np.maximum(np.floor(seen.min(axis=0)).astype(int), 0)
-        high = np.minimum(np.ceil(seen.max(axis=0)).astype(int) + 1, camera.size)
+        pixels = camera.pixels(points)
+        low = np.maximum(np.floor(pixels.min(axis=0)).astype(int), 0)
+        high = np.minimum(np.ceil(pixels.max(axis=0)).astype(int) + 1, camera.size)
         (left, top), (right, bottom) = low.tolist(), high.tolist()
         ray = camera.rays(np.arange(top, bottom), np.arange(left, right))
         return cls(slice(top, bottom), slice(left, right), ray)

@@ -1,4 +1,7 @@
-"""Points, notes and labels of a plot: how many, where, and how its words are written."""
+"""Points, notes and labels of a plot: their number and their places; and the rewriting of its texts.
+
+A note is a short text beside a point of a curve. Places are parts of the panel, 0 to 1 from left and bottom.
+"""
 
 from __future__ import annotations
 
@@ -11,8 +14,11 @@ import numpy as np
 
 from lineofaction.report.drawing.figure import Axis, FloatArray, Note, Panel
 
-# of an 8 point text in a panel of the usual size, in parts of its width and height
 _CHARACTER, _HEIGHT, _GAP, _RISE = 0.0072, 0.07, 0.008, 0.05
+"""Width of a character, height of a text, distance from its point, and rise above it.
+
+They are those of an 8 point text in a panel of the usual size, over the panel's width and height.
+"""
 _POINT_WIDTH, _POINT_HEIGHT = 0.012, 0.05
 _MARGIN = 0.05
 """Margin over the height of the panel, above its curves, and below them where the axis has no limits. A text
@@ -20,6 +26,7 @@ beyond the margin runs into the title or the axis."""
 _PLACES = [(row, left) for row in (0, -1, 1, -2, 2, -3, 3) for left in (False, True)]
 """Rows above (> 0) or below a note's usual place, and whether the text ends at the point."""
 _ROOM = 0.05  # share of the height above and below the curves of an axis without limits
+_LEADING = 0.3  # distance of two labels, in rows of text
 Description = TypeVar("Description")
 
 
@@ -65,7 +72,8 @@ def placed(notes: Sequence[Note], x: Axis, y: Axis, y_range: tuple[float, float]
     along = y.fraction(np.array([note.y for note in notes]), y_range)
     size = 0.5 * _POINT_WIDTH, 0.5 * _POINT_HEIGHT
     taken = [
-        _Box(a - size[0], a + size[0], b - size[1], b + size[1]) for a, b in zip(across, along, strict=True)
+        _Box(left=a - size[0], right=a + size[0], low=b - size[1], high=b + size[1])
+        for a, b in zip(across, along, strict=True)
     ]
     shifted, lowest = list(notes), -_MARGIN if y.limits is None else 0.0
     for k in np.argsort(across, kind="stable"):
@@ -80,7 +88,7 @@ def _text(text: str, x: float, y: float, row: int, left: bool) -> _Box:
     """Return the box of a text at the point (x, y)."""
     width, low = _CHARACTER * len(text), y + row * _HEIGHT - 0.5 * _HEIGHT + (_RISE if row >= 0 else 0.0)
     start = x - _GAP - width if left else x + _GAP
-    return _Box(start, start + width, low, low + _HEIGHT)
+    return _Box(left=start, right=start + width, low=low, high=low + _HEIGHT)
 
 
 def _is_free(box: _Box, taken: Sequence[_Box], lowest: float) -> bool:
@@ -109,11 +117,11 @@ def line_labels(panel: Panel, row: float) -> list[_LineLabel]:
     """
     lines = [line for line in panel.lines if line.label and _drawable(line.y, panel.y).size]
     ends = np.array([_drawable(line.y, panel.y)[-1] for line in lines])
-    heights = row * np.array([line.label.count("\n") + 1.3 for line in lines])
+    heights = row * np.array([line.label.count("\n") + 1.0 + _LEADING for line in lines])
     at = np.clip(panel.y.fraction(ends, vertical_limits(panel)), 0.0, 1.0) if lines else ends
     middles = spread_positions(at, heights)
     return [
-        _LineLabel(line.label, line.color, float(end), float(middle))
+        _LineLabel(text=line.label, color=line.color, end=float(end), middle=float(middle))
         for line, end, middle in zip(lines, at, middles, strict=True)
     ]
 
@@ -126,12 +134,13 @@ def spread_positions(wanted: FloatArray, heights: FloatArray) -> FloatArray:
     """
     order = np.argsort(wanted, kind="stable")
     below = np.cumsum(heights[order]) - 0.5 * heights[order]  # middle of each if all were stacked from 0
-    blocks: list[tuple[float, int]] = []
+    blocks: list[tuple[float, int]] = []  # mean shift, and number of texts that have it
     for offset in wanted[order] - below:
         mean, count = float(offset), 1
         while blocks and blocks[-1][0] >= mean:
-            other, many = blocks.pop()
-            mean, count = (mean * count + other * many) / (count + many), count + many
+            other_mean, other_count = blocks.pop()
+            mean = (mean * count + other_mean * other_count) / (count + other_count)
+            count += other_count
         blocks.append((mean, count))
     shift = np.concatenate([np.full(count, mean) for mean, count in blocks]) if blocks else np.empty(0)
     middles = np.empty(wanted.size)

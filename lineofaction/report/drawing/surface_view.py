@@ -289,6 +289,6 @@ def _in_sight(view: _View, ends: FloatArray, depth: FloatArray, behind: float = 
     flat = view.pixels(ends)
     middle = flat.mean(axis=1)
     column, row = np.rint(middle[:, :2]).astype(int).T
-    seen = flat[middle[:, 2] >= depth[row, column] - behind, :, :2]
-    gap = np.full((len(seen), 1, 2), np.nan)  # breaks the line
-    return np.concatenate([seen, gap], axis=1).reshape(-1, 2)
+    visible = flat[middle[:, 2] >= depth[row, column] - behind, :, :2]
+    gap = np.full((len(visible), 1, 2), np.nan)  # breaks the line
+    return np.concatenate([visible, gap], axis=1).reshape(-1, 2)

@@ -443,9 +443,9 @@ def _alarms(flanks: LoadDistribution, database: SteDatabase | None) -> tuple[str
     """Say loudly if database and flank results are of different pairs."""
     if database is None:
         return ()
-    mine, theirs = flanks.scene.geometry, database.geometry
-    same = mine.teeth == theirs.teeth and all(
-        abs(getattr(mine, name) - getattr(theirs, name)) <= 1e-9 * getattr(theirs, name)
+    computed, stored = flanks.scene.geometry, database.geometry
+    same = computed.teeth == stored.teeth and all(
+        abs(getattr(computed, name) - getattr(stored, name)) <= 1e-9 * getattr(stored, name)
         for name in ("base_pitch", "face_width")
     )
     return () if same else ("The flank results and the STE database are of different gear pairs.",)

@@ -39,6 +39,7 @@ def _level_figure(audio: HeardRun) -> Figure:
     return Figure(
         key="heard_level",
         title=f"Level of the {name}",
+        # the middle of the first block is half its duration
         caption=f"{audio.recording.quantity[0].upper()}{audio.recording.quantity[1:]}. Over blocks of "
         f"{number(time[0] * 2.0, 2)} s.",
         alternative=f"Loudest at {number(along[loudest], 4)} {x.label.rpartition(', ')[2]}: "

@@ -43,7 +43,7 @@ _QUANTITIES = (
 
 
 def excitation_table(metadata: Mapping[str, Any]) -> Table | None:
-    """List the excitations, of every mesh its first harmonics; None: not known, as for a run."""
+    """List the first harmonics of every mesh's excitation; None: the result (such as a run) lists none."""
     rows = _low_harmonics(metadata)
     if not rows:
         return None
@@ -62,7 +62,10 @@ def excitation_table(metadata: Mapping[str, Any]) -> Table | None:
 
 
 def omitted_orders(metadata: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
-    """Return rows on the share of a long table's excitation that a response does not list; else empty."""
+    """Return a row on the orders that a response left out of a table with very many orders, or none.
+
+    Metadata ``lines_left_out``: count, share of the force (rms), whether totals include them.
+    """
     if not (omitted := metadata.get("lines_left_out")):
         return ()
     share = engineering(100.0 * omitted["force"], 2)
@@ -102,13 +105,23 @@ def _panel(rows: list[Excitation], quantity: _Quantity, meshes: list[str]) -> Pa
     width, bars = _WIDTH / len(meshes), []
     for index, mesh in enumerate(meshes):
         mesh_rows = [row for row in rows if row.mesh == mesh and row.harmonic]
+        # the bars of all meshes stand side by side, centered on the harmonic
         at = np.array([row.harmonic for row in mesh_rows]) + (index - 0.5 * (len(meshes) - 1)) * width
         amplitudes = [quantity.amplitude(row) for row in mesh_rows]
         size = quantity.scale * np.array([value for value, _ in amplitudes])
         error = quantity.scale * np.array([error or 0.0 for _, error in amplitudes])
-        bars.append(Bars(mesh, at, size, 0.0, width, palette.category(index)))
+        bars.append(Bars(name=mesh, x=at, top=size, base=0.0, width=width, color=palette.category(index)))
+        # the error bar is narrower, and drawn pale over the end of the amplitude's bar
         bars.append(
-            Bars("error", at, size + error, np.maximum(size - error, 0.0), 0.4 * width, palette.INK, True)
+            Bars(
+                name="error",
+                x=at,
+                top=size + error,
+                base=np.maximum(size - error, 0.0),
+                width=0.4 * width,
+                color=palette.INK,
+                veiled=True,
+            )
         )
     names = tuple((float(k), str(k)) for k in range(1, MAX_HARMONIC + 1))
     x = Axis("harmonic of the mesh", limits=(0.4, MAX_HARMONIC + 0.6), names=names)

@@ -75,9 +75,9 @@ def _campbell(modes: ModalAnalysis) -> Figure:
     top = min(HEADROOM * float(np.nanmax(modes.frequency)), max(HEADROOM * reach, MIN_TOP))
     lines = [*_orders(modes, speed, top), *_modes(modes, speed)]
     if modes.critical_speed.size:
-        there = modes.critical_speed / RPM
+        speeds = modes.critical_speed / RPM
         lines.append(
-            Line("critical speeds", there, modes.critical_frequency, palette.INK, width=0.0, markers=True)
+            Line("critical speeds", speeds, modes.critical_frequency, palette.INK, width=0.0, markers=True)
         )
     x = Axis.over(f"speed of {modes.metadata['leading_shaft']}, rpm", speed)
     y = Axis("frequency, Hz", limits=(0.0, top))

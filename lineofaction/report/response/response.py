@@ -51,12 +51,12 @@ def _power_table(response: ForcedResponse) -> Table:
     speed = int(np.argmax(total))
     by_part = np.sum(power.loss[:, speed], axis=1)
     rows = []
-    for kind, lost in power.by_kind().items():
+    for kind, loss in power.by_kind().items():
         same_kind = [part for part, name in enumerate(power.kind) if name == kind]
         maximum = max(same_kind, key=lambda part: by_part[part])
-        share = 100.0 * float(lost[speed] / total[speed])
+        share = 100.0 * float(loss[speed] / total[speed])
         if abs(share) >= MIN_SHARE:
-            rows.append((kind, power.sink[maximum], number(lost[speed], 3), number(share, 3)))
+            rows.append((kind, power.sink[maximum], number(loss[speed], 3), number(share, 3)))
     title = f"Power lost at {number(float(response.speed[speed]) / RPM, 4)} rpm, all orders"
     return Table(title, ("lost in", "most in", "W", "%"), tuple(rows))
 
@@ -64,12 +64,14 @@ def _power_table(response: ForcedResponse) -> Table:
 def _power_figure(response: ForcedResponse) -> Figure:
     table = _power_table(response)
     kinds = {row[0] for row in table.rows}
-    lost = response.power.by_kind()
+    losses = response.power.by_kind()
     # lines are made for all kinds, so that a kind keeps its color whichever others are drawn
     lines = tuple(
-        line for line in category_lines(response.speed / RPM, list(lost), lost.values()) if line.name in kinds
+        line
+        for line in category_lines(response.speed / RPM, list(losses), losses.values())
+        if line.name in kinds
     )
-    maximum = max(lost, key=lambda kind: float(np.max(lost[kind])))
+    maximum = max(losses, key=lambda kind: float(np.max(losses[kind])))
     return Figure(
         key="power",
         title="Power lost by the vibration",

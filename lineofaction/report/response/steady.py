@@ -29,8 +29,10 @@ from lineofaction.report.drawing.figure import (
 from lineofaction.report.drawing.page import Headline
 from lineofaction.report.presentation import dynamics_presentation
 
-MIN_DISTANCE = 0.1  # share of the axis within which folds share a label
-MARKED = 80  # sweeps of more motions are drawn as lines
+MIN_DISTANCE = 0.1
+"""Least distance of two labelled folds, as a share of the axis."""
+MARKED = 80
+"""Most motions of a sweep that are drawn as points; a sweep of more is drawn as a line."""
 _BEARING_HEAD = ("bearing", "state", "rms force, N")
 _MESH_HEAD = (
     "mesh", "state", "largest multiplier", "rms error, µm", "peak to peak, µm", "least force, N",
@@ -83,7 +85,7 @@ def _quantities(states: SteadyStates, mesh: int) -> list[tuple[str, FloatArray]]
 
 
 def _folds(states: SteadyStates, ends: tuple[float, float]) -> list[float]:
-    """Return the speeds of folds to be labelled, rpm: of folds close together the outermost alone."""
+    """Return the speeds of folds to be labelled, rpm; of folds close together only the outermost."""
     folds = states.bifurcation_speed[states.bifurcation_kind == KINDS.index("fold")] / RPM
     separate: list[float] = []
     if folds.size:
@@ -98,7 +100,7 @@ def _lines(states: SteadyStates, values: FloatArray) -> Iterator[Line]:
     """Yield the branch in its stable and unstable parts, and the sweeps."""
     on = np.flatnonzero(states.curve == BRANCH)
     stable = states.instability[on] == 0
-    # stable motions beside unstable ones: the dashed line begins and ends at them, so that no gap is left
+    # stable motions next to unstable ones: the dashed line begins and ends at them, so that no gap is left
     boundary = np.append(~stable[1:], False) | np.append(False, ~stable[:-1])
     looks: tuple[tuple[str, Dash], ...] = (("branch, stable", "solid"), ("branch, unstable", "dash"))
     for (name, dash), in_part, joined in zip(looks, (stable, ~stable), (False, boundary), strict=True):
@@ -106,11 +108,11 @@ def _lines(states: SteadyStates, values: FloatArray) -> Iterator[Line]:
             line = np.where(in_part | joined, values[on], np.nan)
             yield Line(name, states.speed[on] / RPM, line, palette.INK, dash, 1.3)
     for curve, name, color in _SWEEPS:
-        there = np.flatnonzero(states.curve == curve)
-        if there.size:
-            few = there.size <= MARKED
+        rows = np.flatnonzero(states.curve == curve)
+        if rows.size:
+            few = rows.size <= MARKED
             yield Line(
-                name, states.speed[there] / RPM, values[there], color, width=0.0 if few else 1.4, markers=few
+                name, states.speed[rows] / RPM, values[rows], color, width=0.0 if few else 1.4, markers=few
             )
 
 
@@ -143,14 +145,14 @@ def _bearing_cells(states: SteadyStates, index: int, bearing: int) -> tuple[str,
 
 
 def _mesh_cells(states: SteadyStates, index: int, mesh: int) -> tuple[str, ...]:
-    """Describe a motion; of one that was not found say how far the search came."""
+    """Return the cells of a motion; where none was found, the residual that the search left."""
     if states.status[index]:
         left = leftover(1e6 * float(states.residual[index]), 2)
         empty = ("none",) * (len(_MESH_HEAD) - 2)  # all columns but mesh and state
         return (f"{status_name(int(states.status[index]))}, {left} µm left", *empty)
     return (
         KINDS[int(states.instability[index])],
-        number(np.abs(states.multiplier[index, 0]), 4),
+        number(np.abs(states.multiplier[index, 0]), 4),  # the largest is the first
         number(1e6 * float(states.rms_error[index, mesh]), 4),
         number(1e6 * float(states.peak_to_peak_error[index, mesh]), 4),
         number(states.least_force[index, mesh], 4),

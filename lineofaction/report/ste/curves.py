@@ -313,14 +313,14 @@ def _bands(ripple: Panel) -> str:
     """Return a sentence on the error bands, if any, and on cut bands."""
     if not any(line.has_band for line in ripple.lines):
         return ""
-    said = "Bands: half the error of peak-to-peak on either side"
+    sentence = "Bands: half the error of peak-to-peak on either side"
     low, high = ripple.y.limits or (-np.inf, np.inf)
     cut = [
         line.name
         for line in ripple.lines
         if np.nanmax(line.y + line.band) > high or np.nanmin(line.y - line.band) < low
     ]
-    return f"{said}, cut by the axis at {', '.join(cut)}. " if cut else f"{said}. "
+    return f"{sentence}, cut by the axis at {', '.join(cut)}. " if cut else f"{sentence}. "
 
 
 def _carriers(database: SteDatabase) -> str:

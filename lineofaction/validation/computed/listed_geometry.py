@@ -22,6 +22,8 @@ CENTER_DISTANCE_TOLERANCE = 17.5e-6
 """m; JS 7 from 80 to 120 mm (ISO 286), which the listing prints rounded."""
 
 Row = dict[str, str]
+Values = Callable[["Listing"], Sequence[float]]
+"""Numbers of both gears or of the pair, in mm, degrees or 1."""
 
 
 def listed_quantities(data: Path, pair: str, iterated_mm: dict[str, float]) -> Iterator[Comparison]:
@@ -114,9 +116,6 @@ class Listing:
         """Specific sliding of a gear at its tip or at its root."""
         end = 1 if (gear == 0) == at_tip else 0
         return float(specific_sliding(self.upper, self.rolls[end][0])[gear])
-
-
-Values = Callable[[Listing], Sequence[float]]
 
 
 def _of_gears(value: Callable[[Gear], float], unit: float = 1.0) -> Values:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Callable
 from pathlib import Path
 
@@ -19,6 +20,7 @@ from lineofaction.gearbox.inspection.machine_judgement import judged
 from lineofaction.gearbox.inspection.machine_values import value_file
 from lineofaction.gearbox.inspection.reading import read_sheet
 from lineofaction.gearbox.problems import EXIT_WARNINGS, BadInput
+from service.reading.sheets import case_as_made
 
 WAVES = (
     Wave("profile", 3, "left", 12.0, 4.0),
@@ -102,6 +104,15 @@ def test_the_verb_judges_by_the_file_beside_and_stops_if_asked(tmp_path: Path) -
     said = "warning (machine_value): f_Halpha of tooth 3 left: 12.4 µm printed, 12.0 µm recomputed"
     assert done.stdout.startswith(said)
     assert "7 of 8 recomputed" in done.stdout
+
+
+def test_a_service_says_first_what_differs() -> None:
+    """Its text has the printed results behind the curves."""
+    case = tomllib.loads(spur_case(torques=[100.0]))
+    text = CURVES + "20111 : fHa links 3 : 12.4\n20121 : fHa rechts 3 : -7.0\n"
+    sheet = {"csv": text, "gear": "pinion", "loaded": "left", "cutoff_mm": None}
+    answer = case_as_made({"inputs": {"case": case}, "measured": sheet}, Path(), lambda *_: None)
+    assert answer["left_out"] == ["f_Halpha of tooth 3 left: 12.4 µm printed, 12.0 µm recomputed"]
 
 
 @pytest.mark.law

@@ -125,14 +125,14 @@ class FlankChange(Plottable):
         at = int(np.argmax(median))
         band = f"{median[at]:+.1f} dB ({low[at]:+.1f} to {high[at]:+.1f} dB) at {self.torque[at]:.4g} N m"
         if np.all(np.abs(self.change_quantiles[:, :, 0]) < AUDIBLE):
-            said = "No change"
+            verdict = "No change"
         elif np.all(high < 0.0):
-            said = "Quieter under every load case"
+            verdict = "Quieter under every load case"
         elif np.any(low > 0.0):
-            said = "Louder"
+            verdict = "Louder"
         else:
-            said = "Quieter or louder, by the pair"
-        return f"{said}: {band}, {100.0 * self.louder_share[at, 0]:.0f} % of the pairs get louder."
+            verdict = "Quieter or louder, by the pair"
+        return f"{verdict}: {band}, {100.0 * self.louder_share[at, 0]:.0f} % of the pairs get louder."
 
     def required(self) -> str:
         """Return a sentence on whether the requirement is met; empty without a requirement."""

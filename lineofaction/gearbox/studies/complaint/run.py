@@ -1,7 +1,8 @@
 """Study of a complaint: the likely mesh and harmonic, other excitations near it, modes within reach.
 
 The parting of a linear response is the share of the mean mesh force by which flanks would have to pull:
-above 0 they lift off, and the response does not hold.
+above 0 they lift off, and the response does not hold. A mode is within reach of the complaint if it amplifies
+the frequency of the complaint at least by `REACH`.
 """
 
 from __future__ import annotations
@@ -52,21 +53,22 @@ from model_studies import in_unit
 from model_studies.record import under_key
 
 REACH = 2.0
-"""Least amplification by a mode within reach: 6 dB."""
+"""Least amplification by a mode within reach, 6 dB: response of the mode over its static response."""
 RESOLVED = 1.5
 """Frequency up to which flexible shafts are resolved, over that of the complaint. A mode above it amplifies
 less than `REACH`."""
 MAX_ORDERS = 100
-_CASE_SECONDS, _ASSEMBLIES = 1e-3, 3
-"""`_CASE_SECONDS`, `_ASSEMBLIES`: CPU seconds of the answer about a case, and number of times that a study
-assembles a scene.
-"""
+"""Highest order up to which the linear response is computed; above it bearing forces are not known."""
+_CASE_SECONDS = 1e-3
+"""CPU seconds of the answer about a case."""
+_ASSEMBLIES = 3
+"""Number of times that a study assembles a scene."""
 ROUNDING = 1e-6
 """Rounding error of an order that is a whole number."""
 NEAREST = 5
 """Number of excitations nearest to the complaint that are listed."""
 PAIR_ALONE: Json = {"equilibrium": None, "effect_ledger": None, "parting": 0.0}
-"""Facts of the answer about a case: it has no equilibrium, no effects and no parting."""
+"""Metadata of the answer about a case, which has no equilibrium, no effects and no parting."""
 
 
 @dataclass(frozen=True)
@@ -109,7 +111,7 @@ class _ComplaintStudy(
     inputs, answer, file = Inputs, ComplaintFigures, record_file(("complaint", AnsweredComplaint))
 
     def narrowed(self, subject: CheckedCase | SceneInput, inputs: Inputs) -> CheckedCase | SceneInput:
-        """Return case or scene with the complaint, as options state it over its own."""
+        """Return the case or the scene with its complaint, of which options replace fields."""
         written = subject.case if isinstance(subject, CheckedCase) else subject
         fields = with_options(written.complaint, inputs)
         if not fields:
@@ -125,11 +127,11 @@ class _ComplaintStudy(
         return validated(SceneInput, changed)
 
     def normalized(self, _subject: CheckedCase | SceneInput, _inputs: Inputs) -> Json:
-        """Return nothing: case or scene has all of it."""
+        """Return no inputs: the complaint is part of the case or the scene (`narrowed`)."""
         return {}
 
     def check(self, subject: CheckedCase | SceneInput, _inputs: Inputs) -> None:
-        """Refuse a case without any excitation at the complaint; the check of a scene refuses a scene."""
+        """Refuse a case without any excitation at the complaint; a scene is checked when it is read."""
         if isinstance(subject, CheckedCase):
             complaint_of_case(subject.case)
 
@@ -193,6 +195,7 @@ class _ComplaintStudy(
 
 
 def _of_pair(case: Case, means: Means) -> AnsweredComplaint:
+    """Return the answer about a case: orders near the complaint, without forces and modes."""
     began, complaint = cpu_seconds(), complaint_of_case(case)
     means.report("modes", 1.0)
     forces = tuple(OrderForce("", np.nan) for _ in complaint.within)
@@ -213,7 +216,7 @@ def _figures_of(line: Passing, complaint: Complaint) -> Json:
 
 
 def _reach(complaint: Complaint) -> float | None:
-    """Return the frequency to which shafts that bend are resolved, Hz."""
+    """Return the frequency up to which flexible shafts are resolved, Hz; None: by their default."""
     return None if complaint.frequency is None else RESOLVED * complaint.frequency
 
 
@@ -225,7 +228,7 @@ def _leading_speed(complaint: Complaint, scene: Scene) -> list[float]:
 
 
 def _near_modes(modes: ModalAnalysis, complaint: Complaint) -> tuple[NearMode, ...]:
-    """Return the modes at the speed, or at rest, by which the frequency is amplified, most first."""
+    """Return the modes within reach, at the speed or at rest, that of the largest amplification first."""
     if complaint.frequency is None:
         return ()
     names = ("frequency", "damping_ratio", "strain_energy", "kinetic_energy")
@@ -271,13 +274,14 @@ def _parting(response: ForcedResponse | None) -> float:
 
 
 def _force(response: ForcedResponse | None, order: float, bearing: str | None) -> OrderForce:
+    """Return the amplitude of an order on a bearing, by default on the bearing with the largest."""
     unknown = OrderForce(bearing or "", np.nan)
     if response is None or not response.bearing:
         return unknown
-    (at,) = np.nonzero(np.isclose(response.order, order, rtol=1e-6))
-    if not at.size:
+    (columns,) = np.nonzero(np.isclose(response.order, order, rtol=ROUNDING))
+    if not columns.size:
         return unknown
-    force = response.bearing_force[:, :3, 0, at[0]]  # three forces of each bearing at the only speed
+    force = response.bearing_force[:, :3, 0, columns[0]]  # three forces of each bearing at the only speed
     size = np.sqrt(np.sum(np.abs(force) ** 2, axis=1))
     b = int(np.argmax(size)) if bearing is None else response.bearing.index(bearing)
     return OrderForce(response.bearing[b], float(size[b]))

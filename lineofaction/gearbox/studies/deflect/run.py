@@ -98,9 +98,9 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
 
     def failure(self, result: GearboxDeflection) -> str:
         """Say which load cases have no equilibrium, or how far meshes and bodies disagree."""
-        lost = [case for case in result.deflection.cases if case.status != "converged"]
-        if lost:
-            names = ", ".join(f'"{case.name}" ({case.status.replace("_", " ")})' for case in lost)
+        unsolved = [case for case in result.deflection.cases if case.status != "converged"]
+        if unsolved:
+            names = ", ".join(f'"{case.name}" ({case.status.replace("_", " ")})' for case in unsolved)
             remedy = "Check that bearings hold every shaft that is loaded."
             return f"No equilibrium under load case {names}. {remedy}"
         if not result.agreed:

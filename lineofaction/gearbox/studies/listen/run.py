@@ -1,4 +1,4 @@
-"""Sound of runs through the housings of a scene: a recording, and its figures as the ear rates them."""
+"""Sound of runs through the housings of a scene: a recording, and its loudness and other ratings of sound."""
 
 from __future__ import annotations
 
@@ -29,17 +29,21 @@ from lineofaction.gearbox.studies.listen import ONE_RECEIVER, REMEDY, Inputs, Li
 from lineofaction.gearbox.units import MM
 
 PRINCIPAL = "principal"
+"""Name of the direction of the largest motion of a point."""
 DIRECTIONS = ("x", "y", "z", PRINCIPAL)
+"""Directions along which the velocity of a point is recorded."""
 KIND, SCHEMA = "recording", "lineofaction recording"
 """Kind of the result, and attribute of its files."""
 NO_LOUDNESS = "loudness is that of a sound pressure alone"
+"""Remark on a recording of a velocity, which has no figures of sound."""
 FREE_FIELD = (
     "free field: no room, floor or attached parts; the air is at rest and does not act back. Each mode has "
     "the level of the estimate in the mean over all directions, mostly within 1.5 dB, and the directions of "
     "monopoles, which neither scatter nor shadow: at one place it may be off by more"
 )
+"""Remark on the model of a sound pressure."""
 POINTS = 200
-"""Number of times of the speed in a result, equally spaced over the run."""
+"""Number of points of the curve of speed in a result, equally spaced over the run."""
 
 
 @dataclass(frozen=True)
@@ -114,9 +118,9 @@ class Receiver:
     direction: str = ""
 
     def in_scene(self, scene: SceneInput) -> Receiver:
-        """Return this, without a place the microphone of the scene's complaint.
+        """Return the receiver; one without microphone and point gets the microphone of the scene's complaint.
 
-        Raises `BadInput`: the scene has none.
+        Raises `BadInput`: the scene has no complaint with a microphone.
         """
         if self.point or self.microphone_mm:
             return self
@@ -155,10 +159,11 @@ class HeardRun(Plottable):
 
     @property
     def warnings(self) -> list[Json]:
-        """Warnings of housings that the scene of the run did not have so."""
-        lacking = "as the scene has it; its forces lack what that does"
+        """A warning for each of `other_housings`: the forces of the run lack the effect of its motion."""
+        difference = "as the scene has it; its forces lack what that does"
         messages = (
-            f'run {self.run}: it did not move in housing "{name}" {lacking}' for name in self.other_housings
+            f'run {self.run}: it did not move in housing "{name}" {difference}'
+            for name in self.other_housings
         )
         return [{"check": "other_housing", "message": message} for message in messages]
 
@@ -180,7 +185,7 @@ def received_run(name: str, run: RunResult, housings: SceneHousings, receiver: R
 
 
 def recording_metadata(recording: Recording) -> Json:
-    """Return the facts of a recording, in its unit."""
+    """Return quantity, unit, RMS, duration and sample rate of a recording; the RMS is in its unit."""
     return {
         "quantity": recording.quantity,
         "unit": recording.unit,
@@ -196,7 +201,7 @@ def _receiver(inputs: Inputs) -> Receiver:
 
 class _ListenStudy(Computation[SceneInput, HousedScene, Inputs, ListenFigures, HeardRun]):
     inputs, answer, file = Inputs, ListenFigures, record_file((KIND, HeardRun))
-    tables = False
+    tables = False  # the run has its forces, so the study needs no STE tables
 
     def check(self, scene: SceneInput, inputs: Inputs) -> None:
         """Refuse a microphone where nothing radiates, and a point that no housing has."""

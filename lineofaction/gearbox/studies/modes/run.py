@@ -139,10 +139,10 @@ def _energies(modes: ModalAnalysis, strain: Any, kinetic: Any) -> Json:
 
 def _over_speed(modes: ModalAnalysis, mode: int) -> Json:
     """Return a whirl mode where it oscillates, its energies at the highest of these speeds."""
-    there = np.flatnonzero(np.isfinite(modes.frequency[:, mode]))
-    over = {name: getattr(modes, name)[there, mode] for name in ("frequency", "damping_ratio", "whirl")}
-    energies = _energies(modes, modes.strain_energy[there[-1], mode], modes.kinetic_energy[there[-1], mode])
-    return {"mode": mode + 1, "speed": modes.speed[there], **over, **energies}
+    known = np.flatnonzero(np.isfinite(modes.frequency[:, mode]))
+    over = {name: getattr(modes, name)[known, mode] for name in ("frequency", "damping_ratio", "whirl")}
+    energies = _energies(modes, modes.strain_energy[known[-1], mode], modes.kinetic_energy[known[-1], mode])
+    return {"mode": mode + 1, "speed": modes.speed[known], **over, **energies}
 
 
 def _crossing(modes: ModalAnalysis, index: int) -> Json:

@@ -1,4 +1,9 @@
-"""Search for the quietest flanks of a mesh in a scene."""
+"""Search for the quietest flanks of a mesh in a scene.
+
+A design is a set of values of the flank modifications. Few positions, or rough: the designs on which the
+search explores are solved at fewer positions of the mesh than those that count. Shapes: L load cases, K lines
+of the sound (all orders together, then each).
+"""
 
 from __future__ import annotations
 
@@ -64,7 +69,11 @@ from model_studies.progress import announce, silent
 from model_studies.stage_clock import StageClock
 
 WALK, FINISH, LINEARIZED = 20, 8, 2.5
-"""Designs of a usual walk at few positions and of one that goes on in full; values that their slopes cost."""
+"""Figures of usual searches, by which the cost is predicted.
+
+They are the steps of a walk at few positions, the steps of one that goes on in full, and the cost of a step
+with its derivatives over that of a design without.
+"""
 
 
 @dataclass(frozen=True)
@@ -89,10 +98,10 @@ def sound_optimum(
     request: OptimizationRequest,
     means: Means,
 ) -> HeardOptimization:
-    """Search from the flanks of a mesh, and tell start and optimum with their errors.
+    """Search from the flanks of a mesh, and return start and optimum with their errors.
 
-    `request`: pair, variables, scatter, limits, search and options; its torques do not count. Raises
-    `InputError`, `SolveError`: no such flanks, no equilibrium, or no contact of the start.
+    `request`: pair, variables, scatter, limits, search and options; its torques are replaced by those of the
+    load cases. Raises `InputError`, `SolveError`: no such flanks, no equilibrium, or no contact of the start.
     """
     assert mesh.case is not None  # a scene with its tables has its cases written out
     clock, run = StageClock(means.workers.cost), means.analysis
@@ -117,30 +126,33 @@ def sound_optimum(
     spent = {"evaluations": sum(part.evaluations for part in runs), "search_expected_cpu_seconds": expected}
     quantity = quantity_of(subject, question)
     return HeardOptimization(
-        mesh.name,
-        quantity if question.bearing is None else f"{quantity} of {question.bearing}",
-        UNITS[quantity],
-        question.over_speeds,
-        question.over_loads,
-        line_names(question.orders),
-        request.variables,
-        tuple(case.name for case in question.load_cases),
-        setup.torque,
-        setup.misalignment,
-        np.array(question.speed_rpm) * RPM,
-        before,
-        after,
-        runs,
-        best,
-        question.tolerances.tolerance_class,
-        np.stack(pairs),
-        mesh.case.model_dump(mode="json", exclude_unset=True),
-        clock.to_json() | spent,
+        mesh=mesh.name,
+        quantity=quantity if question.bearing is None else f"{quantity} of {question.bearing}",
+        unit=UNITS[quantity],
+        over_speeds=question.over_speeds,
+        over_loads=question.over_loads,
+        lines=line_names(question.orders),
+        variables=request.variables,
+        load_case=tuple(case.name for case in question.load_cases),
+        torque=setup.torque,
+        misalignment=setup.misalignment,
+        speed=np.array(question.speed_rpm) * RPM,
+        start=before,
+        optimum=after,
+        runs=runs,
+        best_run=best,
+        tolerance_class=question.tolerances.tolerance_class,
+        pairs=np.stack(pairs),
+        case=mesh.case.model_dump(mode="json", exclude_unset=True),
+        cost=clock.to_json() | spent,
     )
 
 
 def _scaled(problem: HeardProblem, start: dict[str, float]) -> HeardProblem:
-    """Return a problem that counts by the level of its start; raises `SolveError`: that has none."""
+    """Return a problem whose objective is relative to the level of the start, dB.
+
+    Raises `SolveError`: the contact of the start has no solution.
+    """
     scaled = replace(problem, scale=problem.evaluated(start)[0])
     if not math.isfinite(scaled.scale):
         raise SolveError("the contact of the start design cannot be solved at every position and load")
@@ -148,9 +160,9 @@ def _scaled(problem: HeardProblem, start: dict[str, float]) -> HeardProblem:
 
 
 def _expected_seconds(problem: HeardProblem, values: dict[str, float], search: Search) -> float:
-    """Return the CPU seconds of a usual search, by a design at few positions and one in full."""
+    """Return the CPU seconds of a usual search, by timing a design at few positions and one in full."""
     rough, seconds = problem.rough(search.exploration), []
-    for timed in (rough, rough, problem):  # the first loads code
+    for timed in (rough, rough, problem):  # the first call also loads compiled code, and is not counted
         began = cpu_seconds()
         timed.evaluated(values)
         seconds.append(cpu_seconds() - began)
@@ -174,9 +186,10 @@ def sound_cost(
     request: OptimizationRequest,
     cache: Path | None,
 ) -> StudyCost | None:
-    """Return the cost of a usual search; None: nothing predicts it.
+    """Return the cost of a usual search; None: it cannot be predicted.
 
-    Neither modes nor the radiation of a solid housing are known before; they do not count. Raises `BadInput`.
+    The modes and the radiation of a solid housing are not known beforehand and not included. Raises
+    `BadInput`.
     """
     levels = levels_cost(scene, mesh.name, question)
     if levels is None:
@@ -199,8 +212,9 @@ def sound_cost(
         Work("pairs", rough, 2 * pairs.samples),
     ]
     cost = StudyCost(tuple(parts), predicted.bytes)
-    stands = levels.scene.meshes[mesh_index(levels.scene, mesh.name)].misalignment
-    if question.misalignment_um is None and predicted.across_face and not stands:
+    scene_misalignment = levels.scene.meshes[mesh_index(levels.scene, mesh.name)].misalignment
+    # the deflection under load then states the misalignment, see `misalignments`
+    if question.misalignment_um is None and predicted.across_face and not scene_misalignment:
         cost += DEFLECT.predicted(scene, DeflectInputs(load_cases=question.load_cases), cache)
     return cost
 
@@ -210,7 +224,8 @@ def misalignments(
 ) -> FloatArray:
     """Return the misalignment of the mesh under each load case (L,), m.
 
-    It is what the question states, or the scene of the mesh, else that of the deflection.
+    The first of these that is stated counts: the question's, the scene's (0 for a plane model), and else the
+    misalignment by the deflection of shafts, bearings and housing.
     """
     known, shape = subject.databases[mesh.name], (len(question.load_cases),)
     plane = known.metadata.receipt["plan"]["model"] in ("plane_strain", "plane_stress")
@@ -261,7 +276,10 @@ def sound_problem(
 
 
 def _sampled(problem: HeardProblem, case: Case, question: HeardObjectiveInput) -> HeardProblem | None:
-    """Return the problem with pairs within tolerances as nodes; deviations of effects that are off are 0."""
+    """Return the problem with a sample of pairs within tolerances as nodes, to count by a quantile of them.
+
+    None: the standard has no tolerances for these gears. Deviations whose effect is off in the case are 0.
+    """
     evaluator, tolerance_input = problem.evaluator, question.tolerances
     try:
         across = evaluator.contact.face is not None
@@ -271,6 +289,7 @@ def _sampled(problem: HeardProblem, case: Case, question: HeardObjectiveInput) -
             raise error.within("heard.tolerances") from None
         return None
     drawn = tolerances.sample(tolerance_input.samples, tolerance_input.seed)
+    # the effect of each deviation; the misalignment, no flank variable, is one by its name
     skew = {MISALIGNMENT: named(EFFECTS, MISALIGNMENT)}
     effect = {name: skew.get(name) or effect_of(name, EFFECTS) for name in tolerances.widths}
     acting = [k for k, name in enumerate(effect) if case.effects.get(effect[name]) != "off"]
@@ -292,7 +311,7 @@ def _torques(subject: TabledScene, mesh: str, question: HeardObjectiveInput) -> 
 def _table(
     bodies: CondensedPair, request: OptimizationRequest, torque: float, misalignment: float
 ) -> SteDatabase:
-    """Return the table of the start under a load case, with neighboring loads."""
+    """Return the table of the request's flanks under a load case, at `LOAD_FACTORS` of its torque in N m."""
     return bodies.table(request.pair, torque * LOAD_FACTORS, misalignment)
 
 
@@ -316,7 +335,7 @@ def _evaluator(
 
 
 def _confirmed(setup: SoundSearch, values: dict[str, float], cache: Path | None) -> HeardDesign:
-    """Return a design with errors from rougher contacts: fewer slices, coarser meshes."""
+    """Return a design with errors; they are the change by rougher contacts: fewer slices, coarser meshes."""
     problem, pair = setup.problem, modified(setup.bodies.checked.request.pair, values)
     points = list(zip(np.outer(setup.torque, LOAD_FACTORS), setup.misalignment, strict=True))
     tables = [setup.bodies.table(pair, *point) for point in points]
@@ -326,29 +345,29 @@ def _confirmed(setup: SoundSearch, values: dict[str, float], cache: Path | None)
     objectives = np.array([contact.objective for contact in contacts])
     objective, violation = problem.evaluated(values)
     figures = confirmed_figures(problem.evaluator, values, cache)
-    nominal_loads = slice(1, None, LOAD_FACTORS.size)
+    nominal_loads = slice(1, None, LOAD_FACTORS.size)  # the load case itself, the second of its loads
     ripple = [table.peak_to_peak(force=float(table.force[1])) for table in tables]
     return HeardDesign(
-        dict(values),
-        Estimate(objective, float(np.linalg.norm(objectives[1:] - objectives[0])), "dB"),
-        levels[0],
-        np.linalg.norm(levels[1:] - levels[0], axis=0),
-        np.array([estimate.value for estimate in ripple]),
-        np.array([estimate.error for estimate in ripple]),
-        figures.pressure.max(axis=0)[nominal_loads],
-        figures.face_load_factor.max(axis=0)[nominal_loads],
-        figures.edge_load_share.max(axis=0)[nominal_loads],
-        contacts[0].parting,
-        violation,
-        figures.root_stress.max(axis=0)[nominal_loads],
-        figures.root_stress_error.max(axis=0)[nominal_loads],
-        figures.pressure_error.max(axis=0)[nominal_loads],
-        figures.face_load_factor_error.max(axis=0)[nominal_loads],
+        values=dict(values),
+        objective=Estimate(objective, float(np.linalg.norm(objectives[1:] - objectives[0])), "dB"),
+        level=levels[0],
+        level_error=np.linalg.norm(levels[1:] - levels[0], axis=0),
+        peak_to_peak=np.array([estimate.value for estimate in ripple]),
+        peak_to_peak_error=np.array([estimate.error for estimate in ripple]),
+        pressure=figures.pressure.max(axis=0)[nominal_loads],
+        face_load_factor=figures.face_load_factor.max(axis=0)[nominal_loads],
+        edge_load_share=figures.edge_load_share.max(axis=0)[nominal_loads],
+        parting=contacts[0].parting,
+        violation=violation,
+        root_stress=figures.root_stress.max(axis=0)[nominal_loads],
+        root_stress_error=figures.root_stress_error.max(axis=0)[nominal_loads],
+        pressure_error=figures.pressure_error.max(axis=0)[nominal_loads],
+        face_load_factor_error=figures.face_load_factor_error.max(axis=0)[nominal_loads],
     )
 
 
 class _Levels(NamedTuple):
-    """Levels (L, K) of tables, dB, the objective without scatter, and where flanks part (L,)."""
+    """Levels (L, K) of tables, dB, the objective without scatter, dB, and where flanks part (L,)."""
 
     level: FloatArray
     objective: float
@@ -370,7 +389,7 @@ def _levels(problem: HeardProblem, tables: Sequence[SteDatabase]) -> _Levels:
 def _rougher(
     bodies: CondensedPair, pair: ParallelAxes, torques: FloatArray, misalignment: float
 ) -> list[SteDatabase]:
-    """Return the tables of flanks on rougher contacts."""
+    """Return the tables of a pair under a load case on each rougher contact; `torques` in N m, rising."""
     return [
         table_of_solution(
             solved.pair,

@@ -27,30 +27,32 @@ from lineofaction.gearbox.studies.steady import Inputs, SteadyFigures
 from lineofaction.gearbox.units import RPM
 
 KINDS = ("stable", "fold", "period doubling", "Neimark-Sacker")
+"""Stability of a motion, and bifurcations where it is lost: names by their number in a result."""
 
 
 class _SteadyStudy(SceneStudy[Inputs, SteadyFigures, SteadyStates]):
     inputs, answer, file = Inputs, SteadyFigures, array_file(SteadyStates)
 
     def predicted(self, scene: SceneInput, inputs: Inputs, _cache: Path | None) -> StudyCost | None:
-        """Return the cost of the motions of both sweeps and of the points of a branch without folds.
+        """Return the predicted cost of the motions of both sweeps and of a branch without folds.
 
-        A few steps of the scene say what a period takes. Modes that a solid housing keeps are not known
-        before and do not count. Of a scene whose motion does not repeat nothing predicts it.
+        A few steps of the scene give the cost of a period. The number of modes of a solid housing is known
+        only after its reduction, so their cost is left out. None: the motion of the scene does not repeat, or
+        the scene cannot be assembled without its tables.
         """
         with boundary_errors():
             before = scene_before_tables(scene)
         if before is None:
             return None
         speeds = np.array(inputs.speed_rpm) * RPM
-        how: Json = {"branch": inputs.branch, "repeat": inputs.repeat, "periods": inputs.settling_periods}
+        options: Json = {"branch": inputs.branch, "repeat": inputs.repeat, "periods": inputs.settling_periods}
         try:
-            cost = _study_cost(steady_cost(sized(scene), speeds, **how))
+            cost = _study_cost(steady_cost(sized(scene), speeds, **options))
             if cost.seconds <= LONG:
                 return cost
-            single = steady_cost(sized(scene), speeds[-1:], **how)
+            single = steady_cost(sized(scene), speeds[-1:], **options)
         except (InputError, SolveError):
-            return None  # the study says it, on its own tables
+            return None  # the study raises this error itself
         return replace(cost, remedy=_remedy(single, inputs.speed_rpm[-1]))
 
     def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> SteadyStates:
@@ -95,16 +97,16 @@ class _SteadyStudy(SceneStudy[Inputs, SteadyFigures, SteadyStates]):
 
 
 def status_name(status: int) -> str:
-    """Name how a search ended."""
+    """Return the name of the status with which the search for a motion ended."""
     return OrbitStatus(status).name.lower().replace("_", " ")
 
 
 def _motion(states: SteadyStates, index: int) -> tuple[Any, ...]:
-    """Return a motion; of one that was not found only how the search ended."""
+    """Return the record of a motion and further figures; one that was not found has a status alone."""
     point = Row(states, index)
     figures: Json = {"status": status_name(int(point.status)), "meshes": None, "bearings": None}
     if point.status == OrbitStatus.CONVERGED:
-        largest = point.multiplier[0]
+        largest = point.multiplier[0]  # Floquet multipliers stand by falling size
         figures |= {
             "stability": KINDS[int(point.instability)],
             "largest_multiplier": [largest.real, largest.imag],

@@ -1,4 +1,8 @@
-"""The scenes of a study: places of a scene file by paths, other numbers there, tables of other flanks."""
+"""The scenes of a study: a scene file in which some numbers are replaced.
+
+A factor of the study names a number of the file by a path, and may stand for several locations. Factors of
+flanks also need new STE tables, which are solved with the compliance of the same gears.
+"""
 
 from __future__ import annotations
 
@@ -36,6 +40,11 @@ Location = tuple[str | int, ...]
 """Keys and indices down to a number of the scene as JSON."""
 
 _EVERY = "*"
+"""Name in a path that stands for every part of a kind."""
+_SLACK = 1.0 + 1e-9
+"""Factor for the rounding of a largest load."""
+_LENGTH_IN_FLANKS = 6
+"""Length of a location of flanks: meshes, index, case, pair, pinion or wheel, field."""
 _ENTRY = re.compile(r"^(\w+)(?:\[(\d+)\])?$")
 FLANKS = tuple(figure.field for kind in (FlankModification, DrawingStarts) for figure in figures(kind))
 """Fields of a case that leave the bodies of its gears as they are."""
@@ -71,12 +80,12 @@ def places_of(scene: SceneInput, field: str, path: str) -> tuple[Location, ...]:
 
 
 def _part_name(part: BaseModel, index: int) -> str:
-    """Return the name of a part; of one without it, its number."""
+    """Return the name of a part, or its index where parts of the kind have no name."""
     return str(getattr(part, "name", index))
 
 
 def _below(model: type[BaseModel], field: str, path: str, rest: str) -> Iterator[str | int]:
-    """Yield keys and indices below a table."""
+    """Yield the keys and indices of the dotted path `rest` below a table with fields of `model`."""
     for name in rest.split("."):
         entry = _ENTRY.match(name)
         key = entry[1] if entry else name
@@ -108,13 +117,13 @@ def mesh_of_case(location: Location) -> int | None:
 def check_flank(field: str, path: str, location: Location) -> None:
     """Refuse a field of a case that is no figure of its flanks."""
     in_pair = location[3:4] == ("pair",) and location[4:5] in (("pinion",), ("wheel",))
-    if not in_pair or len(location) != 6 or location[5] not in FLANKS:
+    if not in_pair or len(location) != _LENGTH_IN_FLANKS or location[5] not in FLANKS:
         bound = "a figure of the flanks in pair.pinion or pair.wheel: other bodies need a table of their own"
         raise BadInput.of(field, path, bound, f"One of {', '.join(FLANKS)}.")
 
 
 def with_value(table: Json, location: Location, value: float) -> None:
-    """Put a value into the scene as JSON, in place; a list takes it in all its entries.
+    """Put a value into the scene as JSON, in place; a location that is a list has it in all entries.
 
     Raises `BadInput`: a list has no such entry.
     """
@@ -137,7 +146,7 @@ def with_value(table: Json, location: Location, value: float) -> None:
 
 @dataclass(frozen=True)
 class VariedScene:
-    """A scene whose numbers are replaced; `dynamics.study.run_study.Scenes`."""
+    """A scene in which numbers are replaced; it fulfils the protocol `dynamics.study.run_study.Scenes`."""
 
     written: str
     """The scene as JSON, its cases written out."""
@@ -168,12 +177,12 @@ class VariedScene:
     def inputs(self, values: Mapping[str, float]) -> SceneInput:
         """Return the scene file at values of the factors; raises `BadInput`.
 
-        Parts of the file without other values are the same objects in all of them.
+        Parts of the file in which no value is replaced are the same objects in the scenes of all values.
         """
         changes = [(location, value) for name, value in values.items() for location in self.places[name]]
         try:
             return SceneInput.model_validate(vars(self._base) | self._varied(changes))
-        except (ValidationError, BadInput):  # its words are those of the whole scene
+        except (ValidationError, BadInput):  # validate the whole scene, whose errors name the full path
             table = self._table()
             for location, value in changes:
                 with_value(table, location, value)
@@ -182,19 +191,19 @@ class VariedScene:
     def _varied(
         self, changes: Sequence[tuple[Location, float]]
     ) -> dict[str, BaseModel | tuple[BaseModel, ...]]:
-        """Return the tables and lists of tables that have other values."""
+        """Return the sections of the scene with replaced values: tables, and lists of tables."""
         by_part: dict[Location, list[tuple[Location, float]]] = {}
         for location, value in changes:
-            depth = 2 if isinstance(location[1], int) else 1
+            depth = 2 if isinstance(location[1], int) else 1  # section and index of a part, or a table alone
             by_part.setdefault(location[:depth], []).append((location[depth:], value))
         changed: dict[str, Any] = {}
-        for at, inside in by_part.items():
-            kind, numbers = str(at[0]), [int(number) for number in at[1:]]
+        for part_location, replaced in by_part.items():
+            kind, indices = str(part_location[0]), [int(index) for index in part_location[1:]]
             section = changed.get(kind, getattr(self._base, kind))
-            part = section[numbers[0]] if numbers else section
-            made = self._reused(at, repr(inside), partial(_with_values, part, inside))
-            for number in numbers:
-                made = (*section[:number], made, *section[number + 1 :])
+            part = section[indices[0]] if indices else section
+            made = self._reused(part_location, repr(replaced), partial(_with_values, part, replaced))
+            for index in indices:  # at most one
+                made = (*section[:index], made, *section[index + 1 :])
             changed[kind] = made
         return changed
 
@@ -204,10 +213,11 @@ class VariedScene:
 
     @cached_property
     def _last(self) -> dict[Location, tuple[Any, Any]]:
-        """The parts, the tables and the housings made last, with the inputs that determine them."""
+        """The parts, tables and housings made last, each with the key of the inputs it was made from."""
         return {}
 
     def _reused(self, name: Location, key: object, make: Callable[[], Any]) -> Any:
+        """Return what was made last under a name if its key is equal; else make it anew."""
         known = self._last.get(name)
         if known is None or known[0] != key:
             known = self._last[name] = key, make()
@@ -243,14 +253,14 @@ class VariedScene:
         return tables
 
     def _other_flanks(self, inputs: SceneInput) -> dict[str, SteDatabase]:
-        """Solve the contact of other flanks at all loads of the tables, support loads too."""
+        """Solve the contact of changed flanks at all loads of the tables, including their support loads."""
         tables = {}
         for mesh in (mesh for mesh in inputs.meshes if mesh.name in self._condensed):
             known, bodies = self.databases[mesh.name], self._condensed[mesh.name]
             assert mesh.case is not None
             pair = gear_pair(mesh.case)
             force = np.union1d(known.force, known.support_force)
-            torques = np.asarray(pair.torque(force[force <= bodies.largest_load * (1.0 + 1e-9)]))
+            torques = np.asarray(pair.torque(force[force <= bodies.largest_load * _SLACK]))
             at = float(known.misalignment[0]), float(known.center_distance_change[0])
             tables[mesh.name] = bodies.table(pair, torques, *at)
         return tables

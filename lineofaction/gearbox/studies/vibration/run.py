@@ -112,8 +112,8 @@ class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, Result]):
 
     def predicted(self, scene: SceneInput, inputs: Inputs, _cache: Path | None) -> StudyCost | None:
         """Return the cost of the forces on bearings, with which the motion of the housing is a product."""
-        seen = any(map(_vibrates, scene.housings))
-        return predicted_forces(scene, inputs) if seen else None
+        vibrates = any(map(_vibrates, scene.housings))
+        return predicted_forces(scene, inputs) if vibrates else None
 
     def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> Result:
         tabled = subject.steady

@@ -11,7 +11,13 @@ from hertz_laws import edge_contact_length
 from scipy.special import j1
 
 from fe_contact.contact import PatchRule, contact_pressure
-from fe_contact.contact.face_patch import FaceGrid, FaceLoads, add_compliance, face_loads
+from fe_contact.contact.face_patch import (
+    FaceGrid,
+    FaceLoads,
+    add_compliance,
+    face_loads,
+    means_and_differences,
+)
 from fe_contact.contact.patch import Patches, load_vector, tip_patches
 from fe_contact.contact.strip import Gap
 from fe_contact.hertz import STRIP_DISTANCE, half_width, lateral_share, peak_pressure
@@ -402,3 +408,27 @@ def test_a_strip_that_reaches_an_edge_or_a_chamfer_is_told_apart():
     for about in AT_EDGE:
         assert edge(**about) and not edge(force=0.0 * FORCE, **about), about
     assert not any(edge(**about) for about in BESIDE)
+
+
+def test_means_and_differences_are_those_of_the_forces_on_every_node() -> None:
+    draw = np.random.default_rng(7)
+
+    def loads(width: int) -> FaceLoads:
+        """Return loads on six slices; some use all of their numbers, some but one."""
+        used = np.array([width, 1, *draw.integers(1, width, 4)])
+        nodes = np.array([draw.permutation(40)[:width] for _ in used])
+        beyond = np.arange(width) >= used[:, None]
+        return FaceLoads(
+            np.where(beyond, -1, nodes), np.where(beyond, 0.0, draw.normal(size=nodes.shape)), used
+        )
+
+    def on_nodes(given: FaceLoads) -> np.ndarray:
+        forces = np.zeros((len(given.used), 40))
+        for row, nodes, values, used in zip(forces, given.nodes, given.forces, given.used, strict=True):
+            np.add.at(row, nodes[:used], values[:used])
+        return forces
+
+    first, second = loads(9), loads(5)
+    both = on_nodes(means_and_differences(first, second, 0.25))
+    assert both[::2] == pytest.approx(0.5 * (on_nodes(first) + on_nodes(second)), rel=1e-14, abs=1e-16)
+    assert both[1::2] == pytest.approx(0.25 * (on_nodes(first) - on_nodes(second)), rel=1e-14, abs=1e-16)
