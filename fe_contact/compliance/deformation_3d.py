@@ -92,7 +92,7 @@ class _Loaded:
     teeth: IntArray
     """Numbers of the teeth. Shape (p,)."""
     columns: IntArray
-    """Their columns among the loads of all cases. Shape (p,)."""
+    """Columns of the teeth among the loads of all cases. Shape (p,)."""
     forces: FloatArray
     """Forces on the flanks, N. Shape (nf, p)."""
 
