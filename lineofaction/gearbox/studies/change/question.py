@@ -40,7 +40,9 @@ def check_receiver(scene: SceneInput, receiver: HeardInput) -> None:
         raise BadInput.of("heard.microphone_mm", receiver.microphone_mm, bound)
     if pressure or receiver.quantity == SURFACE_VELOCITY:
         housing_of(scene, receiver)
-    known = [part.name for part in (*scene.bushings, *scene.rolling_bearings, *scene.planet_bearings)]
+    known = [part.name for part in scene.bushings]
+    known += [part.name for part in scene.rolling_bearings]
+    known += [part.name for part in scene.planet_bearings]
     if not known:
         bound = "at least one bearing: what is heard passes through bearings"
         raise BadInput.of("scene.bushings", None, bound, "Give it bushings or rolling bearings.")
