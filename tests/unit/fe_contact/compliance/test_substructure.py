@@ -18,6 +18,7 @@ from fe_contact.compliance import flank_compliance_3d
 from fe_contact.compliance.cyclic_ring import close_ring, hold_sector
 from fe_contact.compliance.elimination_tree import EliminationTree, bisected_tree
 from fe_contact.compliance.factorization import factorise, nested_dissection
+from fe_contact.compliance.flank import ComplianceChecks
 from fe_contact.compliance.rounding import (
     EPSILON,
     LARGEST_ROUNDING,
@@ -249,3 +250,9 @@ def test_a_body_beyond_the_bound_names_rounding() -> None:
     gear = disc(0.1, teeth=20)
     with pytest.raises(SolveError, match=r"rounding may change it by .* Widen the face"):
         flank_compliance_3d(gear, SectorRecipe.draft(gear), reach=0)
+
+
+def test_energy_may_round_by_the_order_of_its_sums_and_no_more() -> None:
+    """Linear algebra on two threads rounded the energy of a helical gear to 1.2 of the bound of one term."""
+    checks = ComplianceChecks(0.0, 0.0, 0.0, 1.0e-11, 1.0, 1e-12, 8.3e-12)
+    assert checks.energy < checks.limits["energy"] < 5.0 * checks.energy_rounding
