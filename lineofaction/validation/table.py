@@ -5,7 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Iterable, Sequence
 
-from bounds import engineering
+from bounds import error_digits
 from lineofaction.validation.comparison import Comparison
 from lineofaction.validation.run import Outcome
 
@@ -15,8 +15,8 @@ MOST_ROWS = 12
 
 
 def with_error(value: float, error: float) -> str:
-    """Write a value with its error."""
-    return f"{value:.6g} ± {engineering(error, 2)}" if error else f"{value:.6g}"
+    """Write a value with its error, both to its second digit; without an error six digits."""
+    return error_digits.with_error(value, error) if error else f"{value:.6g}"
 
 
 def headline(outcome: Outcome) -> str:
