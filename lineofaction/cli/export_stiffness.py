@@ -5,10 +5,12 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
+from textwrap import dedent
 from typing import Any
 
 import numpy as np
 
+from bounds.error_digits import with_error
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
 from lineofaction.cli.export_point import Point
@@ -21,30 +23,32 @@ POSITIONS = 128
 """Positions of a base pitch that are written."""
 HARMONICS = 10
 
-_ROSS = '''"""Mesh stiffness for ross.MultiRotor (ROSS 2) over the angle of the driving gear, N/m and rad.
+_ROSS = dedent('''\
+    """Mesh stiffness for ross.MultiRotor (ROSS 2) over the angle of the driving gear, N/m and rad.
 
-Along the normal of the flanks: that of the transverse line of action over the square of cos(beta_b).
-"""
+    Along the normal of the flanks: that of the transverse line of action over the square of cos(beta_b).
+    """
 
-import numpy as np
+    import numpy as np
 
-gear_mesh_stiffness = {mean!r}  # force over mean transmission error at {force:.6g} N
-theta_range = np.linspace(0.0, {period!r}, {count})
-stiffness_range = np.array({values!r})
+    gear_mesh_stiffness = {mean!r}  # force over mean transmission error at {force:.6g} N
+    theta_range = np.linspace(0.0, {period!r}, {count})
+    stiffness_range = np.array({values!r})
 
 
-def use_in(multi_rotor):
-    """Give a ross.MultiRotor this mesh stiffness; its update_mesh_stiffness=True follows the angle."""
-    mesh = multi_rotor.mesh
-    mesh.stiffness = gear_mesh_stiffness
-    mesh.theta_range, mesh.stiffness_range = theta_range, stiffness_range
-'''
-_OPENTORSION = '''"""Mesh stiffness for opentorsion.ElasticGear: base radii R in m, k in N m/rad."""
+    def use_in(multi_rotor):
+        """Give a ross.MultiRotor this mesh stiffness; its update_mesh_stiffness=True follows the angle."""
+        mesh = multi_rotor.mesh
+        mesh.stiffness = gear_mesh_stiffness
+        mesh.theta_range, mesh.stiffness_range = theta_range, stiffness_range
+    ''')
+_OPENTORSION = dedent('''\
+    """Mesh stiffness for opentorsion.ElasticGear: base radii R in m, k in N m/rad."""
 
-R_driving, R_driven = {radii!r}
-k_mesh = {mean!r}  # N/m along the line of action at {force:.6g} N
-k = k_mesh * R_driving**2  # ElasticGear(node, I, R_driven, k=k, parent=Gear(node, I, R_driving))
-'''
+    R_driving, R_driven = {radii!r}
+    k_mesh = {mean!r}  # N/m along the line of action at {force:.6g} N
+    k = k_mesh * R_driving**2  # ElasticGear(node, I, R_driven, k=k, parent=Gear(node, I, R_driving))
+    ''')
 
 
 def stiffness_of(database: SteDatabase, point: Point) -> dict[str, Any]:
@@ -107,7 +111,7 @@ def export_stiffness(file: Path, output: Path, library: str, point: Point, *, as
         print_json({"written": [str(output)]} | answer)
         return
     mean, error = (1e-6 * answer[f"mean_stiffness{name}_n_per_m"] for name in ("", "_error"))
-    console().print(f"mesh stiffness {mean:.4g} ± {error:.2g} N/µm at {answer['transverse_force_n']:.4g} N")
+    console().print(f"mesh stiffness {with_error(mean, error)} N/µm at {answer['transverse_force_n']:.4g} N")
     print_written([output])
 
 

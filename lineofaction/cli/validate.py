@@ -14,7 +14,7 @@ import typer
 from lineofaction.cli.output import check_writable, console, print_json, print_written, progress_bar, table
 from lineofaction.gearbox.problems import EXIT_FAILED, BadInput
 from lineofaction.validation import CASES, Outcome, ValidationCase, markdown, read_case, run_case
-from lineofaction.validation.table import headline, shown, with_error
+from lineofaction.validation.table import difference, headline, shown, with_error
 
 
 def run_validate(names: Sequence[str], output: Path | None, *, as_json: bool) -> None:
@@ -64,7 +64,7 @@ def _show(outcomes: Sequence[Outcome], output: Path | None) -> None:
         out.print(f"{case.name}: {headline(outcome)} ({outcome.cpu_seconds:.1f} CPU s). {case.source}")
         rows = [
             (row.quantity, row.unit, with_error(row.theirs, row.their_error),
-             with_error(row.ours, row.our_error), f"{100.0 * row.difference:+.2g} %", row.verdict)
+             with_error(row.ours, row.our_error), difference(row), row.verdict)
             for row in shown(outcome.comparisons)
         ]  # fmt: skip
         if rows:

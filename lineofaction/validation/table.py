@@ -5,7 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Iterable, Sequence
 
-from bounds import error_digits
+from bounds import engineering, error_digits
 from lineofaction.validation.comparison import Comparison
 from lineofaction.validation.run import Outcome
 
@@ -17,6 +17,11 @@ MOST_ROWS = 12
 def with_error(value: float, error: float) -> str:
     """Write a value with its error, both to its second digit; without an error six digits."""
     return error_digits.with_error(value, error) if error else f"{value:.6g}"
+
+
+def difference(row: Comparison) -> str:
+    """Write how far ours is from theirs, in per cent of theirs."""
+    return f"{engineering(100.0 * row.difference, 2, '+')} %"
 
 
 def headline(outcome: Outcome) -> str:
@@ -57,9 +62,7 @@ def _case(outcome: Outcome) -> Iterable[str]:
 def _cells(row: Comparison) -> str:
     unit = f", {row.unit}" if row.unit else ""
     numbers = with_error(row.theirs, row.their_error), with_error(row.ours, row.our_error)
-    return (
-        f"| {row.quantity}{unit} | {' | '.join(numbers)} | {100.0 * row.difference:+.2g} % | {row.verdict} |"
-    )
+    return f"| {row.quantity}{unit} | {' | '.join(numbers)} | {difference(row)} | {row.verdict} |"
 
 
 def _filled(text: str) -> str:

@@ -31,12 +31,12 @@ def mesh_stiffness(pair: GearPair, torque_n_m: float) -> Estimate:
 
 
 def misaligned_ripple(
-    pair: ParallelAxes, normal_force_n: float, misalignment_um: float, level: str
+    pair: ParallelAxes, normal_force_n: float, misalignment_um: float, level: str, effects: Mapping[str, str]
 ) -> Mapping[str, Estimate]:
-    """Return the growth of peak-to-peak transmission error by misalignment without corner contact, %."""
+    """Return the growth of peak-to-peak transmission error by misalignment under choices of effects, %."""
     tilts = 0.0, 1e-6 * misalignment_um
     axes = TableAxes(normal_forces=[normal_force_n], misalignments=tilts)
-    table = analyze(pair, axes, AnalysisOptions(level=level, effects={"corner_contact": "off"}))
+    table = analyze(pair, axes, AnalysisOptions(level=level, effects=effects))
     aligned, tilted = (table.peak_to_peak(force=normal_force_n, misalignment=tilt) for tilt in tilts)
     ratio = tilted.value / aligned.value
     error = ratio * math.hypot(aligned.error / aligned.value, tilted.error / tilted.value)

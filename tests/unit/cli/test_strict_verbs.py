@@ -20,6 +20,7 @@ NOT_COMPUTING = {
     "new",
     "cache",
     "hardcases",
+    "validate",
     "serve",
     "keys",
     "database",
