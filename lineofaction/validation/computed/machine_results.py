@@ -16,7 +16,7 @@ def printed_results(data: Path, values: str, gear: dict[str, float], digit_um: f
     """Yield each printed deviation of a gear whose trace or pitch table is in the curve file."""
     measured = machine_file(data.read_text(encoding="utf-8"), Gear(**gear))  # type: ignore[arg-type]
     computed = dict(results(measured, Gear(**gear)))  # type: ignore[arg-type]
-    printed = value_file((data.parent / values).read_text(encoding="utf-8")).printed
+    printed = value_file((data.parent / Path(values).name).read_text(encoding="utf-8")).printed
     for _, figure, flank, tooth, value in (*measured.printed, *printed):
         if (figure, flank, tooth) in computed:
             name = " ".join(str(part) for part in (figure, flank, f"tooth {tooth}" if tooth else "") if part)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
+from random import Random
 from typing import Any
 
 import pytest
@@ -102,7 +104,7 @@ def test_without_its_data_a_case_is_not_run_and_agrees_with_nothing(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setenv(REFERENCE, str(tmp_path))
-    case = replace(read_case(CASES["stplus_fzg_c"]), data="of_nobody.csv")
+    case = read_case(CASES["stplus_fzg_c"]).model_copy(update={"data": "of_nobody.csv"})
     outcome = run_case(case, no_verb)
     assert (outcome.reason, outcome.comparisons, outcome.failed) == (NO_DATA, (), False)
     assert "not run: data not found" in markdown([outcome])
@@ -146,8 +148,55 @@ def test_a_file_with_a_wrong_field_is_refused_by_it(tmp_path: Path, change: str,
     assert loa("validate", str(file)).exit_code == EXIT_BAD_INPUT
 
 
-def test_a_function_of_another_program_is_not_called() -> None:
-    case = replace(read_case(CASES["nafems_cylinder"]), function="os:getcwd", arguments={})
+@pytest.mark.parametrize(
+    ("line", "field"),
+    [
+        ('function = "os:getcwd"', "function"),
+        ('function = "lineofaction.gearbox.result_files:stamp"', "function"),
+        ('function = "lineofaction.validation.computed.pairs:__import__"', "function"),
+        ('function = "lineofaction.validation.computed.pairs.os:remove"', "function"),
+        ('verb = "cache clear"', "verb"),
+        ('verb = "geometry CASE -o owned.json"', "verb"),
+        ('verb = "modes examples/../../etc/passwd.toml"', "verb"),
+        ('verb = "geometry /etc/passwd"', "verb"),
+        ('verb = "geometry CASE"\ndata = "../../../etc/passwd"', "data"),
+        ('verb = "geometry CASE"\ndata = "/etc/passwd"', "data"),
+        ('verb = "geometry CASE"\ndata = "a/../../b"', "data"),
+        ('verb = "geometry CASE"\n[[compared]]\nquantity = "q"\nvalue = "1"\nkey = "x.__class__"', "key"),
+        ('verb = "geometry CASE"\n[[compared]]\nquantity = "q"\nvalue = "1e999"\nkey = "x"', "value"),
+        ('verb = "geometry CASE"\n[[compared]]\nquantity = "q"\nvalue = "nan"\nkey = "x"', "value"),
+        ('verb = "geometry CASE"\ncompared = "x"', "compared"),
+        ('verb = "geometry CASE"\narguments = 5', "arguments"),
+        ('verb = "geometry CASE"\nname = "rikor_forces"', "name"),
+    ],
+)
+def test_a_file_of_a_stranger_reaches_nothing_but_its_numbers(tmp_path: Path, line: str, field: str) -> None:
+    file = tmp_path / "stranger.toml"
+    file.write_text(f'title = "t"\nsource = "s"\nlicence = "l"\nassumed = []\n{line}', encoding="utf-8")
+    with pytest.raises(BadInput, match=field):
+        read_case(file)
+    assert loa("validate", str(file)).exit_code == EXIT_BAD_INPUT
+
+
+@pytest.mark.parametrize("name", ["pairs:analyze", "pairs:no_such", "sector_series:root_stress"])
+def test_a_function_that_is_not_made_for_cases_is_not_called(name: str) -> None:
+    case = read_case(CASES["nafems_cylinder"]).model_copy(
+        update={"function": f"lineofaction.validation.computed.{name}", "arguments": {}}
+    )
     outcome = run_case(case, no_verb)
     assert outcome.failed
-    assert "in one of fe_contact, dynamics, lineofaction" in outcome.reason
+    assert "a function that lineofaction.validation.computed." in outcome.reason
+
+
+def test_damaged_files_end_in_one_error(tmp_path: Path) -> None:
+    """Cuts, exchanged lines, other bytes and deep or long tables of a case of the program, by seed."""
+    text, draw = CASES["rikor_forces"].read_bytes(), Random(20261130)
+    for number in range(100):
+        damaged = bytearray(text)
+        for _ in range(draw.randrange(1, 6)):
+            place = draw.randrange(len(damaged))
+            damaged[place : place + draw.randrange(40)] = draw.randbytes(draw.randrange(12))
+        file = tmp_path / f"damaged_{number}.toml"
+        file.write_bytes(bytes(damaged))
+        with suppress(BadInput):
+            run_case(read_case(file), no_verb)
