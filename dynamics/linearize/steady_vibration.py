@@ -289,10 +289,8 @@ def _solve(
     action, the largest over the speeds. `terms` are those of `gyroscopic_terms` at each speed, or empty.
     `fractions` tries partial fractions by modes, which cost less. Blocks of speeds limit the memory.
     """
-    linear, per_meter = at.linear, 1.0 / at.linear.scale
-    mass, damping, total = (
-        per_meter[:, None] * a * per_meter for a in (linear.mass, linear.damping, linear.stiffness)
-    )
+    per_meter = 1.0 / at.linear.scale
+    mass, damping, total = _per_meter(at.linear)
     pushed = _right_sides(force, rows, second) * per_meter[:, None]
     saved, watched = 1 if rows is None else 1 + len(rows), at.system.arrays.direction[at.system.driving_rows]
     largest = np.zeros((len(watched), omega.shape[1]))
@@ -300,9 +298,7 @@ def _solve(
     modal = at.system.arrays.sparse.modal
     first = _first_eliminated(modal.first, terms)
     small = modal_elimination(modal, per_meter, total, damping, mass) if first else None
-    by_modes = (
-        PartialFractions.of(total, mass, damping) if fractions and small is None and not terms else None
-    )
+    by_modes = PartialFractions.of(total, mass, damping) if fractions and not (first or terms) else None
     parts = np.stack([total, mass, damping]).astype(complex)
     maximum = max(float(np.max(np.abs(pushed[..., 0]), initial=0.0)), 1e-300)
     left, farthest = np.float64(0.0), np.zeros(per_meter.size)  # residual force, and largest displacements
@@ -333,8 +329,17 @@ def _solve(
             progress(min(part.stop, omega.shape[0]) / omega.shape[0])
     elastic = np.max(np.abs(total) @ farthest, initial=0.0)
     if not np.maximum(left, np.finfo(float).eps * elastic) <= ROUNDED * maximum:
-        raise unbounded(linear, omega)
+        raise unbounded(at.linear, omega)
     return displacement, float(left / maximum), largest
+
+
+def _per_meter(linear: LinearSystem) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return mass, damping and stiffness (n, n) of freedoms that are all in meters."""
+    per_meter = 1.0 / linear.scale
+    mass, damping, stiffness = (
+        per_meter[:, None] * matrix * per_meter for matrix in (linear.mass, linear.damping, linear.stiffness)
+    )
+    return mass, damping, stiffness
 
 
 def _first_eliminated(first: int, terms: Sequence[Terms]) -> int:

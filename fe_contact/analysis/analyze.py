@@ -29,9 +29,6 @@ def analyze(
 ) -> SteDatabase:
     """Compute the static transmission error of a gear pair over loads and alignments.
 
-    ``analyze(pair, torques=[60.0, 120.0], level="draft")`` is short for
-    ``analyze(pair, TableAxes(torques=[60.0, 120.0]), AnalysisOptions(level="draft"))``.
-
     Parameters
     ----------
     pair : GearPair, InternalGearPair or Checked
@@ -45,11 +42,10 @@ def analyze(
         The case as the caller phrased it, echoed into the result and hashed; default: the request in SI
         units.
     on_draft : callable, optional
-        Called as on_draft(table, refining) with the table of every pass that does not meet the tolerance and
-        is refined: first answers with their errors, while the next pass runs.
+        Called as on_draft(table, refining) with the table of every pass that is refined, while the next runs.
     **keywords
-        Members of axes, options and run, in place of theirs: see `TableAxes`, `AnalysisOptions`, `Run`. A
-        number as `tolerance` is its relative part: 0.01 is 1 % or 20 nm, the larger of both.
+        Members of `TableAxes`, `AnalysisOptions` and `Run`, in place of theirs, as ``torques=[60.0, 120.0]``.
+        A number as `tolerance` is its relative part: 0.01 is 1 % or 20 nm, the larger of both.
 
     Returns
     -------
@@ -69,8 +65,7 @@ def analyze(
     Warns
     -----
     PlausibilityWarning
-        Once for each implausible value, of the request before the run and of its results after it; all are in
-        `SteDatabase.warnings`.
+        Once for each implausible value of request and results; all are in `SteDatabase.warnings`.
     """
     axes, options, run = with_keywords(axes, options, run, keywords)
     checked = as_checked(pair, axes, options)

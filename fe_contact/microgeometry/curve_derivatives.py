@@ -142,33 +142,26 @@ def curve_derivatives(
         A figure that is zero and cannot be negative is given its derivative to the one side.
     misalignment, center_distance_change : float
         m.
-
-    Notes
-    -----
-    By the center distance the curve is solved once more, as its compliance changes.
     """
     loads = np.asarray(torques, dtype=float)
     solved = bodies.solve(pair, loads, misalignment, center_distance_change)
     checked, problem, solution = solved.checked, solved.problem, solved.solution
     _require_solved(solution)
-    names = _all_names(pair, checked) if by is None else tuple(by)
-    for name in names:
-        _check_name(name, pair, checked)
+    names = _checked_names(pair, checked, by)
     strips = CarryingStrips.of(solved.pair, problem, solution)
     arm = load_arm(solved.pair, problem, solution)
 
     def derivative(name: str) -> tuple[FloatArray, FloatArray]:
         if name == TORQUE:
             return solution.tangent * (solution.load / loads), (strips.added_arm - arm) / loads
-        if name == CENTER_DISTANCE:
+        if name == CENTER_DISTANCE:  # its compliance changes: the curve is solved once more
             further = bodies.solve(pair, loads, misalignment, center_distance_change + DISTANCE_STEP)
             return _differences(further, solution, arm)
         opened = Difference.of(pair, name).opened(strips)
         return strips.change(opened), strips.arm_change(opened)
 
     derivatives, of_arm = (np.stack(arrays) for arrays in zip(*map(derivative, names), strict=True))
-    curves, period = solution.deflection.T, checked.model.period
-    weights = np.stack([quantity_derivatives(curve, period) for curve in curves], axis=-1)
+    weights = _quantity_weights(solution.deflection, checked.model.period)
     changes = np.einsum("qpf,apf->aqf", weights, derivatives)
     return CurveDerivatives(
         names=names,
@@ -184,6 +177,19 @@ def curve_derivatives(
         _strips=strips,
         _quantities=weights,
     )
+
+
+def _checked_names(pair: ParallelAxes, checked: Checked, by: Sequence[str] | None) -> tuple[str, ...]:
+    """Return the names of the derivatives, by default all; raises `InputError` by the first that has none."""
+    names = _all_names(pair, checked) if by is None else tuple(by)
+    for name in names:
+        _check_name(name, pair, checked)
+    return names
+
+
+def _quantity_weights(deflection: FloatArray, period: int) -> FloatArray:
+    """Return the derivatives of the curve quantities by each value of the curves (P, F), (q, P, F)."""
+    return np.stack([quantity_derivatives(curve, period) for curve in deflection.T], axis=-1)
 
 
 def _differences(
