@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from bounds import engineering
+from bounds.error_digits import with_error
 from bounds.types import Json
 from lineofaction.cli.output import console, print_json, print_written, table
 from lineofaction.cli.verb_warnings import warn
@@ -93,7 +94,9 @@ def _as_json(people: Population, gear: str) -> Json:
         "teeth": people.teeth,
         "traits": list(people.names),
         "mean_um": (people.mean / UM).tolist(),
+        "mean_error_um": (people.mean_error / UM).tolist(),
         "between_gears_um": between.tolist(),
+        "between_gears_error_um": (people.spread_error / UM).tolist(),
         "between_teeth_um": within.tolist(),
         "common": people.common.tolist(),
         "correlation": people.correlation.tolist(),
@@ -123,12 +126,10 @@ def _rows(people: Population, gear: str) -> Iterator[str]:
 
 def _show(people: Population, answer: Json) -> None:
     out = console()
-    columns = (answer[key] for key in ("mean_um", "between_gears_um", "between_teeth_um", "common"))
-    figures = zip(*columns, strict=True)
-    rows = [
-        (name, *(engineering(value, 3) for value in row))
-        for name, row in zip(people.names, figures, strict=True)
-    ]
+    known = (("mean_um", "mean_error_um"), ("between_gears_um", "between_gears_error_um"))
+    with_errors = [list(map(with_error, answer[value], answer[error])) for value, error in known]
+    plain = [[engineering(value, 3) for value in answer[key]] for key in ("between_teeth_um", "common")]
+    rows = list(zip(people.names, *with_errors, *plain, strict=True))
     title = (
         f"{len(people.gears)} gears, {people.teeth} teeth: gears by the mean of their teeth, teeth about it"
     )

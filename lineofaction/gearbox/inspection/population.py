@@ -103,6 +103,22 @@ class Population:
         spread = np.sqrt(np.maximum(np.diag(self.between), _LEAST**2))
         return np.asarray(self.between / np.outer(spread, spread))
 
+    @property
+    def mean_error(self) -> FloatArray:
+        """Standard errors of the mean (d,), m: of few gears."""
+        return np.asarray(self.of_gears.std(axis=0, ddof=1) / math.sqrt(len(self.gears)))
+
+    @property
+    def spread_error(self) -> FloatArray:
+        """Standard errors of the standard deviations between gears (d,), m.
+
+        The variance of n means is known to sqrt(2/(n - 1)) of itself; what differences of teeth take off it
+        leaves that error whole.
+        """
+        between = np.diag(self.between)
+        of_variance = self.of_gears.var(axis=0, ddof=1) * math.sqrt(2.0 / (len(self.gears) - 1.0))
+        return np.asarray(np.sqrt(between + of_variance) - np.sqrt(between))
+
     def drawn(self, count: int, seed: int, teeth: float = math.inf) -> FloatArray:
         """Draw the mean traits of gears of so many measured teeth, normally distributed, (count, d) in m."""
         values, vectors = np.linalg.eigh(self.between + self.within / teeth)

@@ -291,7 +291,7 @@ def _ripple(database: SteDatabase, curves: list[Curve]) -> Panel:
 
 def _label(line: Line, curve: Curve) -> str:
     mean, ripple = (to_error(1e6 * e.value, 1e6 * e.error) for e in (curve.mean, curve.peak_to_peak))
-    return f"{line.name}: mean {mean} µm,\n{ripple} µm peak to peak"
+    return f"{line.name}: mean {mean} µm\n{ripple} µm peak to peak"
 
 
 def _harris(database: SteDatabase, curves: list[Curve]) -> Panel:

@@ -76,6 +76,24 @@ def test_a_made_up_batch_is_read_back_within_its_sampling_error(tmp_path: Path) 
 
 
 @pytest.mark.law
+def test_stated_errors_of_small_batches_cover_what_they_say(tmp_path: Path) -> None:
+    """Of 40 batches of six gears two thirds lie within one standard error, nearly all within three."""
+    true, off = np.sqrt(np.diag(BETWEEN)), []
+    for seed in range(40):
+        folder = tmp_path / str(seed)
+        folder.mkdir()
+        batch(folder, 6, seed)
+        people = population([inspected_gear(path, LOADED) for path in gear_files(folder)], "batch")
+        of_slopes = [people.names.index(name) for name in ("profile_slope", "helix_slope")]
+        mean, error = 1e6 * people.mean[of_slopes], 1e6 * people.mean_error[of_slopes]
+        spread = 1e6 * np.sqrt(np.diag(people.between))[of_slopes]
+        off.append([(mean - MEAN) / error, (spread - true) / (1e6 * people.spread_error[of_slopes])])
+    within = np.mean(np.abs(off) < 1.0, axis=(0, 2))
+    assert ((within > 0.5) & (within < 0.85)).all()
+    assert (np.mean(np.abs(off) < 3.0, axis=(0, 2)) > 0.9).all()
+
+
+@pytest.mark.law
 def test_principal_components_are_the_shapes_that_traces_differ_by(tmp_path: Path) -> None:
     """Profiles of two shapes: a line of one variance and, orthogonal to it, a wave of another."""
     draw = np.random.default_rng(4)

@@ -76,7 +76,7 @@ def test_the_ripple_is_drawn_in_micrometers_with_its_mean_in_the_label(database:
         np.testing.assert_allclose(line.y, 1e6 * (ste[:, load] - curve.mean.value), rtol=1e-9)
         offsets.append(mapped.y - line.y)
         numbers = (to_error(1e6 * e.value, 1e6 * e.error) for e in (curve.mean, curve.peak_to_peak))
-        assert line.label == "{}: mean {} µm,\n{} µm peak to peak".format(line.name, *numbers)
+        assert line.label == "{}: mean {} µm\n{} µm peak to peak".format(line.name, *numbers)
         assert mapped.label == line.name
     steps = np.diff(offsets, axis=0)
     assert steps.min() > 0.0
