@@ -20,6 +20,8 @@ import llvmlite.binding
 from host.loop_cache import SHIPPED
 from host.processor_family import FAMILIES, family_of
 
+ENTRIES = {".nbi", ".nbc"}
+"""Endings of index and machine code of a loop: what the package holds."""
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 STEPS = (
     (
@@ -43,7 +45,7 @@ def main(families: list[str]) -> None:
         else:
             print(f"no loops for {family}: this processor is none", file=sys.stderr)
     for file in SHIPPED.rglob("*"):
-        if file.suffix in {".lock", ".json"}:
+        if file.is_file() and file.suffix not in ENTRIES:  # locks, sources, structures that were run
             file.unlink()
 
 

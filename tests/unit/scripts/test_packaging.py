@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from fnmatch import fnmatch
 from pathlib import Path, PurePath
 
 import pytest
@@ -25,8 +26,22 @@ def packaged(file: Path) -> bool:
 
 
 def _matches(name: PurePath, pattern: PurePath) -> bool:
-    """Whether a pattern takes a name; no part of it stands for several folders."""
-    return len(name.parts) == len(pattern.parts) and name.match(str(pattern))
+    """Whether a pattern takes a name; its part ``**`` stands for any number of folders."""
+    if "**" not in pattern.parts:
+        return len(name.parts) == len(pattern.parts) and name.match(str(pattern))
+    at = pattern.parts.index("**")
+    first, last = pattern.parts[:at], pattern.parts[at + 1 :]
+    ends = zip(name.parts[: len(first)] + name.parts[-len(last) :], first + last, strict=False)
+    return len(name.parts) >= len(first) + len(last) and all(fnmatch(part, known) for part, known in ends)
+
+
+def test_patterns_take_files_at_any_depth() -> None:
+    """Loops are built into the folder of the package by `scripts/run`."""
+    pattern = PurePath("shipped_loops/**/*.nb[ic]")
+    assert _matches(PurePath("shipped_loops/dynamics/forces/elements.potential.nbc"), pattern)
+    assert _matches(PurePath("shipped_loops/index.nbi"), pattern)
+    assert not _matches(PurePath("shipped_loops/dynamics/forces/notes.txt"), pattern)
+    assert not _matches(PurePath("other_loops/a.nbc"), pattern)
 
 
 @pytest.mark.parametrize("package", PACKAGES)
