@@ -11,6 +11,7 @@ own normal; elsewhere it is 1. Shapes: P positions, n candidates, k nodes of a f
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,6 +26,11 @@ NEAR = 1e-3
 
 _STRETCH = 0.25
 """Relative change of the length of a patch at an edge, by which the tilt is differenced there."""
+
+_DEPARTURE = 0.2
+"""Way, in half-widths of the widest patch, over which a patch leaves the edge: from the tilt by its length to
+that by its position. Of a soft gear they differ by 2 %, and deflections by the square of the tilt.
+"""
 
 
 def share_of_pinion(pinion: FloatArray, both: FloatArray) -> FloatArray:
@@ -60,7 +66,7 @@ def contact_problem(
     finite elements, and the factor is 1 + kappa (lever - 1) instead of the lever.
 
     At edges the tilt is the derivative by the length of patches that grow from the edge, without the
-    logarithm that the local law has already.
+    logarithm that the local law has already. It fades to that by their position as they leave the edge.
 
     Pair +1 is ahead in the sense of rotation. The load turns a gear counter-clockwise in its tooth frame; the
     driving gear turns against its load and the driven one with it, so pair j lies on tooth -j of gear 1 and
@@ -71,18 +77,17 @@ def contact_problem(
     touch = slices.touch
     patches = slices.patch_1, slices.patch_2
     sides = ((touch.lever_1, 1.0), (touch.lever_2, -1.0))
-    diagonals = []
+    diagonals, at_edge = [], _share_at_edge(slices)
     for g, (flank, (lever, tip), direction) in enumerate(zip(compliances, sides, (-1, 1), strict=True)):
         blocks = _tooth_blocks(flank, direction * slices.pair)
         rows = np.ascontiguousarray  # one order in memory: compiled once
-        laid, way = _laid(patches[g], patches[1 - g], slices.edge_side, tip, flank.s[-1])
         along = rows(flank.along) / slices.tip_inclinations[g]
-        levers = rows(lever)
-        _add_gear(flank.s, blocks, along, laid, way, levers, slices.present, couple_teeth, compliance, tilt)
+        gear = _GearFlank(flank.s, blocks, along, rows(lever), patches[g], patches[1 - g], tip)
+        tilt += _added_gear(gear, slices, at_edge, couple_teeth, compliance)
         diagonals.append(np.einsum("pii->pi", compliance).copy())
     planes, modulus = half_planes(compliances)
     diagonal = np.arange(slices.pair.size)
-    tilt[:, diagonal, diagonal] += _logarithm_at_edges(slices, planes)
+    tilt[:, diagonal, diagonal] += at_edge * _logarithm_at_edges(slices, planes)
     half_plane_1, half_plane_2 = planes
     return ContactProblem(
         candidates,
@@ -93,6 +98,63 @@ def contact_problem(
         tilt=tilt / slices.width,
         share_1=share_of_pinion(*diagonals),
     )
+
+
+class _GearFlank(NamedTuple):
+    """Flank of one gear with its patches."""
+
+    nodes: FloatArray
+    """Flank coordinates, m. Shape (k,)."""
+    blocks: FloatArray
+    along: FloatArray
+    """`blocks`, `along`: Compliances as `_add_gear` takes them."""
+    lever: FloatArray
+    """Shape (P, n)."""
+    patch: Patches
+    mate: Patches
+    """`patch`, `mate`: Patches of this gear and of the other one."""
+    tip: float
+    """+1 on gear 1 and -1 on gear 2."""
+
+    def add(
+        self,
+        side: FloatArray,
+        present: BoolArray,
+        rows: IntArray,
+        couple_teeth: bool,
+        out: FloatArray,
+        tilt: FloatArray,
+    ) -> None:
+        """Add the compliance and the tilt of positions `rows` (R,); see `_laid` and `_add_gear`."""
+        both = self.patch.rows(rows), self.mate.rows(rows)
+        laid, way = _laid(*both, self.patch.half_width.max(), side[rows], self.tip, self.nodes[-1])
+        levers, there = self.lever[rows], present[rows]
+        _add_gear(self.nodes, self.blocks, self.along, laid, way, levers, there, couple_teeth, out, tilt)
+
+
+def _added_gear(
+    gear: _GearFlank, slices: LoadedSlices, at_edge: FloatArray, couple_teeth: bool, compliance: FloatArray
+) -> FloatArray:
+    """Add the compliance of a gear to `compliance` (P, n, n), and return its tilt (P, n, n)."""
+    side, present = slices.edge_side, slices.present
+    by_length, by_position = np.zeros((2, *compliance.shape))
+    gear.add(side, present, np.arange(len(side)), couple_teeth, compliance, by_length)
+    share = np.where(side != 0.0, at_edge, 1.0)
+    leaving = np.flatnonzero((share < 1.0).any(axis=1))
+    if leaving.size:
+        unused, displaced = np.zeros((2, leaving.size, *compliance.shape[1:]))
+        gear.add(np.zeros(side.shape), present, leaving, couple_teeth, unused, displaced)
+        by_position[leaving] = displaced
+    return np.asarray(share[..., None] * by_length + (1.0 - share[..., None]) * by_position)
+
+
+def _share_at_edge(slices: LoadedSlices) -> FloatArray:
+    """Return the share (P, n) in which a patch is at an edge: 1, falling to 0 where it leaves the edge."""
+    widest = np.where(
+        slices.edge_side < 0.0, slices.patch_1.half_width.max(), slices.patch_2.half_width.max()
+    )
+    offset = np.where(slices.edge_side < 0.0, slices.touch.offset_1, slices.touch.offset_2)
+    return np.asarray(np.clip((1.0 - offset / widest) / _DEPARTURE, 0.0, 1.0))
 
 
 def half_planes(
@@ -114,7 +176,7 @@ def _tooth_blocks(flank: FlankCompliance, teeth: IntArray) -> FloatArray:
 
 
 def _laid(
-    patch: Patches, mate: Patches, side: FloatArray, tip: float, end: float
+    patch: Patches, mate: Patches, widest: float, side: FloatArray, tip: float, end: float
 ) -> tuple[FloatArray, FloatArray]:
     """Return patches of one gear, displaced either way for the tilt, and the distances between those.
 
@@ -127,15 +189,16 @@ def _laid(
     ----------
     patch, mate : Patches
         Of this gear and of the other one.
+    widest : float
+        Half-width of patches away from edges, m.
     side : ndarray, shape (P, n)
-        See `LoadedSlices.edge_side`.
+        See `LoadedSlices.edge_side`; 0: the patch is displaced.
     tip : float
         +1 on gear 1 and -1 on gear 2.
     end : float
         Flank coordinate of the tip edge, m.
     """
     short, long = patch.stretched(-_STRETCH, mate), patch.stretched(_STRETCH, mate)
-    widest = patch.half_width.max()
     near, highest = NEAR * widest, end - widest
     above = np.minimum(patch.center + near, highest)
     plain = np.full(above.shape, widest), np.zeros(above.shape)

@@ -13,7 +13,8 @@ import pytest
 from analysis_requests import table_request
 from spur_gears import GEAR, PAIR, gear
 
-from fe_contact import FlankGrid, FlankModification, GearPair, ToothFlank, analyze
+from bounds import PlausibilityWarning
+from fe_contact import FlankGrid, FlankModification, GearPair, Material, ToothFlank, analyze
 from fe_contact.analysis.checks.neighbors import approach_steps
 from fe_contact.analysis.checks.table_laws import check_laws, require_laws
 from fe_contact.analysis.database import compute_database
@@ -253,3 +254,22 @@ def test_a_contact_at_the_edge_of_flanks_that_open_never_softens(cache: Path) ->
     tangent = solution.tangent[alone & at_edge]
     assert len(tangent) > 0
     assert np.all(np.diff(tangent, axis=1) < 1e-9 * tangent[:, 1:])
+
+
+def test_a_patch_leaves_its_edge_without_a_step_of_the_curve(cache: Path) -> None:
+    """A soft wheel is tilted so much that a step of the tilt by 2 % was one of the curve by 0.06 um."""
+    steel = gear(51, normal_module=1e-3, face_width=15e-3, bore_diameter=33e-3, tip_diameter=52.894e-3)
+    plastic = Material(youngs_modulus=2.282e9, poissons_ratio=0.3)
+    soft = gear(
+        52,
+        normal_module=1e-3,
+        face_width=15e-3,
+        bore_diameter=33e-3,
+        tip_diameter=53.788e-3,
+        profile_shift_coefficient=0.011,
+        material=plastic,
+    )
+    pair = GearPair(replace(steel, profile_shift_coefficient=-0.2033), soft, 52e-3)
+    asked: Any = {"torques": [15.7], "level": "standard", "model": "plane_strain"}
+    with pytest.warns(PlausibilityWarning):
+        analyze(pair, cache=cache, **asked)  # raises where a law is broken
