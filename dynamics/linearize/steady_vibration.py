@@ -298,7 +298,8 @@ def _solve(
     modal = at.system.arrays.sparse.modal
     first = _first_eliminated(modal.first, terms)
     small = modal_elimination(modal, per_meter, total, damping, mass) if first else None
-    by_modes = PartialFractions.of(total, mass, damping) if fractions and not (first or terms) else None
+    tried = fractions and small is None and not terms
+    by_modes = PartialFractions.of(total, mass, damping) if tried else None
     parts = np.stack([total, mass, damping]).astype(complex)
     maximum = max(float(np.max(np.abs(pushed[..., 0]), initial=0.0)), 1e-300)
     left, farthest = np.float64(0.0), np.zeros(per_meter.size)  # residual force, and largest displacements
