@@ -16,7 +16,9 @@ from fe_contact.material import Material
 from fe_contact.types import FloatArray
 
 STRIP_DISTANCE = 64.0 / (9.0 * math.pi**2)
-"""Mean distance of a point under a punch from one of the strip's load, over half the strip, 0.72."""
+"""Mean distance, 0.72 half-widths, of two points of a contact strip, one drawn by the pressure of a rigid
+flat punch and the other by that of Hertz.
+"""
 
 
 def contact_modulus(first: Material, second: Material) -> float:

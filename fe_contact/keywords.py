@@ -1,7 +1,7 @@
-"""The keywords of `analyze`: the members of its axes, options and run by their names.
+"""The keywords of `analyze`: each sets the field of that name of its axes, options or run.
 
-A type checker reads no fields of a dataclass as keywords of another call, so they stand here with their
-types; `tests/contract/test_keywords_of_analyze.py` holds that these are the fields.
+A type checker cannot take the fields of a dataclass as keywords of a call, so they are repeated here with
+their types; `tests/contract/test_keywords_of_analyze.py` compares both.
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
 """Samples of an axis at which errors are measured, and interpolation of the errors between them.
 
-The errors of a discretization are nearly a fixed part of the deflection, so that linear interpolation between
-loads a factor of some apart carries them on; the same holds between alignments. What is to be estimated is
-an error, of which one digit counts.
+The errors of a discretization are nearly a fixed part of the deflection. So they can be interpolated linearly
+between loads that differ by a factor of several, and between alignments. One digit of an error is enough.
 """
 
 from __future__ import annotations
@@ -12,10 +11,10 @@ import numpy as np
 from fe_contact.types import FloatArray, IntArray
 
 LOADS, ALIGNMENTS = 3, 5
-"""Nodes of an axis of loads, of misalignments or center distances that are solved; shorter axes whole."""
+"""Largest number of nodes that are solved of an axis of loads, and of misalignments or center distances."""
 WIDE_INTERVALS, WIDE_PROBES = 4, 3
-"""Up to so many intervals of an axis of loads hold so many held-out loads each; more of them, which are
-shorter, one."""
+"""An axis of loads with at most `WIDE_INTERVALS` intervals has `WIDE_PROBES` held-out loads in each; one with
+more has one in each, as they are shorter."""
 FEWEST_POSITIONS = 32
 """Positions at which a table is solved again, at least, if it has as many."""
 
@@ -23,7 +22,7 @@ FEWEST_POSITIONS = 32
 def sampled_positions(count: int) -> IntArray:
     """Return at least `FEWEST_POSITIONS` of `count` positions, every k-th from the first.
 
-    Where positions gather, every k-th of them does.
+    So the sample is dense where the positions are.
     """
     return np.arange(0, count, max(count // FEWEST_POSITIONS, 1))
 

@@ -13,8 +13,8 @@ from host.system_calls import NO_NEW_PRIVILEGES
 
 _CREATE, _ADD, _RESTRICT = 444, 445, 446
 """Numbers of the system calls, on every processor."""
-_VERSION = 1
-_PATH_BENEATH = 1
+_VERSION = 1  # a flag: return the version, make nothing
+_PATH_BENEATH = 1  # kind of a rule: rights beneath a path
 _WRITE_FILE, _READ_FILE, _READ_FOLDER, _REMOVE_FILE, _MAKE_FILE = (1 << bit for bit in (1, 2, 3, 5, 8))
 _TRUNCATE = 1 << 14
 _OF_FILES = _WRITE_FILE | _READ_FILE | _TRUNCATE
@@ -22,7 +22,7 @@ _OF_FOLDER = _OF_FILES | _READ_FOLDER | _REMOVE_FILE | _MAKE_FILE
 _RIGHTS = {1: (1 << 13) - 1, 2: 1 << 13, 3: 1 << 14, 5: 1 << 15}
 """Bits of the rights to files that each version of Landlock introduced."""
 _BIND_AND_CONNECT = 0b11
-_NETWORK_SINCE, _SCOPES_SINCE = 4, 6
+_NETWORK_SINCE, _SCOPES_SINCE = 4, 6  # versions
 _ABSTRACT_SOCKETS_AND_SIGNALS = 0b11
 
 

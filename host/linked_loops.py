@@ -22,7 +22,7 @@ _decorator = _OverloadFunctionTemplate._get_jit_decorator
 
 
 class _Linked(JITCodeLibrary):
-    """Unoptimized code of a loop for linking; the loop that links it is optimized and made machine code."""
+    """Unoptimized code of a loop for linking; machine code is made only of the loop that links it."""
 
     def _finalize_final_module(self) -> None:
         self._finalize_dynamic_globals()
@@ -32,7 +32,7 @@ class _Linked(JITCodeLibrary):
         pass
 
     def get_pointer_to_function(self, name: str) -> int:
-        return 0
+        return 0  # no machine code
 
     @property
     def codegen(self) -> Any:

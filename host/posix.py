@@ -15,7 +15,7 @@ from host.sessions import RESIDENT_UNIT, memory_figure
 assert sys.platform != "win32"
 
 _TRIM_THRESHOLD, _MMAP_THRESHOLD = -1, -3
-"""Settings of mallopt, of glibc; above 32 MiB it takes no other threshold of mapped memory."""
+"""Settings of mallopt of glibc, which takes at most 32 MiB as the threshold of mapped memory."""
 _MIB = 1 << 20
 
 

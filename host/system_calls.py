@@ -95,6 +95,7 @@ class _Check:
 
 
 _Checked = tuple[tuple[int, int], tuple[_Check, ...]]
+"""A call by its numbers on x86-64 and ARM64, and the conditions on its arguments."""
 
 
 def _checked_calls(pid: int) -> tuple[_Checked, ...]:

@@ -40,11 +40,11 @@ def web_compliance(gear: Toothing) -> float:
     web = gear.web
     if web is None:
         return 0.0
-    radii = (web.inner_radius, web.outer_radius, gear.material)
-    rotation = gear.base_radius**2 * torsion_compliance(*radii) + shift_compliance(*radii)
+    disc = (web.inner_radius, web.outer_radius, gear.material)
+    rotation = gear.base_radius**2 * torsion_compliance(*disc) + shift_compliance(*disc)
     return rotation * (1.0 / web.thickness - 1.0 / gear.face_width)
 
 
 def shear_modulus(material: Material) -> float:
-    """G in Pa."""
+    """Return the shear modulus G in Pa."""
     return 0.5 * material.youngs_modulus / (1.0 + material.poissons_ratio)

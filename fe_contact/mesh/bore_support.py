@@ -15,7 +15,7 @@ from fe_contact.types import BoolArray, FloatArray
 
 
 class BoreSupport(Protocol):
-    """Rule that holds freedoms of a sector and seats its bore; alike in all sectors."""
+    """Support of the bore: the fixed freedoms and the seat of a sector, the same in all sectors."""
 
     @property
     def name(self) -> str:
@@ -25,7 +25,7 @@ class BoreSupport(Protocol):
     def seat(self) -> BoreSeat:
         """Seat of the bore.
 
-        Its finite stiffnesses are elements on the bore. Groups of layers end where it ends.
+        Where its stiffness is finite, elements lie on the bore. Groups of layers end at the ends of the seat.
         """
 
     def constrained(self, grid: SectorGrid, z: FloatArray) -> BoolArray:
@@ -69,14 +69,14 @@ class _SeatedBore:
 
     @property
     def name(self) -> str:
-        """All that decides the seat."""
+        """Text of all fields of the seat, for cache keys."""
         return f"seat {json.dumps(self.seat.content(), sort_keys=True)}"
 
     def constrained(self, grid: SectorGrid, z: FloatArray) -> BoolArray:
         """Hold the rigid directions on the planes from one end of the seat to the other."""
         low, high = self.seat.ends(self.face_width)
-        close = ROUNDING * self.face_width
-        planes = np.flatnonzero((z > low - close) & (z < high + close))
+        rounding = ROUNDING * self.face_width
+        planes = np.flatnonzero((z > low - rounding) & (z < high + rounding))
         fixed = np.zeros((len(z), grid.nodes, 3), dtype=bool)
         fixed[planes[:, None], grid.bore] = np.isinf(self.seat.stiffness)
         return fixed

@@ -12,7 +12,7 @@ SizeFunction = Callable[[FloatArray], FloatArray]
 
 
 def divide(start: float, end: float, size: SizeFunction, samples: int = 2001) -> FloatArray:
-    """Divide an interval so that every part is as long as `size` asks, within the rounding of their number.
+    """Divide an interval into parts of the length `size`, scaled so that their number is whole.
 
     Parameters
     ----------
@@ -30,10 +30,10 @@ def divide(start: float, end: float, size: SizeFunction, samples: int = 2001) ->
     """
     t = np.linspace(start, end, samples)
     density = 1.0 / size(t)
-    parts = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.abs(np.diff(t)))])
-    count = max(1, int(np.ceil(parts[-1] - 1e-9)))
-    # Interpolation needs an increasing abscissa: `parts` is one in either direction of the interval.
-    ends = np.interp(np.linspace(0.0, parts[-1], count + 1), parts, t)
+    # number of parts from the start to each sample: it increases where `end` is below `start` too
+    number = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.abs(np.diff(t)))])
+    count = max(1, int(np.ceil(number[-1] - 1e-9)))  # rounding errors add no part
+    ends = np.interp(np.linspace(0.0, number[-1], count + 1), number, t)
     ends[0], ends[-1] = start, end
     return ends
 
@@ -65,8 +65,8 @@ def spread(
         Maps (k, 2) points to (k,) sizes.
     """
 
-    def size(at: FloatArray) -> FloatArray:
-        across, along = (at[:, None, axis] - points[:, axis] for axis in (0, 1))  # (k, n) each
+    def size(place: FloatArray) -> FloatArray:
+        across, along = (place[:, None, axis] - points[:, axis] for axis in (0, 1))  # (k, n) each
         nearest: FloatArray = np.min(sizes + growth * np.sqrt(across * across + along * along), axis=1)
         return np.minimum(nearest, largest)
 

@@ -1,4 +1,8 @@
-"""A stack of 20-node hexahedra on the quadrilaterals of a section, in batches of equal matrices."""
+"""A stack of 20-node hexahedra on the quadrilaterals of a section, in batches of equal matrices.
+
+Layers are merged in pairs away from the teeth: at level v an element is 2^v layers thick. An element hangs if
+its lower face is half a face of a coarser element. Nodes lie in 2 L + 1 planes, ends and middles of L layers.
+"""
 
 from __future__ import annotations
 
@@ -47,8 +51,8 @@ def stacked(
     """Stack the elements layer by layer.
 
     `nodes` (2 L + 1, n) are those above each section node in each plane, -1 where there is none; `level`
-    (m,) and `node_level` (n,) say how often layers were merged there; `extent` (m, 2) is the first layer
-    of each quadrilateral, and the first one above it.
+    (m,) and `node_level` (n,) say how often layers were merged there. Elements stand on a quadrilateral from
+    layer `extent[:, 0]` to below layer `extent[:, 1]`.
     """
     alike = np.column_stack([level, node_level[grid.quads[:, 0]] > level, extent])
     elements: list[IntArray] = []
@@ -59,8 +63,8 @@ def stacked(
         quads = np.flatnonzero((alike == [lv, hangs, first_layer, last_layer]).all(axis=1))
         sharing: dict[tuple[int, int], list[IntArray]] = {}
         for first in range(first_layer, last_layer, 1 << lv):
-            half = (-1, 1)[(first >> lv) % 2] if hangs else 0
-            elements.append(_layer(nodes, grid.quads[quads], 2 * first, 2 << lv, half))
+            half = (-1, 1)[(first >> lv) % 2] if hangs else 0  # even elements are lower halves
+            elements.append(_layer(nodes, grid.quads[quads], 2 * first, 2 << lv, half))  # in planes
             position.append(np.column_stack([grid.cells[quads], np.full(len(quads), first + 0.5 * 2**lv)]))
             numbers = count + np.arange(len(quads))
             sharing.setdefault((int(layers.kind[first]), half), []).append(numbers)
@@ -73,11 +77,11 @@ def stacked(
 def with_seat(
     grid: SectorGrid, layers: Layers, bodies: Stack, ends: tuple[float, float], elastic: bool
 ) -> Stack:
-    """Add the elements of a seat between axial positions `ends` in m: the nodes of the bodies above them."""
+    """Add a seat between axial positions `ends` in m: elements on the nodes of the bodies' at the bore."""
     batches, elements, position = bodies
     if not elastic:
         return bodies
-    low, high = (np.abs(layers.ends - z).argmin() for z in ends)
+    low, high = (np.abs(layers.ends - z).argmin() for z in ends)  # layers, as in `position`
     on_bore = grid.cells[:, 1] == -grid.body_rows
     added: list[IntArray] = []
     count, more = len(elements), []
@@ -102,7 +106,7 @@ def _layer(nodes: IntArray, quads: IntArray, low: int, height: int, half: int) -
     corners, middles = quads[:, :4], quads[:, 4:]
     middle, high = low + height // 2, low + height
     parts = [(low, corners), (high, corners), (low, middles), (high, middles), (middle, corners)]
-    elements = np.concatenate([nodes[plane][on] for plane, on in parts], axis=1)
+    elements = np.concatenate([nodes[plane][columns] for plane, columns in parts], axis=1)
     if half:
         coarse = _layer(nodes, quads, low if half < 0 else low - height, 2 * height, 0)
         elements[:, LOWER_FACE] = coarse[:, LOWER_FACE]

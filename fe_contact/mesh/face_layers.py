@@ -13,9 +13,9 @@ from fe_contact.types import FloatArray, IntArray
 
 RISE = 3  # groups of layers over which the thickness grows from an end to the middle
 
-TOLERATED = 0.3  # of a group of layers: a part of the face this much longer gets no further one
+TOLERATED = 0.3  # a part of the face that is longer than n groups of layers by less than this has n groups
 
-DIGITS = 12  # of a layer's thickness over the face width: equal in them is equally thick
+DIGITS = 12  # layers are equally thick if their thickness over the face width agrees in so many digits
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ def layers_across(
     thickness = relative * width / relative[kind].sum()
     ends = np.concatenate([[0.0], np.cumsum(thickness[kind])]) - 0.5 * width
     ends[-1] = 0.5 * width
-    return Layers(0.5 * (ends - ends[::-1]), kind, thickness)
+    return Layers(0.5 * (ends - ends[::-1]), kind, thickness)  # symmetric to the last bit
 
 
 def _broken(width: float, usual: float, group: int, growth: float, breaks: Sequence[float]) -> Layers:

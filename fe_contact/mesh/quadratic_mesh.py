@@ -96,7 +96,7 @@ class Part:
     """Outlines, the outer one first."""
     scale: float
     growth: float
-    """`scale`, `growth`: Those of its `Region`."""
+    """`scale`, `growth`: As in `Region`."""
 
     @property
     def region(self) -> Region:
@@ -128,6 +128,7 @@ def with_mid_side_nodes(outlines: Sequence[Outline], straight: Triangulation) ->
     """
     count = len(straight.points)
     sides = np.sort(np.concatenate([straight.triangles[:, side] for side in SIDES]), axis=1)
+    # one whole number for each side, by its two corners in rising order
     keys, inverse = np.unique(sides[:, 0] * count + sides[:, 1], return_inverse=True)
     first, second = keys // count, keys % count
     points = np.concatenate([straight.points, 0.5 * (straight.points[first] + straight.points[second])])

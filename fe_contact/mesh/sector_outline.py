@@ -1,4 +1,8 @@
-"""Outline of one tooth sector in two four-sided blocks: the tooth, and the body below it."""
+"""Outline of one tooth sector in two four-sided blocks: the tooth, and the body below it.
+
+Tooth and body part at the split points, one on the fillet of each flank. The line between them dips below the
+straight one. The cuts are the radial edges of the sector.
+"""
 
 from __future__ import annotations
 
@@ -15,17 +19,19 @@ from fe_contact.mesh.sector_grid import SectorGrid
 from fe_contact.mesh.sector_recipe import SectorRecipe
 from fe_contact.types import FloatArray
 
-DIP = 0.12  # of the line between tooth and body below the split points, in modules: makes its angles even
+DIP = 0.12  # depth of the dip in modules: the angles of the elements on its two sides are about equal
 
-THIN = 0.25  # largest such dip, in parts of the rim's thickness
+THIN = 0.25  # largest depth of the dip over the thickness of the rim
 
 DEEP = 0.25  # height of body elements deep below the root, in parts of their depth
 
-LEAN = 0.4  # least slope of the fillet where tooth and body part: sine of its angle to the center line
+LEAN = 0.4  # least slope of the fillet at the split point: sine of its angle to the tooth's center line
 
-LOWEST_SPLIT = 0.9  # lowest such point, in parts of the fillet
+LOWEST_SPLIT = 0.9  # lowest split point, in parts of the fillet's length from the form point
 
 TAPER = 0.5  # largest height of body elements, in parts of the radius of their upper end
+
+COAST = 1.5  # size of elements below the coast flank over that below the loaded flank
 
 
 @dataclass(frozen=True)
@@ -73,7 +79,8 @@ class SectorOutline:
         """Points between tooth and body from right to left, (p, 2)."""
         right, t = self.profile.flank(self.s[:1])[0], self.across[:, None]
         gear = self.profile.gear
-        dip = gear.sign * 4.0 * min(DIP * gear.normal_module, THIN * gear.rim_thickness) * t * (1.0 - t)
+        depth = gear.sign * min(DIP * gear.normal_module, THIN * gear.rim_thickness)
+        dip = 4.0 * depth * t * (1.0 - t)  # a parabola, deepest at t = 1/2
         return np.asarray((1.0 - t) * right + t * right * [-1.0, 1.0] - dip * [0.0, 1.0])
 
     @property
@@ -96,12 +103,12 @@ class SectorOutline:
 
     @property
     def circles(self) -> dict[int, FloatArray]:
-        """Points of the hub's outside and the rim's inside, right to left, by row of elements above."""
+        """Points of the hub's outside and the rim's inside, right to left; keys: row of elements above."""
         top, bottom = (np.arctan2(*p[::2].T) for p in (self.body_top, self.bore))
         circles = {}
         for row in self.web_rows:
             if -self.grid.body_rows < row < 0:
-                depth = self.depth[-2 * row]
+                depth = self.depth[-2 * row]  # rows count from the root, two divisions each
                 angle = _with_middles((1.0 - depth) * top + depth * bottom)
                 radius = np.linalg.norm(self.right_cut[-2 * row])
                 circles[row] = radius * np.stack([np.sin(angle), np.cos(angle)], axis=-1)
@@ -156,7 +163,7 @@ def _graded(length: float, size: Callable[[float], float], start: float = 0.0) -
     while x[-1] < length:
         x.append(x[-1] + size(start + x[-1]))
     if len(x) > 2 and x[-1] - length > 0.5 * (x[-1] - x[-2]):
-        x.pop()
+        x.pop()  # less than half of the last part lies inside
     return np.array(x) * (length / x[-1])
 
 
@@ -177,7 +184,7 @@ def _tooth_divisions(half_width: float, recipe: SectorRecipe) -> FloatArray:
     def size(x: float, factor: float) -> float:
         return min(recipe.depth_limit, factor * recipe.depth_size + recipe.depth_growth * x)
 
-    loaded, coast = (_graded(half_width, partial(size, factor=factor)) for factor in (1.0, 1.5))
+    loaded, coast = (_graded(half_width, partial(size, factor=factor)) for factor in (1.0, COAST))
     return np.concatenate([loaded, 2.0 * half_width - coast[-2::-1]]) / (2.0 * half_width)
 
 
@@ -198,7 +205,8 @@ def _body_divisions(gear: Toothing, recipe: SectorRecipe) -> tuple[FloatArray, t
     if web is None:
         return _graded(depth, size) / depth, (0, 0)
     rim, hub = gear.root_radius - web.outer_radius, gear.root_radius - web.inner_radius
-    ends, x = [0.0, rim, hub, depth][: 4 if hub < depth else 3], [np.zeros(1)]
+    ends = [0.0, rim, hub, depth] if hub < depth else [0.0, rim, hub]  # a web may reach down to the bore
+    x = [np.zeros(1)]
     for low, high in pairwise(ends):
         x.append(low + _graded(high - low, size, low)[1:])
     return np.concatenate(x) / depth, (-len(x[1]) - len(x[2]), -len(x[1]))

@@ -22,8 +22,8 @@ from model_studies.stage_clock import StageClock
 from model_studies.workers import InProcess, OrHere, Workers, WorkersLost, divided
 
 REFINED = 4
-"""Divisor of the number of designs of a further search. Where the best design exceeds the limits in the full
-analysis, the search goes on with the positions of that analysis too.
+"""A further search assesses this part of the designs of the first one, a quarter. It follows where the best
+design exceeds the limits in the full analysis, and adds the positions of that analysis.
 """
 
 
@@ -39,7 +39,7 @@ STEP = 0.05
 
 @dataclass(frozen=True)
 class Choice:
-    """Both designs in full, and the search that the better one came from: `best` is its run of `problem`."""
+    """Start and optimum after full analyses; `runs[best]`, a search of `problem`, found the optimum."""
 
     problem: DesignProblem
     start: ConfirmedDesign
@@ -49,18 +49,18 @@ class Choice:
 
     @property
     def run(self) -> SearchRun:
-        """The search that counts."""
+        """The search that found the optimum."""
         return self.runs[self.best]
 
 
 def posed(study: DesignStudy, request: OptimizationRequest, memory: Path | None) -> DesignProblem:
-    """Return the problem of the search, its scale the start inside the bounds.
+    """Return the problem of the search; its scale is the objective of the start design.
 
-    `memory` is a directory of designs that were assessed before. Raises `SolveError`: its contact cannot be
-    solved.
+    `memory` is a directory of designs that were assessed before. Raises `SolveError`: the contact of the
+    start design cannot be solved.
     """
     problem = DesignProblem(
-        study.evaluator, request.variables, request.limits, 1.0, objective=request.objective
+        study.evaluator, request.variables, request.limits, scale=1.0, objective=request.objective
     )
     if memory is not None:
         problem = replace(problem, memory=DesignMemory.of(memory, request, study.evaluator))
@@ -79,7 +79,7 @@ def choose(
     run: Run,
     cancel: Cancel,
 ) -> Choice:
-    """Confirm the start and the best of all runs; go on searching where that exceeds the limits after all."""
+    """Confirm the start and the best of all runs; search on while the confirmed best exceeds the limits."""
     best = min(range(len(runs)), key=lambda i: runs[i].assessed.order)
     with clock.stage("confirmation"):
         start_values = dict(zip(problem.names, request.start_design, strict=True))
@@ -124,7 +124,7 @@ def _refined(
 
 
 def perturbation(best: tuple[DesignProblem, SearchRun, Scatter], variable: DesignVariable) -> Perturbation:
-    """Take a step of one variable from the best design of a run to both sides: one task."""
+    """Perturb the best design of a run by a step of one variable to both sides: one task."""
     problem, run, scatter = best
     values = problem.values(run.coordinates)
     step = scatter.modification.get(variable.name, STEP * (variable.high - variable.low))
@@ -137,7 +137,7 @@ def perturbation(best: tuple[DesignProblem, SearchRun, Scatter], variable: Desig
 
 
 def to_the_end(workers: Workers, cancel: Cancel) -> Workers:
-    """Return the workers of the steps after a search: this process once it is cancelled."""
+    """Return the workers of the steps after a search; once it is cancelled this process does their tasks."""
     if cancel() or isinstance(workers, InProcess):
         return InProcess()
 

@@ -15,8 +15,8 @@ from fe_contact.microgeometry.evaluator import Evaluation, Evaluator
 from fe_contact.microgeometry.root_influence import RootInfluence
 
 REMAINING = {"pressure": 1.0, "face_load_factor": 1.5, "root_stress": 1.0}
-"""Figures of an evaluation whose errors are in the field `NAME_error`, and the error that is left over the
-change between discretizations. The parts were set on ten drawn pairs against finer meshes in more slices
+"""Error of each figure over its change between two discretizations. The error of a figure NAME is the field
+`NAME_error` of an evaluation. The ratios were set on ten drawn pairs against finer meshes in more slices
 (benchmarks/limit_coverage.py)."""
 
 
@@ -25,14 +25,14 @@ class _Change(NamedTuple):
 
     finer: Evaluation
     rougher: Evaluation
-    counts: float = 1.0
+    weight: float = 1.0
 
 
 def confirmed_figures(evaluator: Evaluator, values: Mapping[str, float], cache: Path | None) -> Evaluation:
     """Evaluate a design, ``gear.quantity`` to m, with the errors of its pressure, K_Hbeta and root stress.
 
-    An error is that of positions, slices and meshes in squares: of all nodes and loads the largest part of
-    the figure, as a change may vanish at one of them by chance.
+    An error is the root of the sum of the squares of those of positions, slices and meshes. Each is the
+    largest relative change over all nodes and loads, as a change may vanish at one of them by chance.
 
     Parameters
     ----------
@@ -46,10 +46,10 @@ def confirmed_figures(evaluator: Evaluator, values: Mapping[str, float], cache: 
 
 
 def _left(changes: list[_Change], name: str) -> float:
-    """Return the error of a figure by all its changes that are known (not NaN), relative to it."""
+    """Return the relative error of a figure by its changes; those that are NaN count as none."""
     ratios = [getattr(change.rougher, name) / getattr(change.finer, name) for change in changes]
     parts = [
-        change.counts * np.abs(np.nan_to_num(ratio, nan=1.0) - 1.0).max()
+        change.weight * np.abs(np.nan_to_num(ratio, nan=1.0) - 1.0).max()
         for change, ratio in zip(changes, ratios, strict=True)
     ]
     return REMAINING[name] * float(np.linalg.norm(parts))
@@ -58,19 +58,19 @@ def _left(changes: list[_Change], name: str) -> float:
 def _changes(
     evaluator: Evaluator, evaluation: Evaluation, values: Mapping[str, float], cache: Path | None
 ) -> Iterator[_Change]:
-    """Solve a design on rougher discretizations; all but the positions are changed at half of these.
+    """Solve a design on rougher discretizations; slices and meshes are changed at every second position.
 
-    Stations of roots lie below the load patches: wider ones tell nothing of them.
+    Wider load patches say nothing about root stress, as they cover the stations of the roots.
     """
     contact, discretization = evaluator.contact, evaluator.contact.plan.discretization
-    few, others = (evaluator.at(evaluator.position[first::2]) for first in (0, 1))
+    few, others = (evaluator.at(evaluator.position[parity::2]) for parity in (0, 1))
 
     def on(other: PairContact, roots: RootInfluence | None = None) -> Evaluation:
         return replace(few, contact=replace(other, varied=True), roots=roots).evaluate(values)
 
     half = few.evaluate(values)
     yield _Change(evaluation, half)
-    yield _Change(evaluation, others.evaluate(values))  # without the largest's position if the first has it
+    yield _Change(evaluation, others.evaluate(values))  # one of both halves lacks the position of the largest
     if discretization.slices > 1:
         yield _Change(half, on(contact.in_slices(discretization.coarse_slices), evaluator.roots))
     plain = contact.in_plane_strain  # as the coarse meshes are

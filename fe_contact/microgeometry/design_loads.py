@@ -12,7 +12,7 @@ from fe_contact.options import LARGEST_DEVIATION, Levels
 from fe_contact.types import FloatArray, IntArray
 
 SAME = 1e-12
-"""Misalignments that differ by less, in m, are one: sums of the same two differ in their last bits."""
+"""Misalignments that differ by less, in m, are equal: a sum in another order differs in its last bits."""
 
 
 Misalignments = float | Levels
@@ -44,23 +44,23 @@ class DesignLoads:
         torque = np.array([finite(f"torques[{i}]", value) for i, value in enumerate(torques)])
         if not torque.size:
             raise InputError("torques", [], "a non-empty list of finite numbers")
-        skew = np.broadcast_to(_misalignments(misalignment, torque.size), torque.shape)
-        if np.any(np.diff(torque) < 0.0) or len({*zip(torque, skew, strict=True)}) < torque.size:
+        paired = np.broadcast_to(_misalignments(misalignment, torque.size), torque.shape)
+        if np.any(np.diff(torque) < 0.0) or len({*zip(torque, paired, strict=True)}) < torque.size:
             bound = "increasing, and equal only at different misalignments"
             raise InputError("torques", torque.tolist(), bound, "Sort the list and drop repeats.")
-        return cls(torque, skew)
+        return cls(torque, paired)
 
     def with_torques(self, further: Levels) -> tuple[DesignLoads, IntArray]:
-        """Return the loads (T,) with further torques among them, and which of all are the own ones (L,).
+        """Return T loads, those here and loads at further torques, and the indices (L,) of those here.
 
-        Misalignments of further torques are linear between the loads, held beyond the lowest and highest.
+        Misalignments of further torques are linear between the loads, constant beyond the lowest and highest.
         """
         added = np.setdiff1d(further, self.torque)
         torque = np.concatenate([self.torque, added])
         between = np.interp(added, self.torque, self.misalignment)
         order = np.argsort(torque, kind="stable")
-        everything = DesignLoads(torque[order], np.concatenate([self.misalignment, between])[order])
-        return everything, np.flatnonzero(order < self.torque.size)
+        merged = DesignLoads(torque[order], np.concatenate([self.misalignment, between])[order])
+        return merged, np.flatnonzero(order < self.torque.size)
 
 
 def misalignment_axis(misalignment: FloatArray, deviation: FloatArray) -> FloatArray:
@@ -71,7 +71,7 @@ def misalignment_axis(misalignment: FloatArray, deviation: FloatArray) -> FloatA
 
 
 def snapped_to_axis(axis: FloatArray, misalignment: FloatArray) -> FloatArray:
-    """Return misalignments, those of the axis (M,) to its last bit, m."""
+    """Return misalignments in m; one within `SAME` of a value of the axis (M,) becomes that value."""
     nearest = axis[np.abs(axis - misalignment[..., None]).argmin(axis=-1)]
     return np.where(np.abs(nearest - misalignment) <= SAME, nearest, misalignment)
 

@@ -20,26 +20,26 @@ from fe_contact.ste.metadata import SCHEMA_VERSION, content_hash
 from fe_contact.types import FloatArray
 
 MAX_FILES = 200
-"""Newest files that a directory keeps: about 0.1 MB for a thousand designs each."""
+"""Number of newest files that stay in the directory; each has about 0.1 MB for a thousand designs."""
 
 
 _RECORD = struct.Struct("<ddQ")  # objective, violation, checksum
 
 
-_POSITIONS = 8  # bytes of their digest
-Figures = tuple[float, float]
+_POSITIONS = 8  # bytes of the digest of the positions
+Figures = tuple[float, float]  # objective in m, violation
 
 
 @dataclass(frozen=True)
 class DesignMemory:
-    """Objective in m and violation of designs of one problem, `known` by their values and the positions."""
+    """Objective in m and violation of designs of one problem; the keys are their values and the positions."""
 
     file: Path
     known: dict[bytes, Figures] = field(default_factory=dict, repr=False)
 
     @classmethod
     def of(cls, directory: Path, request: OptimizationRequest, evaluator: Evaluator) -> DesignMemory:
-        """Open the file of a problem; one that is damaged counts up to the damage."""
+        """Open the file of a problem; of a damaged file the records before the damage are read."""
         digest = hashlib.sha256()
         contact = evaluator.contact
         for body in contact.plane or ():
@@ -72,13 +72,13 @@ class DesignMemory:
         return self.known.get(_name(values, position))
 
     def add(self, values: FloatArray, position: FloatArray, figures: Figures) -> None:
-        """Keep a design; where the file cannot be written it is kept in this process."""
+        """Store a design; where the file cannot be written it stays in the memory of this process."""
         name = _name(values, position)
         self.known[name] = figures
         text = name + struct.pack("<dd", *figures)
         record = text + struct.pack("<Q", zlib.crc32(text))
         with contextlib.suppress(OSError), self.file.open("ab", buffering=0) as stream:
-            stream.write(record)  # one write: whole, or the last of the file
+            stream.write(record)  # in one write: only the last record of a file can be incomplete
 
     def _read(self, name_size: int) -> None:
         """Read whole records, and cut off what a killed writer left of one."""

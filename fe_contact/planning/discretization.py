@@ -13,6 +13,7 @@ from fe_contact.mesh.sector_recipe import HELICAL_BODY_LAYERS, wound
 from fe_contact.types import Json
 
 PLANE_REFINEMENT = {"draft": 0.6, "medium": 0.8, "standard": 1.0, "fine": 2.0}
+"""Refinement of plane meshes by level, over the standard one."""
 
 
 SECTOR_RECIPE: dict[str, Callable[[Toothing], SectorRecipe]] = {
@@ -38,8 +39,8 @@ slices.
 
 
 SLICE_OVER_PATCH = 1.0
-"""Least width of a slice over the half-width of the load patches. With narrower slices the compliance of the
-bodies less that of the local law is not positive definite, and heavy loads have no unique solution.
+"""Least width of a slice over the half-width of the load patches. With narrower slices the difference of the
+bodies' compliance and the local law's is not positive definite: heavy loads have no unique solution.
 """
 
 
@@ -47,10 +48,10 @@ COARSER = 1.5
 """Element size of the coarse mesh of a solid over that of its fine mesh."""
 
 PLANE_RESOLVED, FACE_RESOLVED = 3.0, 1.5
-"""Least number of elements in the half-width of a load patch. A wider patch spreads a load over more of the
-flank than its strip does: over the face two elements cost 1.3 % of peak-to-peak, one and a half 0.3 %. With
-fewer elements the error of the mesh grows: in the plane to 0.1 % of the mean for drafts at one and a half
-(docs/lab/index.md).
+"""Least number of elements in the half-width of a load patch. More elements make a wider patch, which spreads
+a load over more of the flank than its contact strip: over the face, two elements change peak-to-peak by
+1.3 %, one and a half by 0.3 %. Fewer elements raise the error of the mesh: in the plane, for drafts with one
+and a half, to 0.1 % of the mean (docs/lab/index.md).
 """
 PLANE_EDGE, FACE_EDGE = 1.5, 2.0
 """Least number of elements in the length of a patch at a tip edge."""
@@ -76,7 +77,7 @@ class PlaneDiscretization:
     """Error left over the difference of the two meshes: ratio two, second order or better."""
     coarse_slices = 1
     remaining_slices = 0.0
-    resolved, resolved_edge = PLANE_RESOLVED, PLANE_EDGE
+    resolved, resolved_edge = PLANE_RESOLVED, PLANE_EDGE  # elements in a patch, and in one at a tip edge
 
     def to_json(self) -> Json:
         """Return plain JSON."""

@@ -1,4 +1,9 @@
-"""Nominal intensities of a tooth load by closed forms: orders of magnitude before anything is solved."""
+"""Nominal intensities of a tooth load by closed forms: orders of magnitude before anything is solved.
+
+.. [1] ISO 6336-2:2019, clause 6: nominal contact stress at the pitch point.
+.. [2] ISO 6336-3:2019, clauses 6 and 7: form factor Y_F and stress correction factor Y_S.
+.. [3] ISO 6336-1:2019, clause 9: c' = 14 N/(mm um) of steel gears.
+"""
 
 from __future__ import annotations
 
@@ -17,6 +22,7 @@ SINGLE_STIFFNESS = 14e9
 
 
 _SAMPLES = 33
+"""Points of the fillet among which the critical section is sought."""
 
 
 _NOTCH = (1.0, 8.0)
@@ -24,7 +30,7 @@ _NOTCH = (1.0, 8.0)
 
 
 def _sharing_pairs(pair: ParallelAxes) -> float:
-    """Return how many pairs of teeth share the load where fewest do; of wide helical gears on average."""
+    """Return the least number of pairs that share the load; for wide helical gears their mean number."""
     ratio, overlap = pair.transverse_contact_ratio, min(pair.overlap_ratio, 1.0)
     return (1.0 - overlap) * max(1.0, math.floor(ratio)) + overlap * max(1.0, ratio)
 
@@ -65,15 +71,16 @@ def nominal_root_stresses(pair: ParallelAxes, normal_force: float) -> tuple[floa
 def _root_stress(gear: Toothing, load: float, roll_length: float) -> float:
     """Return the stress at the root section by the load (N/m) at a roll length, with its notch factor, Pa."""
     profile = tooth_profile(gear)
-    at = critical_section(profile, _SAMPLES)
-    section = profile.flank(np.array([at]))[0]
-    arc = gear.sign * roll_length**2 / (2.0 * gear.base_radius)
+    critical = critical_section(profile, _SAMPLES)
+    section = profile.flank(np.array([critical]))[0]
+    arc = gear.sign * roll_length**2 / (2.0 * gear.base_radius)  # of the involute from its base
     point, normal = profile.flank(np.array([arc]))[0], profile.normal(np.array([arc]))[0]
     chord = 2.0 * float(section[0])
     lever = abs(float(point[1] - point[0] * normal[1] / normal[0] - section[1]))
     bending = 6.0 * lever * abs(float(normal[0])) * load / chord**2
     step = 0.01 * profile.fillet_length
-    turned = float(np.ptp(tangent_angle(profile, np.array([at - step, at + step]))))
-    sharpness = min(max(chord * turned / (4.0 * step), _NOTCH[0]), _NOTCH[1])
+    turn = float(np.ptp(tangent_angle(profile, np.array([critical - step, critical + step]))))
+    # chord over twice the radius of curvature, which is 2 step / turn
+    sharpness = min(max(chord * turn / (4.0 * step), _NOTCH[0]), _NOTCH[1])
     slimness = chord / max(lever, 1e-9 * chord)
     return float(bending * (1.2 + 0.13 * slimness) * sharpness ** (1.0 / (1.21 + 2.3 / slimness)))

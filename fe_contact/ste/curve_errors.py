@@ -1,4 +1,4 @@
-"""Errors of mean, peak-to-peak and harmonics by source, as a table stores them."""
+"""Errors of the 23 quantities of a curve (`curve_quantities`) by source, as a table stores them."""
 
 from __future__ import annotations
 
@@ -10,8 +10,7 @@ from fe_contact.ste.operating_point import OperatingPoint
 from fe_contact.types import FloatArray
 
 PLANE, METHOD = "finite_width", "method"
-"""Sources of error: the plane as a model of three dimensions; the method against full contact, for any mesh.
-"""
+"""Sources of error: the plane model in place of a solid; the method in place of full contact, on any mesh."""
 
 
 AT_NODES = ("discretisation", "slices", "contact_solver", PLANE, "position", METHOD)
@@ -19,7 +18,7 @@ AT_NODES = ("discretisation", "slices", "contact_solver", PLANE, "position", MET
 
 
 BETWEEN_NODES = ("force", "misalignment", "center_distance_change")
-"""Interpolation along each axis: nothing on its nodes; stored at the lower node of every interval."""
+"""Interpolation along each axis: zero at its nodes; stored at the lower node of every interval."""
 
 
 SOURCES = AT_NODES + BETWEEN_NODES
@@ -43,6 +42,7 @@ def errors_by_source(table: SteFields, point: OperatingPoint) -> FloatArray:
 
     Linear between the nodes. NaN: not estimated.
     """
+    # (sources, 23, F, M, D) to (F, M, D, sources, 23)
     values, interpolation = np.moveaxis(table.curve_error, (2, 3, 4), (0, 1, 2)), source_places(table, point)
     at_nodes = interpolation.at_nodes(np.delete(values, np.s_[len(AT_NODES) : len(SOURCES)], axis=3))[0]
     between = [

@@ -51,7 +51,7 @@ def _inside(knots: FloatArray, first: int, size: int, period: float, query: floa
 
 @inner(nogil=True, error_model="numpy")
 def _interval(knots: FloatArray, first: int, size: int, closed: bool, inside: float) -> int:
-    """Return the knot left of a value, as np.searchsorted finds it, that begins an interval."""
+    """Return the last knot not above a value (as by np.searchsorted) of those at which an interval begins."""
     low, high = 0, size
     while low < high:
         middle = (low + high) >> 1
@@ -65,7 +65,10 @@ def _interval(knots: FloatArray, first: int, size: int, closed: bool, inside: fl
 
 @inner(nogil=True, error_model="numpy")
 def _corners(offset: IntArray, active: int, left: int, size: int) -> None:
-    """Multiply the corners found on `active` axes by the two knots of one more, or by its only one."""
+    """Append an axis to the indices of the 2^`active` corners: each gets two knots, or the only one.
+
+    Backwards, as the corners 2 c and 2 c + 1 take the place of corners that are read before.
+    """
     for corner in range((1 << active) - 1, -1, -1):
         begin = offset[corner] * size
         if size > 1:

@@ -11,12 +11,12 @@ import numpy as np
 from fe_contact.ste.metadata import PairGeometry
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
-# shared by the steps that hold a kink; with more, the position knots are what limits the table
+# levels inserted into all steps with a kink together; with more, the position knots limit the accuracy
 _INSERTED = 64
 
 
-# numbers of a quantity over positions and levels: tables of long periods have fewer inserted levels, at least
-# one in each step that holds a kink; 12 in place of 64 move curves between the loads by up to 12 nm (rms)
+# largest size of an array over positions and levels: tables of long periods have fewer inserted levels, at
+# least one in each step with a kink; 12 in place of 64 change curves between the loads by up to 12 nm (rms)
 _NUMBERS = 2_000_000
 
 
@@ -28,7 +28,7 @@ _LARGEST_EXPONENT = 0.5
 _HALVINGS = 30
 
 
-# least compliance of a smooth curve over that of its step: a cubic may be flat inside
+# least compliance of a smooth curve over the mean one of its step: inside it a cubic may be flat
 _MIN_COMPLIANCE = 0.1
 
 
@@ -38,12 +38,12 @@ _MIN_COMPLIANCE = 0.1
 _POWER = 0.25
 
 
-# ratio of loads over which a cubic of the force in the deflection is close enough to that
+# ratio of loads up to which a cubic between deflection and force is close enough to the smooth curve
 _CLOSE_LOADS = 1.5
 
 
-# overlap ratio from which a helical pair comes into contact gradually: that of a path along which the gap
-# beyond the path of contact grows by several deflections
+# overlap ratio from which a helical pair comes into contact gradually: over so long a path the gap beyond the
+# path of contact grows by several deflections
 _GRADUAL_OVERLAP = 0.1
 
 
@@ -89,8 +89,8 @@ def refined_levels(levels: LoadLevels, pairs: IntArray, gradual: float) -> LoadL
         deflection, stiffness = _smooth(levels, k, force)
         sharp = np.where(kinked[..., k, None], 1.0 - gradual, 0.0)
         if sharp.any():
-            lag, stiff = _on_branches(levels, pairs, k, force)
-            deflection = deflection + sharp * (lag - deflection)
+            kinked_deflection, stiff = _on_branches(levels, pairs, k, force)
+            deflection = deflection + sharp * (kinked_deflection - deflection)
             stiffness = 1.0 / (1.0 / stiffness + sharp * (1.0 / stiff - 1.0 / stiffness))
         pieces.append(LoadLevels(force, deflection, stiffness))
     return _load_refinement_merged(pieces)
@@ -99,13 +99,14 @@ def refined_levels(levels: LoadLevels, pairs: IntArray, gradual: float) -> LoadL
 def _inserted_counts(levels: LoadLevels, kinked: BoolArray) -> dict[int, int]:
     """Return how many levels to insert into the steps that get any.
 
-    Steps with a kink share what a table bears, and have one at least; wide steps get theirs if all fit.
+    Steps with a kink share the levels that the table has room for, at least one each; wide steps get levels
+    only if there is room for all of these.
     """
     steps = range(1, levels.force.size - 1)
     kinks = [k for k in steps if kinked[..., k].any()]
     bearable = _NUMBERS // levels.deflection[..., 0].size - levels.force.size
     inserted = min(max(bearable, len(kinks)), _INSERTED) if kinks else 0
-    counts = {k: -(-inserted // len(kinks)) for k in kinks}
+    counts = {k: -(-inserted // len(kinks)) for k in kinks}  # rounded up
     ratio = levels.force[2:] / levels.force[1:-1]
     steps_between = np.ceil(np.log(ratio) / math.log(_CLOSE_LOADS) * (1.0 - 1e-9)).astype(int) - 1
     wide = {k: int(steps_between[k - 1]) for k in steps if k not in counts and steps_between[k - 1] > 0}
@@ -141,8 +142,8 @@ def _smooth(levels: LoadLevels, k: int, force: FloatArray) -> Pair:
 def _straight_compliance(compliance: FloatArray, secant: FloatArray) -> FloatArray:
     """Return the compliance (..., 1) of the straight part of a step, m/N, >= 0.
 
-    That of the stiffer end, and less where the other end is soft: what is left rises by a third of its
-    largest slope at least, which a monotone cubic needs.
+    It is that of the stiffer end, or less where the other end is soft. The secant of the remainder is then at
+    least a third of its largest slope, as a monotone cubic needs.
     """
     largest = compliance.max(axis=-1, keepdims=True)
     part = np.minimum(compliance.min(axis=-1, keepdims=True), 1.5 * secant - 0.5 * largest)

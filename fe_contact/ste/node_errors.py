@@ -58,12 +58,12 @@ class NodePlaces:
 
     def of_interval(self, values: Values, axis: int) -> FloatArray:
         """Return errors (F, M, D, ...) of the intervals of an axis at the points, (Q, ...)."""
-        at = self.stencils[axis]
-        lower = np.moveaxis(values, axis, 0)[at.left]  # (Q, others ...)
-        others = [stencil for i, stencil in enumerate(self.stencils) if i != axis]
-        inside = (at.fraction > 0.0) & (at.fraction < 1.0)
-        every = np.arange(at.left.size)
-        errors = _linear(others, lower, (every,))
+        stencil = self.stencils[axis]
+        lower = np.moveaxis(values, axis, 0)[stencil.left]  # (Q, others ...)
+        others = [other for i, other in enumerate(self.stencils) if i != axis]
+        inside = (stencil.fraction > 0.0) & (stencil.fraction < 1.0)
+        points = np.arange(stencil.left.size)
+        errors = _linear(others, lower, (points,))
         return np.where(inside.reshape(-1, *[1] * (errors.ndim - 1)), errors, 0.0)
 
     def interval_error(self, table: SteFields) -> FloatArray:
@@ -78,8 +78,8 @@ class NodePlaces:
 def error_band(table: SteFields, position: FloatArray, places: NodePlaces) -> FloatArray:
     """Return the half-width (n,) of the error band of the transmission error at points of a table, m.
 
-    That at the nodes, linear between them, and what interpolation between loads and alignments adds. Below
-    the smallest load the table holds no error. NaN: not estimated.
+    It is the error at the nodes, linear between them, plus the error of interpolation between loads and
+    alignments. Below the smallest load the table holds no error. NaN: not estimated.
 
     Parameters
     ----------
@@ -120,12 +120,14 @@ def force_error(table: SteFields, points: FloatArray, force: FloatArray, stiffne
 def _linear(
     stencils: tuple[Stencil, ...] | list[Stencil], values: FloatArray, rows: tuple[IntArray, ...] = ()
 ) -> FloatArray:
-    """Interpolate values linearly over their first axes, (Q, ...); a knot is not touched by its neighbors.
+    """Interpolate values linearly over their first axes, (Q, ...); a NaN has no effect on other knots.
 
     `rows`: indices (Q,) of axes before those of the stencils.
     """
     total: FloatArray | float = 0.0
-    for corner in product(*((0,) if np.array_equal(at.left, at.right) else (0, 1) for at in stencils)):
+    # an axis of one node has no right-hand side
+    sides = ((0,) if np.array_equal(at.left, at.right) else (0, 1) for at in stencils)
+    for corner in product(*sides):
         weight = np.ones(stencils[0].left.size)
         for at, side in zip(stencils, corner, strict=True):
             weight = weight * (at.fraction if side else 1.0 - at.fraction)

@@ -11,7 +11,7 @@ from fe_contact.errors import InputError, positive, within
 from fe_contact.ste.fields import SteFields
 from fe_contact.types import FloatArray
 
-FARTHEST = 1000  # periods from the reference; load shares get a column per pair passed on the way
+FARTHEST = 1000  # periods of a position from the pitch point: load shares have a column for each pair passed
 
 
 @dataclass(frozen=True)

@@ -24,6 +24,7 @@ _MIN_COMPLIANCE = 0.1
 
 
 AXIS = "misalignment"
+"""Axis along which tables are joined and linearized."""
 
 
 @dataclass(frozen=True)
@@ -100,7 +101,7 @@ def _complete_rows(failed: BoolArray) -> dict[str, IntArray]:
     keep: list[IntArray] = [np.arange(size) for size in failed.shape]
     while failed.size and failed.any():
         parts = [failed.mean(axis=tuple(set(range(4)) - {i})) for i in range(4)]
-        # among equals the longest axis gives, since it loses least
+        # of axes with equal parts the longest one loses a row: a row is its smallest part
         axis = max(range(4), key=lambda i: (parts[i].max(), failed.shape[i]))
         worst = int(np.argmax(parts[axis]))
         failed, keep[axis] = np.delete(failed, worst, axis=axis), np.delete(keep[axis], worst)
@@ -108,7 +109,7 @@ def _complete_rows(failed: BoolArray) -> dict[str, IntArray]:
 
 
 def _isotonic(levels: FloatArray, force: FloatArray, minimum: float) -> FloatArray:
-    """Nearest levels whose compliance is at least `minimum` everywhere."""
+    """Return the nearest levels whose compliance is at least `minimum` everywhere."""
     tilt = minimum * np.concatenate([[0.0], force])
     weights = np.ones_like(levels)
     weights[0] = _LIFT_OFF_WEIGHT

@@ -36,12 +36,12 @@ class BoundedHttp(AutoHTTPProtocol):  # type: ignore[misc, valid-type]  # one of
     begin a new `cycle` with every head that is complete.
     """
 
-    _timer: asyncio.TimerHandle | None = None
-    _head = 0
+    _timer: asyncio.TimerHandle | None = None  # runs while a head is awaited
+    _head = 0  # bytes received since then
 
     @property
     def _idle(self) -> dict[BoundedHttp, None]:
-        """Connections of this server without a request, the one that is so for longest first."""
+        """Connections of this server without a request, the longest idle one first."""
         idle: dict[BoundedHttp, None] = self.server_state.__dict__.setdefault("idle", {})
         return idle
 

@@ -56,7 +56,7 @@ def simulation_cost(scene: SceneInput, folder: Path) -> StudyCost | None:
 
 
 def listening_cost(seconds: float, *, housings: int = 0) -> StudyCost:
-    """Return the predicted cost of a run of so many seconds as a sound: through so many housings by ear."""
+    """Return the predicted cost of so many seconds of a run as a sound, radiated by `housings` if any."""
     rate = _BY_EAR if housings else _PLAYED
     sound = Work("runs", _READING), Work("seconds of sound", rate, seconds)
     return StudyCost((panels_work(housings), *sound) if housings else sound)

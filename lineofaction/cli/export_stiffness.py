@@ -52,7 +52,7 @@ _OPENTORSION = dedent('''\
 
 
 def stiffness_of(database: SteDatabase, point: Point) -> dict[str, Any]:
-    """Return the transverse mesh stiffness over position at one load, or at all stored loads without one.
+    """Return the transverse mesh stiffness over position, at one load (default: highest) and at all stored.
 
     Stiffness is the transverse force over the transmission error, N/m. Raises `BadInput`: two loads.
     """

@@ -42,10 +42,8 @@ EMPHASIS = "bold"
 """Style of the line that states the result."""
 _THEME = Theme({"loa.error": "cyan", "loa.beside": "bright_black"})
 _WIDEST, _GAP, _INDENT, _MAX_LINES = 24, 2, "  ", 2
-"""Most columns of a text before it wraps, columns between two columns of a table, indent of lines below a
-row, and most lines of a text in the last column beside its row.
-
-The last: lines that a text in the last column takes beside its row.
+"""Characters of a text before it wraps, characters between two columns of a table, indent of lines below a
+row, and most lines of a text in the last column; a longer text stands below its row.
 """
 _FIGURE = re.compile(r"([+-]?\d+)((?:\.\d+)?(?: ?[^\d.e±].*?)?)( ?±.*)?")
 """Pattern of a number: the part before the decimal point, the decimals with the unit, and the error."""
@@ -125,8 +123,8 @@ def table(
 ) -> Group:
     """Return a table of numbers, one decimal point below another; columns of `text_columns` are aligned left.
 
-    One that is wider than the terminal stands in blocks, each with the first columns of words, or the first
-    one: nothing is cut within a word or a number. A long text in the last column stands below its row.
+    A table wider than the terminal is divided into blocks below each other. Each repeats the leading columns
+    of text, or the first column. A long text in the last column stands below its row.
     """
     width, laid_out = console().width, list[_Column]()
     for k, name in enumerate(columns):
@@ -136,6 +134,7 @@ def table(
     lines: list[Text | str] = [Text(title, "italic")] if title else []
     for block in (blocks := _blocks(laid_out, width)):
         foot = below if block is blocks[-1] else None
+        # heads are filled from the bottom, so that their last lines stand above the cells
         head = _side_by_side([column.lines(column.head, wide)[::-1] for column, wide in block])[::-1]
         head += [] if foot is None else [f"{_INDENT}{foot.head}"]
         lines += [*([] if block is blocks[0] else [""]), *(Text(line, "bold") for line in head)]
@@ -182,6 +181,7 @@ def _blocks(columns: Sequence[_Column], width: int) -> list[_Block]:
         _divided([(column, column.minimum(widest)) for column in columns], keys, width)
         for widest in (width, _WIDEST)
     ]
+    # first the division that exceeds the width least, then the one of fewest blocks
     blocks = min(tried, key=lambda blocks: (max(0, *(_wide(block) - width for block in blocks)), len(blocks)))
     return [_grown(block, width) for block in blocks]
 

@@ -27,7 +27,7 @@ _SHORTHANDS: Mapping[str, tuple[str, tuple[str, ...]]] = {
 }
 """Path that each option sets, and paths that it then leaves out."""
 _OF_ONE = ("output", "json", "csv")
-"""Options that hold one file, or one object, for one case."""
+"""Options that need a single case: they name one file to write, or print one object."""
 
 
 def file_argument(text: str, metavar: str) -> Any:
@@ -58,7 +58,7 @@ def _options(subject: str) -> list[inspect.Parameter]:
 def overridable(argument: str, subject: str = "case") -> Callable[[Callable[..., R]], Callable[..., R]]:
     """Return a decorator that gives a verb ``--set`` for the files of an argument.
 
-    Of a case also the shorthands, but for those whose name the verb has for something else.
+    A verb on cases also gets the shorthands, except those whose name is already an option of the verb.
     """
 
     def decorate(verb: Callable[..., R]) -> Callable[..., R]:
@@ -96,7 +96,7 @@ def overridable(argument: str, subject: str = "case") -> Callable[[Callable[...,
 
 
 def _spellings(option: inspect.Parameter) -> list[str]:
-    """Return the spellings of an option; the first of its names stands where a default would."""
+    """Return the spellings of an option; `typer.Option("--a", "-b")` has the first one as `default`."""
     declared = [
         info for info in getattr(option.annotation, "__metadata__", ()) if isinstance(info, OptionInfo)
     ]

@@ -86,7 +86,7 @@ def run_report(
 
 
 def _by_part(named: Sequence[Path]) -> dict[str, list[Path]]:
-    """Return the results by the case whose they are, of a folder alone; others by an empty text."""
+    """Return the results of a single folder by case; all others under an empty text."""
     if len(named) == 1 and named[0].is_dir() and (by_part := results_by_part(named[0])):
         return {part.replace("_", " "): files for part, files in by_part.items()}
     return {"": [file for name in named for file in (results_in(name) if name.is_dir() else [name])]}

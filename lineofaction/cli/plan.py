@@ -51,7 +51,7 @@ def _show_plan(plan: RunPlan) -> None:
             engineering(100.0 * error.numerical, 2),
             "bias" if error.bias else engineering(100.0 * error.plane, 2),
             engineering(100.0 * error.method, 2),
-            # per cent of a small ripple mean little; no size is known without a reference
+            # sizes in µm, as per cent of a small ripple mean little; blank if not known
             *("" if size is None else engineering(size / UM, 2) for size in (error.mean, error.peak_to_peak)),
         ]
         for entry in plan.levels

@@ -1,16 +1,12 @@
-"""``loa jobs`` and ``loa dismiss``, and how a verb waits for a job of a service."""
+"""``loa jobs`` and ``loa dismiss``: list and end jobs of a service."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict
-from typing import TYPE_CHECKING
 
 from lineofaction.cli.output import console, print_json, table
 from lineofaction.client import LineOfActionClient
-
-if TYPE_CHECKING:
-    pass
 
 
 def run_jobs(

@@ -9,9 +9,7 @@ from dataclasses import dataclass, field
 from bounds.types import Json
 from dynamics.acoustics import Recording
 from dynamics.results import RunResult
-from lineofaction.gearbox.studies.listen.run import (
-    NO_LOUDNESS,
-)
+from lineofaction.gearbox.studies.listen.run import NO_LOUDNESS
 from lineofaction.report.drawing.figure import number, unit_of
 from lineofaction.report.run.levels import Loudest, loudest
 from lineofaction.report.run.sound import run_signals
@@ -36,13 +34,13 @@ class RunSound:
 def bearing_sounds(runs: Mapping[str, RunResult], view: RunView) -> tuple[list[RunSound], str]:
     """Return runs as sounds of their own series, e.g. forces on a bearing, and a remark on all of them."""
     sounds = []
-    for one in tuple(run_signals(dict(runs), view)):
-        recording, moment = one.recording(), loudest(one.run, one.signal)
+    for series in tuple(run_signals(dict(runs), view)):
+        recording, moment = series.recording(), loudest(series.run, series.signal)
         figures: Json = {"loudest": None}
         if moment is not None:
             orders = {str(order): value for order, value in moment.orders.items()}
             figures = {"loudest": {"time_s": moment.time, "rms": moment.overall, "orders_rms": orders}}
-        sounds.append(RunSound(one.name, recording, figures, _moment_cells(moment, recording.unit)))
+        sounds.append(RunSound(series.name, recording, figures, _moment_cells(moment, recording.unit)))
     return sounds, NO_LOUDNESS
 
 

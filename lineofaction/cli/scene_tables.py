@@ -40,7 +40,7 @@ def tabled_scene(
             from lineofaction.client.scene_calls import ServiceTables  # noqa: PLC0415 (start-up time)
 
             compiler = stack.enter_context(ThreadPoolExecutor(1))
-            ahead = cache(partial(compiler.submit, compile_ahead))
+            ahead = cache(partial(compiler.submit, compile_ahead))  # compiles loops during the wait, once
 
             def watch(state: JobState) -> None:
                 if state.stage:

@@ -30,6 +30,7 @@ def planetary_stage(wishes: PairWishes) -> StageSketch:
     """
     module, teeth, helix = wishes.module or 2.0, wishes.teeth or 24, wishes.helix or 0.0
     wished = 0.5 * teeth * ((wishes.ratio or 5.0) - 2.0)
+    # equal spacing: PLANETS divides sun plus planet; up to one spacing above the wished number
     fitting = [count for count in range(_MIN_TEETH, int(wished) + 4) if (teeth + count) % PLANETS == 0]
     if not fitting or wished < _MIN_TEETH:
         minimum = 2.0 + 2.0 * _MIN_TEETH / teeth

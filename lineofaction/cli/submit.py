@@ -191,7 +191,7 @@ def _show_result(key: str, kind: str, file: Path | None) -> None:
     if file is None:
         return
     headlines: Sequence[Headline] = ()
-    with suppress(MissingExtra):  # which reads all kinds
+    with suppress(MissingExtra):  # without the extra a result is written, not read
         from lineofaction.report import document  # noqa: PLC0415 (start-up time)
 
         headlines = document.headlines_of(document.read_inputs([file]))

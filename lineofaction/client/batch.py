@@ -23,10 +23,7 @@ J = TypeVar("J")
 
 
 class _BatchSurface(Followed, Generic[T, J]):
-    """The calls of a batch.
-
-    `state`: of the whole, as last seen.
-    """
+    """The calls of a batch; `state` is the last known state of the batch as a whole."""
 
     def __init__(self, client: Surface, state: JobState, read: Callable[[Path], T]) -> None:
         self.session, self.driver, self.state = client.session, client.driver, state
@@ -38,8 +35,8 @@ class _BatchSurface(Followed, Generic[T, J]):
     ) -> Steps[list[J]]:
         """Wait until all jobs have ended; return them in order.
 
-        One that failed raises why when its result is read. Raises `StillRunning`, `Unreachable`; parameters
-        as of the client's `wait`.
+        The error of a job that failed is raised when its result is read. Raises `StillRunning`,
+        `Unreachable`; parameters as of the client's `wait`.
         """
         if not self.state.ended:
             pace = pace_of_known(self.session, timeout, interval)
@@ -53,7 +50,7 @@ class _BatchSurface(Followed, Generic[T, J]):
 
     @operation
     def result(self, progress: Watch | None = None, *, timeout: float | None = None) -> Steps[list[T]]:
-        """Wait for all jobs and return their results in order; raises why the first that has none failed."""
+        """Wait for all jobs and return their results in order; raises the error of the first failed job."""
         results: list[Any] = []
         for index, job in enumerate((yield from _BatchSurface.wait(self, progress, timeout=timeout))):
             try:

@@ -140,7 +140,7 @@ class Exchange:
 def _checked(response: httpx2.Response) -> httpx2.Response:
     if response.status_code in _RETRIED:
         raise _TryAgain(response)
-    if not response.is_success:  # a redirection too: those are for others
+    if not response.is_success:  # redirections too: this service has none
         raise problem_of(response)
     return response
 

@@ -19,7 +19,7 @@ def open_executor(processes: int = 1, scheduler: str | None = None) -> Iterator[
     processes : int
         Number of processes of this machine.
     scheduler : str, optional
-        Address of a Dask scheduler, or the file in which it left it.
+        Address of a Dask scheduler, or the file to which the scheduler wrote it.
 
     Raises `BadInput`: both are given, or nobody answers at the address.
     """

@@ -112,7 +112,7 @@ def _option(name: str, field: FieldInfo) -> Parameter:
     kind = str | None if item_type(field) else field.annotation
     if field.is_required() and not item_type(field):
         return keyword(name, Annotated[kind, option])
-    typed = None if field.is_required() else field.default  # as it would be typed; an empty list is none
+    typed = None if field.is_required() else field.default  # as typed; an empty list becomes None
     if isinstance(typed, tuple):
         typed = ",".join(item if isinstance(item, str) else f"{item:g}" for item in typed) or None
     return keyword(name, Annotated[kind, option], typed)

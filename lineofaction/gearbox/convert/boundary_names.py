@@ -53,7 +53,7 @@ _SUFFIXES_IN_TEXT = ("_n_per_mm3", "_gpa", "_deg", "_rpm")
 
 
 def _with_parts(parts: Mapping[str, Declared]) -> Iterator[type]:
-    for kind in (fact.part for fact in parts.values() if fact.part is not None and figures(fact.part)):
+    for kind in (entry.part for entry in parts.values() if entry.part is not None and figures(entry.part)):
         yield kind
         yield from _with_parts(parts_of(kind))
 
@@ -133,7 +133,8 @@ def scene_field(name: str) -> str:
     parts = ["coast_flank" if part == "coast" else part for part in name.split(".")]
     head, index = _split_index(parts[-1])
     table = _OF_TABLE.get(_split_index(parts[0])[0])
-    if len(parts) == 2 and table and head in (fields := _fields_of(table)):
+    fields = _fields_of(table) if table and len(parts) == 2 else {}
+    if head in fields:
         return f"{parts[0]}.{fields[head]}"
     if len(parts) == 1 and head == "duration":
         return "run.duration_s"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 from bounds import inside
 from bounds.types import Json
@@ -31,13 +31,10 @@ from lineofaction.gearbox.schemas.flank_point import FlankPoint
 from lineofaction.gearbox.schemas.gear import ToothingInput, with_flank
 from lineofaction.gearbox.units import MM, NM, UM
 
-if TYPE_CHECKING:
-    pass
-
 Toothed = TypeVar("Toothed", bound=Toothing)
 THICK = 10.0
-"""Distance from bore to root in face widths up to which `check_request` accepts every disc: rounding takes
-less than a tenth of its tolerance."""
+"""Largest distance from bore to root, in face widths, of discs whose rounding errors need no check: they take
+less than a tenth of the tolerance."""
 PLANE = ("plane_strain", "plane_stress")
 """Models that a case may state, and that have no misalignment."""
 
@@ -171,14 +168,14 @@ def case_at(case: Case, point: FlankPoint) -> Case:
         load = LoadInput(torque_n_m=load.torque_n_m[-1:])
     elif load.normal_force_n is not None:
         load = LoadInput(normal_force_n=load.normal_force_n[-1:])
-    skew, change = point.misalignment_um, point.center_distance_change_mm
+    misalignment, change = point.misalignment_um, point.center_distance_change_mm
     alignment = ErrorsInput(
-        misalignment_um=(min(errors.misalignment_um, key=abs) if skew is None else skew,),
+        misalignment_um=(min(errors.misalignment_um, key=abs) if misalignment is None else misalignment,),
         center_distance_change_mm=(
             min(errors.center_distance_change_mm, key=abs) if change is None else change,
         ),
     )
-    accuracy = case.accuracy.model_copy(update={"positions": None})  # a cycle is always the same 64
+    accuracy = case.accuracy.model_copy(update={"positions": None})  # flank results have their own 64
     return case.model_copy(update={"load": load, "errors": alignment, "accuracy": accuracy})
 
 

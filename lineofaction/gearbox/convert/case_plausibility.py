@@ -19,7 +19,7 @@ from lineofaction.gearbox.units import factor, unit_name
 def case_warnings(checked: CheckedCase) -> list[Json]:
     """Return warnings about implausible values of a case, before anything is computed.
 
-    Raises `BadInput`: no such pair, or nothing passes where it complains.
+    Raises `BadInput`: no such pair, or a complaint about an order that no part of the pair causes.
     """
     if checked.case.complaint is not None:
         load("lineofaction.gearbox.convert.complaint:complaint_of_case")(checked.case)

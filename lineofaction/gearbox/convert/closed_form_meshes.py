@@ -1,4 +1,4 @@
-"""Meshes in closed form: the facts of their gears and their tables."""
+"""Meshes whose stiffness is stated in closed form: geometry of their gears, and their tables."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from lineofaction.gearbox.units import DEGREE, MM, UM
 
 @identity_cached
 def _closed_forms(meshes: tuple[MeshInput, ...]) -> dict[str, tuple[PairGeometry, MeshTable]]:
-    """Return facts and table of every mesh that states its stiffness, by name."""
+    """Return geometry and table of every mesh that states its stiffness, by name."""
     return {
         mesh.name: (_pair_geometry(f"meshes[{index}].stiffness", mesh.stiffness), _table(index, mesh))
         for index, mesh in enumerate(meshes)
@@ -28,7 +28,7 @@ def _closed_forms(meshes: tuple[MeshInput, ...]) -> dict[str, tuple[PairGeometry
 
 
 def _pair_geometry(field: str, mesh: StiffnessMeshInput) -> PairGeometry:
-    """Return the facts of the pair: base radii in the ratio of the teeth, the center distance from them."""
+    """Return the geometry of the pair; its base radii have the ratio of the teeth."""
     pinion, wheel = mesh.teeth
     if mesh.internal and wheel <= pinion:
         raise BadInput.of(
@@ -45,7 +45,7 @@ def _pair_geometry(field: str, mesh: StiffnessMeshInput) -> PairGeometry:
         center_distance=(radii[1] + (-radius if mesh.internal else radius)) / math.cos(angle),
         working_pressure_angle=angle,
         face_width=mesh.face_width_mm * MM,
-        helix_hand=(helix > 0.0) - (helix < 0.0),
+        helix_hand=(helix > 0.0) - (helix < 0.0),  # 1, 0 or -1
         internal=mesh.internal,
     )
 

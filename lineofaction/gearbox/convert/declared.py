@@ -31,8 +31,8 @@ def part_of(kind: type[Part], model: BaseModel | None, name: str, **further: Any
 def in_si(kind: type[Any], *models: BaseModel) -> dict[str, Any]:
     """Return the fields of a dataclass that tables have, in SI, each from the first that has it.
 
-    A table has a field by its name alone, or by its name and unit: ``position`` or ``position_mm``. Of tables
-    in it those are converted that are declared as parts; left out ones are left out.
+    A table has a field by its name alone, or by its name and unit: ``position`` or ``position_mm``. A table
+    within a table is converted if the dataclass declares it as a part.
 
     Raises `RefusedValue`: a value of a part out of its bounds.
     """
@@ -40,9 +40,9 @@ def in_si(kind: type[Any], *models: BaseModel) -> dict[str, Any]:
     for model in reversed(models):
         for name, field, unit in _shared_fields(cast("Hashable", kind), cast("Hashable", type(model))):
             values[name] = _in_unit(getattr(model, field), unit)
-        for name, fact in parts_of(kind).items():
-            if fact.part is not None and (value := getattr(model, name, None)) is not None:
-                values[name] = _parts(fact.part, value, name)
+        for name, declaration in parts_of(kind).items():
+            if declaration.part is not None and (value := getattr(model, name, None)) is not None:
+                values[name] = _parts(declaration.part, value, name)
     return values
 
 
@@ -61,7 +61,7 @@ def _shared_fields(kind: Any, model: Any) -> tuple[tuple[str, str, float], ...]:
     for name in (entry.name for entry in fields(kind) if entry.init):
         known = declared.get(name)
         fits = [known] if known else [(name + end, factor(name + end)) for end in ("", *ENDINGS)]
-        shared += [(name, field, unit) for field, unit in fits if field in plain][:1]
+        shared += [(name, field, unit) for field, unit in fits if field in plain][:1]  # the first, if any
     return tuple(shared)
 
 

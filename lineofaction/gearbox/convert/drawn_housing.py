@@ -23,7 +23,7 @@ Json = dict[str, Any]
 
 
 def drawn_housings(inputs: Json, folder: Path, announce: Callable[[str], None]) -> Json:
-    """Return ``{"surface": {...}}`` of ``{"housings": [...]}``; None in its place: none of them has a file.
+    """Return ``{"surface": {...}}`` of ``{"housings": [...]}``; its value is None if no housing has a file.
 
     Work of a confined process that answers once. `announce`: gets the field of each file before it is read,
     which may end the process. Raises `BadInput`: a file is no solid, or damaged.
@@ -57,7 +57,7 @@ def _drawn(index: int, housing: HousingInput, folder: Path, limit: int) -> tuple
             surface = drawn_step(file, limit) if of_step else drawn_mesh(file, str(housing.mesh_unit), limit)
         except InputError as error:
             content = housing.step_file or housing.mesh_file
-            assert content is not None  # the schema comes first
+            assert content is not None  # the schema has refused that
             field_name = f"{error.field}_mm" if error.field.endswith((".size", ".place")) else error.field
             value = content.name if error.value == file.name else error.value
             raise InputError(field_name, value, error.bound, error.suggestion) from None

@@ -30,7 +30,7 @@ from model_studies.workers import WorkersLost
 
 @dataclass(frozen=True)
 class _CaseReader(Reader):
-    """Whoever wrote a case file."""
+    """The words for a reader who wrote a case file: its field names and units."""
 
     knows_si: ClassVar[bool] = False
     model: ClassVar[type[BaseModel]] = Case
@@ -41,12 +41,12 @@ class _CaseReader(Reader):
         return case_field(self.field)
 
     def field_unit(self, unit: str) -> Unit:
-        """Return the unit of the field by its name, with its symbol if that is to be written."""
+        """Return the unit of the field by its name; without a symbol where `unit` is empty."""
         of_name = unit_of(self.name) or Unit(unit)
         return of_name if unit else Unit("", of_name.factor)
 
     def unit(self, value: float, unit: str) -> Unit:
-        """Return the field's unit for a value of its kind; for lengths mm, for small ones um."""
+        """Return the unit in which a message writes a value: the field's; for lengths um or mm by size."""
         of_name = unit_of(self.name)
         if of_name and of_name.si == unit != "m":
             return of_name
@@ -71,7 +71,7 @@ class _CaseReader(Reader):
 
 @dataclass(frozen=True)
 class _SceneReader(_CaseReader):
-    """Whoever wrote a scene file."""
+    """The words for a reader who wrote a scene file."""
 
     model: ClassVar[type[BaseModel]] = SceneInput
 

@@ -24,7 +24,7 @@ def plan_of(case: CheckedCase, time_budget_s: float | None, cache: Path | None) 
 
 
 def costs_of(case: CheckedCase, cache: Path | None) -> list[Prediction]:
-    """Return the cost of each pass of the table of a case that is expected: no other levels are predicted.
+    """Return the cost of each expected pass of the table of a case; levels without a pass are not predicted.
 
     Raises `BadInput`: no such pair, or a request that no plan can meet.
     """

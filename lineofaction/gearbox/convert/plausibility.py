@@ -43,7 +43,7 @@ def scene_warnings(
 
 
 def measured_warnings(inputs: SceneInput) -> list[Json]:
-    """Return which housings of a scene no shaft feels, because they were measured."""
+    """Return a warning for each measured housing of a scene: it does not act back on the shafts."""
     nothing = {"value": None, "unit": "", "low": None, "high": None, "reason": "", "source": "", "whole": ""}
     return [
         {
@@ -60,7 +60,7 @@ def measured_warnings(inputs: SceneInput) -> list[Json]:
 
 
 def _in_file(inputs: SceneInput, field: str) -> bool:
-    """Whether a field is of a part in the file, and not of a further planet, which is its copy."""
+    """Whether a field is of a part in the file; those of further planets, its copies, are not."""
     part = re.match(r"(\w+)\[(\d+)\]", field)
     return part is None or int(part.group(2)) < len(getattr(inputs, part.group(1)))
 

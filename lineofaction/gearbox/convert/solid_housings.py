@@ -71,7 +71,7 @@ def reduced_housings(
     cache : Path or None
         Directory of kept meshes and reductions.
     progress : callable
-        Called as progress("housing", fraction), before a costly reduction with what it will take behind it.
+        Called as progress("housing", fraction). Before a costly reduction the text also has its cost.
 
     Returns
     -------
@@ -147,7 +147,7 @@ def _placed(housing: HousingInput, mesh: TetrahedralMesh) -> TetrahedralMesh:
 
 def _meshed(housing: HousingInput, scene: SceneInput, mesh: TetrahedralMesh) -> MeshedHousing:
     loss, ratios = housing.loss_factor, housing.modal_damping or (housing.damping_ratio,)
-    assert housing.material is not None  # the schema comes first
+    assert housing.material is not None  # the schema has refused that
     return MeshedHousing(
         mesh,
         Material(**in_si(Material, housing.material)),
@@ -186,7 +186,7 @@ def _face(foot: HousingFootInput) -> Plane | Box | BoundedPlane | Group:
     if foot.low_mm is not None and foot.high_mm is not None:
         box = Box(_si(foot.low_mm), _si(foot.high_mm))
         return box if plane is None else BoundedPlane(plane, box)
-    assert plane is not None  # the schema comes first
+    assert plane is not None  # the schema has refused that
     return plane
 
 

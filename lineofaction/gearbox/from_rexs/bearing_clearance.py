@@ -19,8 +19,8 @@ _OPERATING = "operating_radial_bearing_clearance"
 def radial_clearance(part: Part) -> float:
     """Return the play across the axis between both extremes, m; negative: preload.
 
-    That in operation counts first, then that as mounted, then that before mounting, stated or the mean of
-    its limits; 0 where the file gives none.
+    The file may state it in operation, as mounted or before mounting: the first of these counts. Else it is
+    the mean of the limits before mounting; 0 where the file gives none.
     """
     for stage, meaning in _STAGES:
         value = _clearance(part, f"{stage}radial_bearing_clearance", meaning)
@@ -36,11 +36,11 @@ def radial_clearance(part: Part) -> float:
 
 
 def axial_clearance(part: Part, contact_angle: float) -> float:
-    """Return the way along the axis to contact of a row with a contact angle, m; negative: preload.
+    """Return the distance along the axis to contact of a row with a contact angle, m; negative: preload.
 
-    At each stage, as of `_radial_clearance`, a stated axial clearance counts first, then half of the radial
-    one times the cotangent of the contact angle. A preload distance is taken off, unless a preload force
-    follows.
+    At each stage, as of `radial_clearance`, a stated axial clearance counts first, then half of the radial
+    one times the cotangent of the contact angle. A preload distance is subtracted, unless the file also has a
+    preload force.
     """
     way = _way_to_contact(part, contact_angle)
     distance = _clearance(part, "preload_distance", "approach of the rings beyond contact, µm")

@@ -1,4 +1,7 @@
-"""Axial location: the directions along the scene's axis in which a bearing holds its shaft."""
+"""Axial location: the directions along the scene's z axis in which a bearing holds its shaft.
+
+REXS counts these directions along u, the axis of the bearing itself, along z or against it.
+"""
 
 from __future__ import annotations
 
@@ -42,7 +45,8 @@ def _axial_location(part: Part, sense: int, item: str = _ABSORPTION) -> str | No
 def _contact_side(part: Part, row: Part | None, sense: int) -> int | str:
     """Return the sign of the contact angle of a row, +1 where it holds a shaft that is pushed along z.
 
-    The row's own direction counts, else that of the bearing; the reason where neither says or they differ.
+    The direction of the row counts, else that of the bearing. Where neither is stated or they differ, the
+    answer is a text that says so.
     """
     of_bearing = _SIGN.get(_axial_location(part, sense) or "")
     location = None if row is None else _axial_location(row, sense, f"{_ABSORPTION}_of_row")
