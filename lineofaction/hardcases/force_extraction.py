@@ -146,7 +146,7 @@ def _queries_outside() -> Sequence[Measured]:
 
 
 def _along_the_axis(table: SteDatabase, x: FloatArray) -> tuple[Measured, ...]:
-    """Ask a table of three misalignments at each of them, between and beyond."""
+    """Return figures on a table of three misalignments, queried at each, between two and beyond them."""
     misalignment, factor = np.array([-20e-6, 0.0, 30e-6]), np.array([1.2, 1.0, 1.5])
     names = ("static_transmission_error", "tangent_compliance", "no_load_transmission_error")
     scaled: dict[str, Any] = {name: along(getattr(table, name), factor) for name in names}
@@ -178,7 +178,7 @@ def _along_the_axis(table: SteDatabase, x: FloatArray) -> tuple[Measured, ...]:
     "Their order holds everywhere, and force and STE are inverse to each other.",
 )
 def _nearly_parallel() -> Sequence[Measured]:
-    """Keep loads apart whose curves run a picometer from each other over a square wave."""
+    """Extract forces where the curves of three loads run a picometer apart over a square wave."""
     position = even_positions(48)
     force = 1000.0 + np.array([0.0, 1e-3, 2e-3, 1.0])
     ste = square_wave(position)[:, None] * force
@@ -205,7 +205,7 @@ def _inverse(table: SteDatabase, x: FloatArray) -> tuple[Measured, ...]:
     force = rng.uniform(0.0, float(table.force[-1]), x.size)
     deflection = table.ste(x, force)
     sample = table.force_at(x, deflection)
-    # change of the force by some roundings of the deflection, at the largest stiffness of the table
+    # change of the force by 32 roundings of the deflection, at the largest stiffness of the table
     steepest = float(np.diff(table.force_table().level).max() / np.diff(table.force_table().deflection).min())
     rounding = 32.0 * np.spacing(np.abs(deflection)) * max(steepest, float(sample.stiffness.max()))
     difference = np.maximum(np.abs(sample.force - force) - rounding, 0.0) / table.force[-1]

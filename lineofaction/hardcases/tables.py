@@ -1,4 +1,7 @@
-"""Tables of contact in closed form, for hard scenes of extraction and noise."""
+"""Tables of contact in closed form, for hard scenes of extraction and noise.
+
+Axes: P positions, F forces, M misalignments, D changes of center distance.
+"""
 
 from __future__ import annotations
 
@@ -32,6 +35,7 @@ PLAIN_TABLE = (
     "error_estimate",
     "residuals",
 )
+"""Fields that `table_of` fills with constants."""
 
 
 def table_of(position: FloatArray, force: FloatArray, ste: FloatArray, lift_off: FloatArray) -> SteDatabase:
@@ -49,6 +53,7 @@ def table_of(position: FloatArray, force: FloatArray, ste: FloatArray, lift_off:
         center_distance_change=np.zeros(1),
         pair=np.array([0, 1]),
         static_transmission_error=ste.reshape(grid),
+        # positive also where curves nearly touch
         tangent_compliance=np.maximum(secant, 1e-3 * COMPLIANCE).reshape(grid),
         no_load_transmission_error=lift_off.reshape(-1, 1, 1),
         load_share=share,
@@ -64,7 +69,7 @@ def table_of(position: FloatArray, force: FloatArray, ste: FloatArray, lift_off:
 
 
 def along(values: FloatArray, factor: FloatArray) -> FloatArray:
-    """Repeat values (P, [F,] 1, D, ...) along the axis of misalignment, each times its factor."""
+    """Repeat values (P, 1, D) or (P, F, 1, D, ...) along the axis of misalignment, times a factor (M,)."""
     axis = 1 if values.ndim == 3 else 2
     shape = [1] * values.ndim
     shape[axis] = factor.size

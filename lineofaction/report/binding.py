@@ -14,13 +14,13 @@ from lineofaction.report.unit_picture import is_picture, one_picture
 
 _SENTENCE = re.compile(r"(?<=[.:!]) (?=[A-Z])")
 _LINKS = ("at", "of", "on", "in", "under", "the")
-"""Words with which no title ends."""
+"""Words that are cut from the end of a title."""
 _Parted = list[tuple[str, Section]]
-"""Sections of one title with the part that each is of."""
+"""Sections with one title, each with the name of the part it describes."""
 
 
 def bound(pages: Mapping[str, Page]) -> Page:
-    """Return one page of several by the part that each is of; an empty name is the whole unit's."""
+    """Bind pages by the name of the part that they describe; the page of the whole unit has an empty name."""
     parts = [name for name in pages if name]
     if not parts:
         return pages[""]
@@ -51,39 +51,39 @@ def _named(part: str, text: str) -> str:
     return f"{part[0].upper()}{part[1:]}: {text}" if part and text else text
 
 
-def _of(title: str, part: str) -> str:
+def _with_part(title: str, part: str) -> str:
     return f"{title}, {part}" if part else title
 
 
 def _headline(part: str, headline: Headline) -> Headline:
-    return replace(headline, name=_of(headline.name, part))
+    return replace(headline, name=_with_part(headline.name, part))
 
 
 def _section(title: str, parted: _Parted) -> Section:
-    """Return one section for a title: figures of one key as one, tables by their parts."""
+    """Return the section of a title: figures with one key are joined, each table names its part."""
     figures: dict[str, dict[str, Figure]] = {}
     for name, section in parted:
         for figure in section.figures:
             figures.setdefault(figure.key, {})[name] = figure
     tables = [_table(name, section, table) for name, section in parted for table in section.tables]
     folded = [_table(name, section, table) for name, section in parted for table in section.folded]
-    text = _said({name: section.text for name, section in parted})
+    text = _joined_text({name: section.text for name, section in parted})
     drawn = tuple(_figure(of_parts) for of_parts in figures.values())
     return Section(title, text, drawn, tuple(tables), tuple(folded), parted[0][1].part)
 
 
 def _table(part: str, section: Section, table: Table) -> Table:
-    """Name the part in the caption; of effects in the column that says where they are."""
+    """Name the part in the caption; a table of effects names it in its column of places."""
     if not part:
         return table
     if section.part is Part.EFFECTS and table in section.tables:
-        rows = tuple((name, _of(where, part), *rest) for name, where, *rest in table.rows)
+        rows = tuple((name, _with_part(where, part), *rest) for name, where, *rest in table.rows)
         return replace(table, rows=rows)
-    return replace(table, caption=_of(table.caption, part))
+    return replace(table, caption=_with_part(table.caption, part))
 
 
 def _figure(figures: Mapping[str, Figure]) -> Figure:
-    """Return one figure for several parts: their panels side by side, equal sentences once."""
+    """Join the figures of parts: panels side by side, common words of the titles, equal sentences once."""
     (first, figure), *others = figures.items()
     titles = {name: figure.title for name, figure in figures.items()}
     head = _head(list(titles.values()))
@@ -95,8 +95,8 @@ def _figure(figures: Mapping[str, Figure]) -> Figure:
     side_by_side = [panel for row in zip_longest(*panels) for panel in row if panel is not None]
     return replace(
         figure,
-        title=" ".join(_trimmed(head.split())) if others else _of(figure.title, first),
-        caption=_said({name: figure.caption for name, figure in figures.items()}),
+        title=" ".join(_trimmed(head.split())) if others else _with_part(figure.title, first),
+        caption=_joined_text({name: figure.caption for name, figure in figures.items()}),
         alternative=" ".join(_named(name, figure.alternative) for name, figure in figures.items()),
         content=tuple(side_by_side),
         table=None
@@ -111,7 +111,7 @@ def _panel(part: str, panel: Panel, suffix: str) -> Panel:
 
 
 def _joined(tables: Mapping[str, Table]) -> Table:
-    """Return the rows of tables below each other by part; of tables of different heads the first."""
+    """Stack the rows of tables, each with its part; where heads differ, return the first table alone."""
     first = next(iter(tables.values()))
     if len(tables) == 1 or len({table.head for table in tables.values()}) > 1:
         return first
@@ -131,13 +131,12 @@ def _trimmed(title: list[str]) -> list[str]:
     return [*title[:-1], *(word.rstrip(",;:") for word in title[-1:])]
 
 
-def _said(texts: Mapping[str, str]) -> str:
-    """Return the texts of all parts as one: sentences of all parts once, then the others by part."""
+def _joined_text(texts: Mapping[str, str]) -> str:
+    """Join the texts of parts: first the sentences that all share, then the others by part."""
     sentences = {name: _SENTENCE.split(text) for name, text in texts.items() if text}
     if not sentences:
         return ""
-    common = [
-        one for one in next(iter(sentences.values())) if all(one in part for part in sentences.values())
-    ]
-    rest = {name: " ".join(one for one in part if one not in common) for name, part in sentences.items()}
+    first = next(iter(sentences.values()))
+    common = [line for line in first if all(line in part for part in sentences.values())]
+    rest = {name: " ".join(line for line in part if line not in common) for name, part in sentences.items()}
     return " ".join([*common, *(_named(name, text) for name, text in rest.items() if text)])

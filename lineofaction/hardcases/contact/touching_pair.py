@@ -16,13 +16,16 @@ from lineofaction.hardcases.scene import Measured, Scenes
 SCENES = Scenes("contact")
 
 _POSITION = np.array([0.3])
+"""Position in base pitches at which two pairs may carry."""
 
 _LOADS = np.array([0.5, 1.0 - 1e-6, 1.0 + 1e-6, 1.0 + 1e-3])
+"""Loads over the load at which the entering pair touches."""
 
-_LENGTH = 2.5e-3
+_RELIEF_LENGTH = 2.5e-3
 """Length of the relief along the radius, m."""
 
 _NUDGES = np.array([-1e-3, -1e-6, -1e-9, -1e-12, -1e-15, 0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3])
+"""Relative changes of the relief; the middle one is zero."""
 
 
 @SCENES.add(
@@ -34,7 +37,7 @@ _NUDGES = np.array([-1e-3, -1e-6, -1e-9, -1e-12, -1e-15, 0.0, 1e-15, 1e-12, 1e-9
     "through nudges of 1e-15 to 1e-3; two solvers agree.",
 )
 def _relief_that_touches() -> Sequence[Measured]:
-    """Find the tip relief with which the second pair carries nothing and gapes nowhere; nudge it."""
+    """Find the tip relief with which the entering pair touches without force; solve around it."""
     case = posed(nominal_pair())
     exact = brentq(lambda relief: _reach(case, relief), 1e-6, 100e-6, xtol=1e-18, rtol=1e-15)
     reliefs = exact * (1.0 + _NUDGES)
@@ -42,14 +45,16 @@ def _relief_that_touches() -> Sequence[Measured]:
     ste = np.array([solution.deflection[0, 0] for _, solution in solved])
     rise, widening = np.diff(ste), np.diff(reliefs)
     rounding = 1e-14 * ste.max()
-    raised = _raised(*solved[_NUDGES.size // 2])
+    problem, touching = solved[_NUDGES.size // 2]
+    raised = problem, solve_contact(problem, touching.load[-1] * _LOADS)
     checks = [soundness(*solution) for solution in (*solved, raised)]
+    # of two pairs that may carry, the entering one has the second largest force
     entering = np.sort(raised[1].force[0], axis=1)[:, -2] / raised[1].load
     return (
         *(max(column, key=lambda m: m.value) for column in zip(*checks, strict=True)),
         Measured("relief found, µm", 1e6 * exact),
         Measured("its gap off the closed form of a straight ramp", _off_the_ramp(case, exact), maximum=1e-3),
-        Measured("share of the touching pair", float(_share(*solved[_NUDGES.size // 2])), maximum=1e-9),
+        Measured("share of the touching pair", _share(touching), maximum=1e-9),
         Measured("its share a millionth below the load at which it touches", float(entering[1]), maximum=0.0),
         Measured("a millionth above it, raised to it", float(entering[2]), maximum=1e-6, minimum=1e-9),
         Measured("least rise of STE with relief, m", float((rise + rounding).min()), minimum=0.0),
@@ -59,51 +64,47 @@ def _relief_that_touches() -> Sequence[Measured]:
 
 def _solve(case: Posed, relief: float) -> tuple[ContactProblem, ContactSolution]:
     """Solve with a linear relief of the driven tip, which enters the mesh."""
-    modification = FlankModification(tip_relief=float(relief), tip_relief_length=_LENGTH)
+    modification = FlankModification(tip_relief=float(relief), tip_relief_length=_RELIEF_LENGTH)
     pair = GearPair(nominal_gear(), nominal_gear(modification=modification), case.pair.center_distance)
     relieved = posed(pair, case.pair.torque(case.plan.load), bodies=case.contact)
     return relieved.solve(_POSITION, case.plan.load)
 
 
-def _raised(problem: ContactProblem, touching: ContactSolution) -> tuple[ContactProblem, ContactSolution]:
-    """Raise the load through that at which the pair touches: it was out of contact at the load before."""
-    return problem, solve_contact(problem, touching.load[-1] * _LOADS)
-
-
 def _reach(case: Posed, relief: float) -> float:
-    """Return the distance of the weaker pair from touch: < 0 it carries (share), > 0 it gapes (um)."""
+    """Return minus the load share of the weaker pair if it carries, else its least gap under load, um."""
     problem, solution = _solve(case, relief)
     force = solution.force[0, 0]
     weaker = int(np.argsort(force)[-2])
     if force[weaker] > 0.0:
         return -float(force[weaker] / force.sum())
-    c = problem.candidates
-    gap = c.gap[0] * c.motion_arm[0] + problem.displacement(solution.force)[0, 0]
-    slack = gap - c.motion_arm[0] * solution.deflection[0, 0]
+    gap, arm = problem.candidates.gap[0], problem.candidates.motion_arm[0]
+    # gap as a lag of gear 2 times its arm, plus what the bodies yield, less what the lag of gear 2 closes
+    slack = gap * arm + problem.displacement(solution.force)[0, 0] - arm * solution.deflection[0, 0]
     return 1e6 * float(np.min(slack[force == 0.0]))
 
 
 def _off_the_ramp(case: Posed, relief: float) -> float:
-    """Return the deviation of the entering pair's gap from a ramp of height c and slope m along the flank.
+    """Return the relative deviation of the entering pair's gap from that of a straight ramp of relief.
 
-    It is c - R m^2/2 along the normal, which gear 2 closes by a lag of 1/(1 - s) times that, s the slope over
-    its roll length.
+    With c the relief at the point of contact, m its slope along the flank and R the radius of relative
+    curvature, the gap along the normal is c - R m^2/2. Gear 2 closes it by a lag 1/(1 - s) times as large,
+    where s is the slope of the relief over roll length.
     """
     problem, _ = _solve(case, relief)
     pair, gear = case.pair, case.pair.wheel
-    start, tip = gear.roll_length(gear.tip_radius - _LENGTH), gear.tip_roll_length
+    start, tip = gear.roll_length(gear.tip_radius - _RELIEF_LENGTH), gear.tip_roll_length
     roll_1, roll_2 = pair.roll_lengths(_POSITION[:, None], problem.candidates.pair)
     entering = int(np.flatnonzero((roll_2[0] > start) & (roll_2[0] < tip))[0])
     first, second = float(roll_1[0, entering]), float(roll_2[0, entering])
     height = relief * (second - start) / (tip - start)
-    by_roll = relief / (tip - start)
-    slope = by_roll * gear.base_radius / second
+    roll_slope = relief / (tip - start)
+    slope = roll_slope * gear.base_radius / second
     radius = 1.0 / (1.0 / first + 1.0 / second)
-    lag = (height - 0.5 * radius * slope**2) / (1.0 - by_roll)
+    lag = (height - 0.5 * radius * slope**2) / (1.0 - roll_slope)
     return abs(float(problem.candidates.gap[0, entering]) / lag - 1.0)
 
 
-def _share(problem: ContactProblem, solution: ContactSolution) -> float:
-    """Return the load share of the weakest pair that carries load."""
+def _share(solution: ContactSolution) -> float:
+    """Return the load share of the pair with the second largest force."""
     force = np.sort(solution.force[0, 0])
     return float(force[-2] / force.sum())

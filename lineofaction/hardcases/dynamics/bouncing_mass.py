@@ -17,9 +17,9 @@ def bounce(time: FloatArray, gap: float, speed: float, natural: float) -> FloatA
     time : (T,) array
         s; at 0 it leaves the first spring.
     gap, speed : float
-        m; m/s in the gap.
+        Gap between the springs in m, and speed of the mass in the gap in m/s.
     natural : float
-        rad/s, of the mass on either spring: each contact takes half a period.
+        Natural frequency of the mass on either spring, rad/s; a contact takes half its period.
     """
     flight, contact = gap / speed, math.pi / natural
     since = np.mod(time, 2.0 * (flight + contact))
@@ -30,10 +30,10 @@ def bounce(time: FloatArray, gap: float, speed: float, natural: float) -> FloatA
     return np.choose(
         phase,
         [
-            -speed * elapsed,
-            -gap - depth * np.sin(natural * elapsed),
-            -gap + speed * elapsed,
-            depth * np.sin(natural * elapsed),
+            -speed * elapsed,  # flight to the second spring
+            -gap - depth * np.sin(natural * elapsed),  # contact with it
+            -gap + speed * elapsed,  # flight back
+            depth * np.sin(natural * elapsed),  # contact with the first spring
         ],
     )
 

@@ -34,10 +34,13 @@ from lineofaction.hardcases.scene import Measured, Scenes
 SCENES = Scenes("dynamics")
 
 _WAVE, _DAMPING = 1e-6, 0.05
+"""Amplitude of the teeth's error, m, and damping ratio."""
 
 _STEP_TIME, _STEP_TORQUE, _RISE = 1e-3, 150.0, 1e-7
+"""Time of the torque step, s, its size, N m, and the time in which it rises, s."""
 
 _MANY, _ROUNDING = 10_000_000, 1e-9
+"""Steps of the longest run, and the relative energy that rounding may add."""
 
 
 @SCENES.add(
@@ -53,7 +56,7 @@ def _extreme_speeds() -> Sequence[Measured]:
         rate = speed / 60.0 * TEETH
         scene = torsional(
             spring(_WAVE, positions=256), speed=speed * RPM, damping=damping_of(_DAMPING),
-            duration=periods / rate, outputs=Outputs(rate / periods * 4000.0),
+            duration=periods / rate, outputs=Outputs(rate / periods * 4000.0),  # 4000 samples
             integration=Integration(tolerance=1e-10),
         )  # fmt: skip
         runs = run_both(scene)
@@ -66,7 +69,7 @@ def _extreme_speeds() -> Sequence[Measured]:
 def _ringing(rate: float) -> Callable[[FloatArray], FloatArray]:
     """Return d(t) at rest until t = 0, when the tooth's error begins to change at `rate` rad/s.
 
-    m d'' + c d' + k (d - a cos(rate t)) = T/r: a steady part, and what rings off of the start.
+    m d'' + c d' + k (d - a cos(rate t)) = T/r: a steady part, and free vibration that decays from the start.
     """
     square = NATURAL**2 - rate**2 + 2j * _DAMPING * NATURAL * rate
     steady = _WAVE * NATURAL**2 / square
@@ -102,14 +105,18 @@ def _torque_step() -> Sequence[Measured]:
         Measured(
             "peak force over the load before plus twice the step",
             peak / (TORQUE + 2.0 * _STEP_TORQUE),
-            1.0001,
-            0.999,
+            maximum=1.0001,
+            minimum=0.999,
         ),
     )
 
 
 def after_ramp(time: FloatArray, natural: float, step: float, begin: float, rise: float) -> FloatArray:
-    """Return d(t) without damping as the load rises straight and the static deflection by `step` in m."""
+    """Return d(t) without damping under a load that rises linearly within `rise` from `begin`, in s.
+
+    `step` is the rise of the static deflection, m.
+    """
+    # a ramp that never ends, less the same ramp from the end of the rise
     since, past = (np.maximum(time - start, 0.0) for start in (begin, begin + rise))
     ramp = since - np.sin(natural * since) / natural - past + np.sin(natural * past) / natural
     return np.asarray(DEFLECTION + step / rise * ramp)
@@ -142,7 +149,7 @@ def _tolerances() -> Sequence[Measured]:
 
 
 def _many_steps(method: str) -> Sequence[Measured]:
-    """Ring on without damping at a fixed place for ten million steps, and for ten times fewer."""
+    """Vibrate without damping, the teeth at rest, for ten million steps and for a tenth of them."""
     tenth, drift = (_drift(method, steps) for steps in (_MANY // 10, _MANY))
     in_proportion = drift / (10.0 * tenth + _ROUNDING)
     return (
@@ -163,24 +170,24 @@ for _method in METHODS:
 def _drift(method: str, steps: int) -> float:
     """Return the change of energy over `steps` steps of a 44th of a radian, relative to the vibration's.
 
-    The place of the teeth stands still, so it supplies no work: what the audit books to it closes the balance
-    of the mesh, and would hide what the steps make of its energy.
+    The teeth stand still, so their motion supplies no work. The energy audit still has an entry for it, the
+    remainder of the mesh's balance. That entry is left out: it would cancel the drift.
     """
     fixed = Integration(method, fixed_step=1.0 / (44.0 * NATURAL))
     duration = steps * float(fixed.fixed_step or 0.0)
     scene = torsional(
         spring(),
-        speed=TimeLaw.ramp(0.0, 1e-12, 1.0),
+        speed=TimeLaw.ramp(0.0, 1e-12, 1.0),  # practically zero, which a scene does not take
         duration=duration,
         outputs=Outputs(1000.0),
         integration=fixed,
     )
     system = assemble(scene)
-    speed = 0.5 * NATURAL * DEFLECTION
+    speed = 0.5 * NATURAL * DEFLECTION  # half of what would end contact
     run = integrate(
         system, static_equilibrium(system), fixed, velocity=np.array([speed]) / system.arrays.direction[0]
     )
-    if run.count[Count.ACCEPTED] < steps - 1:
+    if run.count[Count.ACCEPTED] < steps - 1:  # ended early; rounding of the duration may save one step
         return float("nan")
     supplied = float(np.delete(run.work, Power.POSITION).sum())
     return abs(float(np.diff(run.stored.sum(axis=1))[0]) - supplied) / (0.5 * MASS * speed**2)

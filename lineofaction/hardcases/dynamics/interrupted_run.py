@@ -43,15 +43,11 @@ def _resumed_run() -> Sequence[Measured]:
             legs = _in_legs(scene_of_method, parts)
             unbroken, resumed = (RunResult.from_netcdf(path) for path in (unbroken_file, parts))
         extra = abs(unbroken.statistics.accepted - resumed.statistics.accepted)
-        changed = [
-            name
-            for name in [
-                entry.name
-                for entry in fields(unbroken)
-                if isinstance(getattr(unbroken, entry.name), np.ndarray)
-            ]
-            if _bits(unbroken, name) != _bits(resumed, name)
+        series = [
+            entry.name for entry in fields(unbroken) if isinstance(getattr(unbroken, entry.name), np.ndarray)
         ]
+        changed = [name for name in series if _bits(unbroken, name) != _bits(resumed, name)]
+        # an odd value of `contact` says that the driving flank touches
         impacts = int(np.count_nonzero(np.diff(unbroken.contact[0] % 2.0) == 1.0))
         figures += [
             Measured(f"{method}: times it was taken up again", float(legs - 1), minimum=5.0),
@@ -72,7 +68,7 @@ def _in_legs(scene: Scene, path: Path) -> int:
 
 
 def _after(blocks: int) -> Callable[[], bool]:
-    """Return a function that requests the stop at the last of so many calls."""
+    """Return a function that is False until its last call of `blocks`, when it requests the stop."""
     left = iter(range(blocks - 1))
     return lambda: next(left, None) is None
 

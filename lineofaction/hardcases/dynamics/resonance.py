@@ -1,4 +1,8 @@
-"""Resonance with loss of contact: two motions at one speed, and jumps between them."""
+"""Resonance with loss of contact: two motions at one speed, and jumps between them.
+
+The oscillator has unit mass and stiffness: x'' + 2 z x' + f(x) = Fm + Fa W^2 cos W t, with f = x - 1 above 1,
+x + 1 below -1, else 0. It is a driven gear with backlash 2, x - 1 = d - e, e the error of its teeth.
+"""
 
 from __future__ import annotations
 
@@ -30,8 +34,10 @@ from lineofaction.hardcases.scene import Measured, Scenes
 SCENES = Scenes("dynamics")
 
 _ZETA, _MEAN, _AMPLITUDE, _TEETH = 0.05, 0.1, 0.05, 20
+"""z, Fm, Fa, and the number of teeth: the gear turns at W / teeth."""
 
 _SLOWEST = 0.5
+"""Lowest frequency W."""
 
 _CONVERGED = {
     0.5: (0.011759, 0.011759),
@@ -43,9 +49,10 @@ _CONVERGED = {
     1.2: (0.094212, 0.094212),
     1.6: (0.057716, 0.057716),
 }
-"""Frequency: rms of the alternating part at rising and at falling frequencies, converged independently."""
+"""Rms of the alternating part by frequency, at rising and at falling frequencies, converged independently."""
 
 _JUMP_UP, _JUMP_DOWN = 0.8285, 0.7080
+"""Frequencies of the jumps, converged in the same way."""
 
 
 @SCENES.add(
@@ -57,7 +64,7 @@ _JUMP_UP, _JUMP_DOWN = 0.8285, 0.7080
 )
 def _both_sweeps() -> Sequence[Measured]:
     """Sweep up and down through the jumps by shooting, and find where the branch turns back."""
-    by_method = {method: [_sweep(method, side) for side in (0, 1)] for method in METHODS}
+    by_method = {method: [_sweep(method, falling=falling) for falling in (False, True)] for method in METHODS}
     off = max(
         abs(values[w] / _CONVERGED[w][side] - 1.0)
         for sweeps in by_method.values()
@@ -78,11 +85,11 @@ def _both_sweeps() -> Sequence[Measured]:
     )
 
 
-def _sweep(method: str, side: int) -> dict[float, float]:
+def _sweep(method: str, *, falling: bool) -> dict[float, float]:
     """Return the rms at all frequencies, each settled from the motion at the one before."""
     state: FloatArray | None = None
     sizes: dict[float, float] = {}
-    for frequency in sorted(_CONVERGED, reverse=side == 1):
+    for frequency in sorted(_CONVERGED, reverse=falling):
         problem = periodic_problem(_oscillator(frequency, method), _SLOWEST / _TEETH)
         state = settled(problem, frequency / _TEETH, state)
         orbit = find_orbit(problem, frequency / _TEETH, state)
@@ -99,15 +106,18 @@ def _rms(problem: PeriodicProblem, orbit: Orbit, frequency: float) -> float:
 
 
 def _fold(jump: float, start: float, end: float) -> float:
-    """Return the frequency at which the branch first turns back, the excitation exact at `jump`."""
-    problem = periodic_problem(_oscillator(jump), 0.6 / _TEETH)
+    """Return the frequency of the first fold of the branch from `start` to `end`.
+
+    The amplitude of the error is that of frequency `jump`, so the force is exact there.
+    """
+    problem = periodic_problem(_oscillator(jump), 0.6 / _TEETH)  # 0.6: below both ends of the branch
     guess = settled(problem, start / _TEETH)
     branch = follow_branch(problem, start / _TEETH, end / _TEETH, 0.05, guess)
     return float(branch.folds[0]) * _TEETH if branch.status.usable and branch.folds.size == 2 else np.nan
 
 
 def _excitation(frequency: float) -> float:
-    """Return the amplitude of the error that makes the force Fa W^2."""
+    """Return the amplitude of e that makes the force Fa W^2: it acts through spring, damper and inertia."""
     return float(_AMPLITUDE * frequency / np.hypot(frequency, 2.0 * _ZETA))
 
 
@@ -118,7 +128,7 @@ def _oscillator(frequency: float, method: str = "implicit") -> System:
         GearBody(f"gear {k}", f"shaft {k}", 0.5, _TEETH, 1.0, 0.1, inertia=Inertia(1.0, 1.0, 1.0))
         for k in (1, 2)
     )
-    back = CoastFlank(2.0, 0.0, spring(-amplitude, 256, 1.0))
+    back = CoastFlank(2.0, 0.0, spring(-amplitude, 256, 1.0))  # backlash from x = -1 to 1
     scene = Scene(
         (Shaft("shaft 1", 1.0), Shaft("shaft 2", 1.0, (2.2, 0.0, 0.0))),
         gears,

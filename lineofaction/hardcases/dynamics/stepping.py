@@ -66,8 +66,8 @@ def _rest_to_rest() -> Sequence[Measured]:
         Measured(
             "largest speed of the driven gear over the drive's",
             float(np.abs(result.speed[1]).max()) / top,
-            1.5,
-            1.0,
+            maximum=1.5,
+            minimum=1.0,
         ),
     )
 
@@ -91,9 +91,10 @@ def _contact_lost() -> Sequence[Measured]:
     runs = run_both(scene)
     result = runs.implicit
     error, force = result.dynamic_transmission_error[0], result.mesh_force[0]
+    # a second difference of the error needs three samples in flight
     flying = (force[:-2] == 0.0) & (force[1:-1] == 0.0) & (force[2:] == 0.0)
     drive = 0.5 * fastest / duration
-    fall = TORQUE / INERTIA.polar * BASE_RADIUS + drive * BASE_RADIUS
+    fall = TORQUE / INERTIA.polar * BASE_RADIUS + drive * BASE_RADIUS  # by the load, and the drive runs up
     bend = np.diff(error, 2)[flying] * rate**2 / fall
     return (
         *common_figures(runs, scene),

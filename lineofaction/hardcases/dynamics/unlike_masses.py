@@ -26,7 +26,11 @@ from lineofaction.hardcases.scene import Measured, Scenes
 
 SCENES = Scenes("dynamics")
 
-_RATIO, _SPEED, _BEGIN, _RISE, _STEP = 1e4, 50.0, 1e-3, 1e-6, 20.0
+_RATIO, _SPEED = 1e4, 50.0
+"""Ratio of the moments of inertia, and speed of the train at the start, rad/s."""
+
+_BEGIN, _RISE, _STEP = 1e-3, 1e-6, 20.0
+"""Begin and duration of the torque's rise, s, and its size, N m."""
 
 
 @SCENES.add(
@@ -48,20 +52,20 @@ def _unlike_masses() -> Sequence[Measured]:
         step = _STEP / BASE_RADIUS / mass[0] / natural**2
         exact = partial(after_ramp, natural=natural, step=step, begin=_BEGIN, rise=_RISE)
         gained = _STEP * (float(runs.implicit.time[-1]) - _BEGIN - _RISE / 2.0) / sum(inertia)
-        pace = natural * scene.integration.tolerance / BASE_RADIUS
+        allowed = natural * scene.integration.tolerance / BASE_RADIUS  # one tolerance per radian, rad/s
         off = max(abs(_mean_speed(run, inertia) - _SPEED - gained) for run in runs.both)
         measured = (
             *common_figures(runs, scene),
             off_closed_form(runs, scene, exact),
-            Measured("speed of the train off the impulse's, over a tolerance per radian", off / pace, 1.0),
-            Measured("speed gained by impulse over that", gained / pace, minimum=100.0),
+            Measured("speed of the train off the impulse's, over a tolerance per radian", off / allowed, 1.0),
+            Measured("speed gained by impulse over that", gained / allowed, minimum=100.0),
         )
         figures += [replace(figure, name=f"{name}: {figure.name}") for figure in measured]
     return figures
 
 
 def _mean_speed(run: RunResult, inertia: Sequence[float]) -> float:
-    """Return the angular momentum at the end, the driven gear's sense turned, over all inertia, rad/s."""
+    """Return the speed of the train at the end, rad/s: its momentum over its inertia, in gear 1's sense."""
     momentum = inertia[0] * run.speed[0, -1] - inertia[1] * run.speed[1, -1]
     return float(momentum) / sum(inertia)
 

@@ -20,10 +20,13 @@ from lineofaction.hardcases.scene import Measured, Scenes
 SCENES = Scenes("dynamics")
 
 _PLANETS, _TEETH, _RADIUS_PER_TOOTH = 4, (28, 36, 100), 1.4e-3
+"""Planets, teeth of sun, planet and ring, base radius over teeth in m: a published set, as the inertias."""
 
 _STIFFNESS, _BEARING, _ALPHA = 5e8, 1e8, math.radians(24.6)
+"""Stiffness of a mesh and of a planet's bearing, N/m, and working pressure angle."""
 
 _SUN_FORCE, _ERROR, _WAVE = 8000.0, 200e-6, 0.2e-6
+"""Sum of the sun's mesh forces, N, error of one pin and amplitude of the teeth's error, m."""
 
 
 @SCENES.add(
@@ -37,7 +40,7 @@ def _one_without_load() -> Sequence[Measured]:
     gears = _set()
     scene = _driven(gears)
     start = static_equilibrium(assemble(scene))
-    shares = start.mesh_force[::2] / _SUN_FORCE
+    shares = start.mesh_force[::2] / _SUN_FORCE  # meshes with sun and ring alternate, planet by planet
     expected = np.array([0.0, *[1.0 / (_PLANETS - 1)] * (_PLANETS - 1)])
     runs = run_both(scene)
     mean = runs.implicit.mesh_force.mean(axis=1)

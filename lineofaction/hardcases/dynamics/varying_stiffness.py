@@ -68,7 +68,7 @@ def _mathieu(frequency: float) -> FloatArray:
     """Return the monodromy of x'' + (1 + swing cos(frequency t)) x = 0 by an integrator of order 8."""
     swing = (_RATIO - 1.0) / (_RATIO + 1.0)
 
-    def rates(t: float, y: FloatArray) -> FloatArray:
+    def rates(t: float, y: FloatArray) -> FloatArray:  # y: two solutions side by side, then their rates
         k = 1.0 + swing * np.cos(frequency * t)
         return np.array([y[2], y[3], -k * y[0], -k * y[1]])
 

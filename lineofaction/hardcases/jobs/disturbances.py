@@ -47,7 +47,7 @@ def _out_of_memory() -> Sequence[Measured]:
 )
 def _past_the_deadline() -> Sequence[Measured]:
     """Run the large job with a deadline of a few times the duration of the small one."""
-    allowed = []
+    allowed = []  # takes the deadline, which is known once the small job has run
 
     def settle(seconds: float) -> dict[str, float]:
         allowed.append(round(2.5 * seconds, 1))

@@ -40,16 +40,19 @@ time.sleep(3600.0)
 
 
 @contextmanager
-def replaced_mesher(does: str) -> Iterator[Path]:
-    """Replace the module that the mesher loads first, on the path of the workers; undone once unlinked."""
-    undisturbed()
+def replaced_mesher(program: str) -> Iterator[Path]:
+    """Give workers a module `gmsh` of this text, which their mesher loads in place of the real one.
+
+    Deleting the yielded file brings the real one back.
+    """
+    undisturbed()  # the small job runs with the real mesher
     before = os.environ.get("PYTHONPATH")
     with tempfile.TemporaryDirectory(prefix="loa-hard-mesher-") as name:
-        stand_in = Path(name, "gmsh.py")
-        stand_in.write_text(does, encoding="utf-8")
+        module = Path(name, "gmsh.py")
+        module.write_text(program, encoding="utf-8")
         os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (name, before)))
         try:
-            yield stand_in
+            yield module
         finally:
             os.environ.pop("PYTHONPATH") if before is None else os.environ.update(PYTHONPATH=before)
 
@@ -57,16 +60,19 @@ def replaced_mesher(does: str) -> Iterator[Path]:
 def _killing(
     command: str, times: int, *, as_crash: bool = False, overtaken: bool = False
 ) -> tuple[Aftermath, int]:
-    """Kill the process of this command each time the mesher hangs; returns how often it was."""
+    """Run the medium job and kill its process of this command `times` times while its mesher hangs.
+
+    Returns the aftermath and how many processes were killed; `overtaken` as in `aftermath`.
+    """
     killed: list[int] = []
-    with replaced_mesher(_HANGING) as hangs:
+    with replaced_mesher(_HANGING) as hanging_mesher:
 
         def kill(service: JobService, _job: Job) -> None:
-            met = service.processes(command) if service.processes(MESHER_COMMAND) else []
-            if met and len(killed) < times:
-                if len(killed) + len(met) == times:
-                    hangs.unlink()
-                for pid in met:
+            targets = service.processes(command) if service.processes(MESHER_COMMAND) else []
+            if targets and len(killed) < times:
+                if len(killed) + len(targets) == times:  # the next mesher is the real one
+                    hanging_mesher.unlink()
+                for pid in targets:
                     with suppress(ProcessLookupError):
                         end(pid, as_crash=as_crash)
                         killed.append(pid)

@@ -24,7 +24,7 @@ SCENES = Scenes("service")
 
 _MB = 1 << 20
 
-_DEVOURS = """
+_DEVOURING = """
 held = []
 while True:
     held.append(b"x" * 2**22)
@@ -68,7 +68,7 @@ def _disk_full() -> Sequence[Measured]:
 def _greedy_mesher() -> Sequence[Measured]:
     """Let the first mesher take memory until the system gives it no more."""
     maximum = [0.0]
-    with replaced_mesher(_DEVOURS) as greed:
+    with replaced_mesher(_DEVOURING) as greedy_mesher:
 
         def look(service: JobService, _job: Job) -> None:
             for pid in service.processes(MESHER_COMMAND):
@@ -80,7 +80,7 @@ def _greedy_mesher() -> Sequence[Measured]:
         def after(service: JobService, job: Job) -> None:
             look(service, job)
             if maximum[0] > 0.0 and not service.processes(MESHER_COMMAND):
-                greed.unlink(missing_ok=True)
+                greedy_mesher.unlink(missing_ok=True)
 
         outcome = aftermath(MEDIUM, after, settle)
     is_explained = "ran out of memory" in outcome.job.message and "coarser level" in outcome.job.message

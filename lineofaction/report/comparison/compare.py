@@ -86,7 +86,7 @@ def compare_runs(runs: dict[str, RunResult], view: RunView, measured: MeasuredOr
     differing = changed_fields({name: run.case for name, run in runs.items()})
     if differing.rows:
         sections.append(Section("Scenes", tables=(differing,)))
-    headlines = tuple(Headline(one.name, one.between, one.finding) for one in differences[:3])
+    headlines = tuple(Headline(change.name, change.between, change.finding) for change in differences[:3])
     lasted = ", ".join(f"{run.time[-1]:g} s" for run in runs.values())
     lead = f"{signal.name}; {lasted} of motion; errors are those of runs, not of the tables they take"
     return Page(f"{' and '.join(runs)} compared", lead, headlines, tuple(sections))
@@ -151,15 +151,16 @@ def _spectra(sides: tuple[_Side, ...], measured: MeasuredOrders | None) -> Figur
         frequency, amplitude = amplitude_spectrum(side.seen, side.signal, window)
         order = frequency / float(np.median(side.run.mesh_frequency[side.signal.mesh, window]))
         inside = order <= ORDERS + 0.5
-        lines.append(Line(side.name, order[inside], np.maximum(amplitude[inside], 1e-12), color, width=1.2))
+        drawn = np.maximum(amplitude[inside], 1e-12)  # the axis is logarithmic
+        lines.append(Line(side.name, order[inside], drawn, color, width=1.2))
     signal = sides[0].signal
     caption = "90 to 95 % of the duration, over multiples of the mesh frequency in its middle; "
     caption += f"{signal.scale} values."
     if measured is not None:
         measured.require(signal.quantity.unit)
         inside = measured.order <= ORDERS + 0.5
-        drawn = measured.order[inside], measured.amplitude[inside]
-        lines.append(Line("measured", *drawn, palette.INK, "dash", 1.2))
+        order, amplitude = measured.order[inside], measured.amplitude[inside]
+        lines.append(Line("measured", order, amplitude, palette.INK, "dash", 1.2))
         caption += " Measured: as read."
     top = max(float(line.y.max()) for line in lines)
     peaks = [
@@ -184,9 +185,9 @@ def compare(
 ) -> Page:
     """Compare two tables or runs, or one of them with a measurement.
 
-    Of two folders the tables and runs that both have by name; `measurement` says of a recording what its file
-    does not. Raises `BadInput`: the files are not one or two
-    of a kind with at most one measurement, are damaged, or do not hold what is to be compared.
+    Two folders are compared by the tables and runs that stand in both under one name. `measurement` adds what
+    the file of a recording does not say. Raises `BadInput`: the files are not one or two of a kind with at
+    most one measurement, are damaged, or do not hold what is to be compared.
     """
     folders = [file for file in files if file.is_dir()]
     if folders == list(files) and len(files) == 2:
@@ -196,7 +197,8 @@ def compare(
         raise BadInput.of("files", ", ".join(map(str, files)), _BOUND, remedy)
     measured = [file for file in files if file.suffix.lower() in ENDINGS]
     results = dict(named_files([file for file in files if file not in measured]))
-    if len(measured) > 1 or not results or not len(results) + len(measured) >= 2 or len(results) > 2:
+    counts = len(results), len(measured)
+    if counts not in {(1, 1), (2, 0), (2, 1)}:
         raise BadInput.of("files", ", ".join(map(str, files)) or None, _BOUND, _REMEDY)
     if measured and (recording := _recording(measured[0])) is not None:
         return _compared_with_recording(results, recording, view, measurement)
@@ -204,7 +206,7 @@ def compare(
 
 
 def _recording(file: Path) -> Recording | None:
-    """Return the series over time in a file; None of an order spectrum or a curve over a position."""
+    """Return the recording in a file; None if a channel is not over time, as an order spectrum."""
     if file.suffix.lower() == ".csv" and not begins_with_time(file):
         return None
     recording = read_recording(file, "measured")
@@ -266,8 +268,8 @@ def _compare_results(
 def _page(
     read: dict[str, SteDatabase | RunResult], files: Sequence[Path], view: RunView, torque: float | None
 ) -> Page:
-    tables = {name: one for name, one in read.items() if isinstance(one, SteDatabase)}
-    runs = {name: one for name, one in read.items() if isinstance(one, RunResult)}
+    tables = {name: result for name, result in read.items() if isinstance(result, SteDatabase)}
+    runs = {name: result for name, result in read.items() if isinstance(result, RunResult)}
     if tables and runs:
         raise BadInput.of("files", "a table and a run", _BOUND, _REMEDY)
     if tables:
@@ -286,7 +288,7 @@ def _page(
 
 
 def _measured(files: Sequence[Path], teeth: int, unit: str) -> MeasuredCurve | MeasuredOrders | None:
-    """Read the measurement, None: no file is one; of a universal file the functions in the unit."""
+    """Read the measurement, None without a file; `unit` selects the function of a universal file."""
     if not files:
         return None
     if files[0].suffix.lower() == ".csv":
@@ -295,10 +297,10 @@ def _measured(files: Sequence[Path], teeth: int, unit: str) -> MeasuredCurve | M
 
 
 def named_files(files: Sequence[Path]) -> list[tuple[str, Path]]:
-    """Return names of results by their files, as short as distinguishes them."""
+    """Name each file by its stem, or all by their paths where two stems are equal."""
     stems = [file.stem for file in files]
-    short = len(set(stems)) == len(stems)
-    return [((short and file.stem) or str(file), file) for file in files]
+    distinct = len(set(stems)) == len(stems)
+    return [((file.stem if distinct else "") or str(file), file) for file in files]
 
 
 def stored_comparison(inputs: Json) -> Json:

@@ -24,9 +24,9 @@ def read_universal(path: Path, teeth: int, unit: str) -> MeasuredCurve | Measure
 
 
 def of_universal(recording: Recording, teeth: int, unit: str) -> MeasuredCurve | MeasuredOrders:
-    """Return the one comparable function of a file; `teeth` are the driving gear's.
+    """Return the one function of a file that can be compared; `teeth` is the number of the driving gear.
 
-    `unit` is "µm", "N" or "m/s²": of what it is compared with. Complex values count by their amplitude.
+    `unit` is that of the computed series: "µm", "N" or "m/s²". A complex spectrum gives its amplitudes.
     """
     quantity, per_si = _SCALES[unit]
     fitting = [channel for channel in recording.channels if _fits(channel, quantity)]
@@ -47,5 +47,5 @@ def of_universal(recording: Recording, teeth: int, unit: str) -> MeasuredCurve |
 
 def _fits(channel: Channel, quantity: str) -> bool:
     unit = measured_unit(channel.unit)
-    over = channel.over == "order" or channel.label.lower().startswith(("position", "angle"))
-    return over and unit is not None and unit.quantity == quantity
+    has_axis = channel.over == "order" or channel.label.lower().startswith(("position", "angle"))
+    return has_axis and unit is not None and unit.quantity == quantity

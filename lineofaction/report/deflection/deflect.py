@@ -190,6 +190,7 @@ def _face_load_figure(result: GearboxDeflection) -> Figure | None:
     for name in names:
         flanks = [part for part in result.flanks if part.mesh == name]
         lines = tuple(
+            # four colors, then the same four dashed
             Line(part.case, part.face_position / MM, part.face_load * MM, COLORS[k % 4], _DASHES[k // 4 % 2])
             for k, part in enumerate(flanks)
         )
