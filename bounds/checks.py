@@ -20,7 +20,7 @@ from bounds.types import FloatArray
 class RefusedValue(Exception):
     """A value the caller gave cannot be used.
 
-    Its numbers are in SI. As text it speaks to a caller from Python, by `worded` to any `Reader`.
+    Its numbers are in SI. Its message is for a caller from Python; `worded` writes it for any `Reader`.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ class RefusedValue(Exception):
         return f"{text}. {suggestion}" if suggestion else text
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickle by the four facts, so that the error crosses process boundaries whole."""
+        """Pickle the four arguments, so that the error crosses process boundaries whole."""
         return type(self), (self.field, self.value, self.bound, self.suggestion)
 
     def within(self, prefix: str) -> Self:
@@ -133,13 +133,16 @@ class Checks:
         return [name for name in known if names is None or name in names]
 
     def declared_fields(self, thing: Any, beyond: Collection[str] = ()) -> None:
-        """Check declared fields, each alone; absent ones pass, those in `beyond` pass if they are finite."""
-        may_miss = _optional_fields(cast("Hashable", type(thing)))
-        for field, fact in declarations(type(thing)).items():
+        """Check each declared field of a dataclass against its limits.
+
+        An optional field that is None passes, and one in `beyond` passes if it is finite.
+        """
+        optional = _optional_fields(cast("Hashable", type(thing)))
+        for field, declaration in declarations(type(thing)).items():
             value = getattr(thing, field)
-            if value is None and field in may_miss:
+            if value is None and field in optional:
                 continue
-            limits = fact.limits
+            limits = declaration.limits
             if field in beyond:
                 self.finite(field, value)
             elif isinstance(limits, Choice):
@@ -147,7 +150,7 @@ class Checks:
             elif limits is not None and limits.integer:
                 self.integer(field, value, int(limits.low or 0), int(limits.high or 0))
             elif limits is not None:
-                self.in_bound(field, value, limits, fact.remedy if fact.unit else "")
+                self.in_bound(field, value, limits, declaration.remedy if declaration.unit else "")
 
     def increasing(
         self, field: str, values: Sequence[float] | FloatArray, suggestion: Wording = ""

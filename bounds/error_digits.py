@@ -1,4 +1,7 @@
-"""The digits of a number that its error leaves: the one place where a number and its error become text."""
+"""A number and its error as text, with as many digits as the error leaves significant.
+
+A place counts the decimals behind the point; a negative place is left of the point.
+"""
 
 from __future__ import annotations
 
@@ -62,7 +65,7 @@ def error_text(value: float, error: float) -> str:
 
 
 def _last_place(value: float, error: float) -> int:
-    """Return the decimal place with which a number and its error end; negative: left of the point."""
+    """Return the decimal place with which a number and its error end."""
     if not math.isfinite(value):
         return _place_of_digit(error, DIGITS_OF_ERROR)
     finest = _place_of_digit(value, MAX_DIGITS)
@@ -70,14 +73,14 @@ def _last_place(value: float, error: float) -> int:
 
 
 def _place_of_digit(number: float, digits: int) -> int:
-    """Return the decimal place of the last of so many significant digits, after rounding to them."""
+    """Return the decimal place of the last digit of a number that is rounded to `digits` significant ones."""
     if number == 0.0:
         return digits - 1
     return digits - 1 - int(f"{number:.{digits - 1}e}".partition("e")[2])
 
 
 def _fixed(number: float, place: int, sign: str = "") -> str:
-    """Write a number to a decimal place; zeros stand left of the point where the place does."""
+    """Write a number to a decimal place; digits between a negative place and the point are zeros."""
     rounded = round(number, place) + 0.0  # no -0
     if place > MAX_PLACE:
         return engineering(rounded, DIGITS_WITHOUT_ERROR, sign)

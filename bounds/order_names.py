@@ -13,15 +13,17 @@ TOLERANCE = 1e-6
 def order_name(order: float, mesh: Mapping[str, float], shaft: Mapping[str, float]) -> str:
     """Return the name of an order: of a mesh, a sideband of a mesh by a shaft, or of a shaft.
 
-    "mesh 2"; "mesh 1 - pinion 1", by up to three turns of the shaft; "pinion 11", waves of that number: a
-    ghost order; empty: none of these.
+    Examples: "mesh 2" is the second harmonic of a mesh; "mesh 1 - pinion 1" is a sideband, at most
+    `SIDEBANDS` orders of the shaft off; "pinion 11" is a ghost order, of 11 waves around a gear. Empty: none
+    of these.
 
     Parameters
     ----------
     order : float
         > 0.
     mesh, shaft : mappings
-        The order of each mesh frequency and of one turn of each shaft, > 0, by name; the first that fits.
+        The order of each mesh frequency and of one turn of each shaft, > 0, by name; the first that fits
+        gives the name.
     """
     for name, step in mesh.items():
         if _is_multiple(order / step):
@@ -38,14 +40,14 @@ def order_name(order: float, mesh: Mapping[str, float], shaft: Mapping[str, floa
 def _sidebands(
     order: float, mesh: Mapping[str, float], shaft: Mapping[str, float]
 ) -> Iterator[tuple[int, str]]:
-    """Yield sidebands that an order is, each after its number."""
+    """Yield number and name of each sideband that an order is; sideband 1 is the nearest to its harmonic."""
     for name, step in mesh.items():
         harmonic = round(order / step)
-        for turning, turn in shaft.items():
-            number = (order - harmonic * step) / turn
+        for shaft_name, shaft_order in shaft.items():
+            number = (order - harmonic * step) / shaft_order
             if harmonic and _is_multiple(number) and abs(round(number)) <= SIDEBANDS:
                 sign = "-" if number < 0.0 else "+"
-                yield abs(round(number)), f"{name} {harmonic} {sign} {turning} {abs(round(number))}"
+                yield abs(round(number)), f"{name} {harmonic} {sign} {shaft_name} {abs(round(number))}"
 
 
 def _is_multiple(multiple: float) -> bool:

@@ -1,4 +1,7 @@
-"""The content of a mesh file before a reader has it: one file, which names no others and ends."""
+"""Checks of the content of a mesh file before a reader gets it.
+
+A content that names further files is refused, and so is one on which a reader would not end.
+"""
 
 from __future__ import annotations
 

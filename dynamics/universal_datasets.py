@@ -78,6 +78,7 @@ def nodes_dataset(nodes: Iterable[tuple[int, FloatArray]]) -> str:
     """Return dataset 2411: labels and positions (3,) in m, in the fixed frame."""
     records = []
     for label, origin in nodes:
+        # label, coordinate systems of position and of displacement (1: the global one), color
         records.append(f"{label:10d}{1:10d}{1:10d}{11:10d}")
         records.append("".join(f"{value:25.16E}" for value in origin).replace("E", "D"))
     return _dataset(2411, records)
@@ -108,7 +109,7 @@ def _axis(quantity: Quantity | None) -> str:
 
 
 def _numbers(values: FloatArray) -> list[str]:
-    """Four numbers a record."""
+    """Return the records of values, four numbers each."""
     full = values.size // 4 * 4
     rows = (("%20.12E" * 4 + "\n") * (full // 4) % tuple(values[:full])).splitlines()
     rest = values[full:]

@@ -68,7 +68,7 @@ class GearBlank:
 
     def mirrored(self) -> GearBlank:
         """Return the mirror image in the plane of mid-face."""
-        return replace(self, web_offset=0.0 - self.web_offset)
+        return replace(self, web_offset=0.0 - self.web_offset)  # 0, not -0, of an offset 0
 
     def web(self, face_width: float, root_radius: float, bore_diameter: float) -> Web | None:
         """Return the web in a gear of these sizes in m, None if its body is as wide as the face all down."""
@@ -150,7 +150,7 @@ class BoreSeat:
 
     def mirrored(self) -> BoreSeat:
         """Return the mirror image in the plane of mid-face."""
-        return replace(self, offset=0.0 - self.offset)
+        return replace(self, offset=0.0 - self.offset)  # 0, not -0, of an offset 0
 
     def content(self) -> Json:
         """Return all fields as plain JSON."""

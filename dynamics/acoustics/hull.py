@@ -14,9 +14,9 @@ from dynamics.errors import InputError
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
 
 PANELS_PER_WAVELENGTH = 6.0
-"""Least number of the longest edges in a wavelength, where a model resolves the waves on the hull."""
+"""Least number of longest edges in a wavelength with which a model resolves the waves on the hull."""
 ROUNDED_DOWN = 1.0 - 1e-12
-"""Factor on a limit of wavelength or frequency, by which rounding alone makes no panel miss the limit."""
+"""Factor on a limit of wavelength or frequency: no panel exceeds the limit by rounding alone."""
 FLAT = 1e-9
 """A triangle of less height over its longest edge has no normal."""
 
@@ -122,6 +122,7 @@ class Hull:
     @cached_property
     def open_edges(self) -> IntArray:
         """Return nodes of the edges at which the hull is open, turned, or joined to itself, (E, 2)."""
+        # an edge from node s to node e has the number s N + e, and e N + s in the opposite direction
         starts, ends = self.triangles, np.roll(self.triangles, -1, axis=1)
         along, against = starts * len(self.nodes) + ends, ends * len(self.nodes) + starts
         once, times = np.unique(along, return_counts=True)
@@ -163,7 +164,7 @@ class Hull:
 def shared_edges(triangles: IntArray) -> tuple[IntArray, IntArray, IntArray]:
     """Return pairs of triangles that share an edge, (E,) and (E,), and its nodes, (E, 2)."""
     edges = np.sort(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2), axis=2).reshape(-1, 2)
-    _, edge = np.unique(edges, axis=0, return_inverse=True)
+    _, edge = np.unique(edges, axis=0, return_inverse=True)  # three edges a triangle, one after the other
     order = np.argsort(edge.ravel(), kind="stable")
     shared = np.flatnonzero(np.diff(edge.ravel()[order]) == 0)
     return order[shared] // 3, order[shared + 1] // 3, edges[order[shared]]

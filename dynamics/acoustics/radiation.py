@@ -22,7 +22,10 @@ from dynamics.work_cost import Cost
 PRODUCT = 0.1e-9
 """CPU seconds for a panel and a pair of shapes."""
 SMALLER = 0.8
-"""Radius of the sphere over that of the body: two waves on a wall are shorter than two around the body."""
+"""Radius of the sphere that stands for a body in `error_band`, over the body's equivalent radius.
+
+It is below 1 because two waves on one wall are shorter than two waves around the whole body.
+"""
 
 
 class RadiationModel(Protocol):
@@ -168,7 +171,7 @@ def monopoles_efficiency(order: int, ka: float) -> float:
 
 
 def errors_db(ka: float, orders: int = 3) -> dict[str, FloatArray]:
-    """Return the level errors of the models by the first orders of a sphere, (orders,) dB, > 0 too loud."""
+    """Return the level errors of two models on a sphere in its first orders, (orders,) dB, > 0: too loud."""
     exact = np.array([sphere_efficiency(order, ka) for order in range(orders)])
     monopoles = np.array([monopoles_efficiency(order, ka) for order in range(orders)])
     return {
@@ -200,7 +203,7 @@ class EquivalentRadiatedPower:
         return Cost(PRODUCT * panels * shapes**2, 16.0 * panels * shapes)
 
     def error_band(self, ka: float) -> tuple[float, float]:
-        """Return -2 dB, and what a smaller sphere with four poles is off, at least 3 dB."""
+        """Return -2 dB, and the largest error on a smaller sphere of orders 0 to 2, at least 3 dB."""
         return -2.0, max(3.0, *errors_db(SMALLER * ka)[self.model_name].tolist())
 
     def panel_power(

@@ -19,7 +19,8 @@ from dynamics.mechanism.supports import seat_error, seat_motion
 def bearing_elements(model: Model) -> tuple[tuple[Element, ...], dict[str, Any]]:
     """Return the elements of all nonlinear bearing laws, and their laws by the fields of `ElementLaws`.
 
-    Where rolling elements pass one by one, the row reads the turn of its cage. Cages are the last positions.
+    Where rolling elements pass one by one, the row reads the turn of its cage. Positions of meshes come
+    first, then those of repeating phases, then those of cages; -1: the element reads none.
     """
     mechanism, scene = model.mechanism, model.mechanism.scene
     first_cage = len(scene.meshes) + len(repeating_phases(scene, mechanism.kinematics))
@@ -27,14 +28,14 @@ def bearing_elements(model: Model) -> tuple[tuple[Element, ...], dict[str, Any]]
     cage = {name: first_cage + index for index, name in enumerate(passing)}
     supports, elements = supports_by_name(mechanism.rotors), []
     entries: dict[Any, list[Any]] = {arrays: [] for arrays in LAW_BY_ARRAYS}
-    for part, at in zip(scene.laws_with(mechanism.passing), mechanism.bearings, strict=True):
-        rotor, support = supports[at.name]
-        gradient = at.directions @ seat_motion(mechanism.rotors, rotor, support)
-        offset = -at.directions @ seat_error(mechanism.rotors, rotor, support)
-        law, of_law = LAW_BY_ARRAYS[part.arrays], entries[part.arrays]
-        position = cage.get(at.name, -1)
-        elements.append(Element(law, len(of_law), position, gradient, offset, stiffness=at.row_stiffness))
-        of_law.append(part.array_entry(mechanism.bearing_duty[at.name]))
+    for part, bearing in zip(scene.laws_with(mechanism.passing), mechanism.bearings, strict=True):
+        rotor, support = supports[bearing.name]
+        gradient = bearing.directions @ seat_motion(mechanism.rotors, rotor, support)
+        offset = -bearing.directions @ seat_error(mechanism.rotors, rotor, support)
+        law, law_entries = LAW_BY_ARRAYS[part.arrays], entries[part.arrays]
+        position, stiffness = cage.get(bearing.name, -1), bearing.row_stiffness
+        elements.append(Element(law, len(law_entries), position, gradient, offset, stiffness=stiffness))
+        law_entries.append(part.array_entry(mechanism.bearing_duty[bearing.name]))
     packed = {
         law.name.lower(): arrays.packed(entries[arrays]) if entries[arrays] else _empty_arrays(arrays)
         for arrays, law in LAW_BY_ARRAYS.items()

@@ -23,8 +23,9 @@ class BearingForce(NamedTuple):
     """
 
     first: IntArray
-    """First entry of every signal, and the number of entries: 3 signals per support, with moments 6, in the
-    frame of the support. Shape (S + 1,).
+    """First entry of every signal, then the number E of all entries. Shape (S + 1,).
+
+    Each support has 3 signals, or 6 with moments, in its frame.
     """
     column: IntArray
     """Column that an entry multiplies: index of a local force, R + freedom, or R + n + freedom. Shape (E,).
@@ -62,10 +63,11 @@ def bearing_force_map(
     bearings: Sequence[BearingElement],
     elements: Elements,
 ) -> BearingForce:
-    """Return the map by `stiffness` and `damping` of the supports, (b, 3 or 6, n), and by their elements.
+    """Return the map of b supports by their linear `stiffness` and `damping`, (b, 3 or 6, n), and `elements`.
 
-    Springs of supports press against the errors of their pins, and seats have preloads. The last elements are
-    those of `bearings` that are not linear or sit in a housing that moves: their forces act at the support.
+    The constant part holds the preload of seats, and what springs of supports press against the errors of
+    their pins. The last elements are those of `bearings` that are not linear or sit in a housing that moves:
+    their forces act at the support.
     """
     supports, seats = joined.supports, joined.seats
     count, rows, n = stiffness.shape
@@ -78,10 +80,10 @@ def bearing_force_map(
     if seats.name:
         constant[seats.support, :SEAT] -= seats.preload.reshape(-1, SEAT)
     first = elements.first[len(elements.law) - len(bearings) :]
-    for start, at in zip(first, bearings, strict=False):
-        components = np.flatnonzero(np.any(at.directions != 0.0, axis=0))
-        for local, direction in enumerate(at.directions, start=start):
-            weight[at.support, components, local] += direction[components]
+    for start, bearing in zip(first, bearings, strict=False):  # the last of `first` is the number of rows
+        components = np.flatnonzero(np.any(bearing.directions != 0.0, axis=0))
+        for local, direction in enumerate(bearing.directions, start=start):
+            weight[bearing.support, components, local] += direction[components]
     flat = weight.reshape(count * rows, total + 2 * n)
     signal, column = np.nonzero(flat)
     starts = np.searchsorted(signal, np.arange(count * rows + 1))

@@ -1,4 +1,8 @@
-"""The force elements of tooth flanks: in the plane of the gears, and in space where effects ask for it."""
+"""The force elements of tooth flanks: in the plane of the gears, and in space where effects ask for it.
+
+A flank in the plane has one local coordinate, its deflection. In space it has further rows, for misalignment,
+center distance and sliding. Entries of flanks are all driving flanks, then the coast flanks.
+"""
 
 from __future__ import annotations
 
@@ -51,7 +55,7 @@ def spatial_flank_elements(model: Model) -> tuple[tuple[Element, ...], SpatialFl
             "mid_face": middle_from_driver(mechanism.scene, flank.index, flank.line, flank.sense),
             "friction": terms.friction,
             "radius": mechanism.scene.gear(mesh.driver).base_radius,
-            "running": False,
+            "running": False,  # friction follows the sliding velocity
         }
         for name, value in fields.items():
             columns[name].append(value)

@@ -1,6 +1,7 @@
 """The force elements of rotating frames: terms of rotors that rotate, and couplings across frames.
 
-Axis letters: N columns, the six freedoms of every rotor; k laws of the kinematic motion.
+Axis letters: N columns, the six freedoms of every rotor; k laws of the kinematic motion. Local coordinates
+are lengths in m: angles are multiplied by a lever. An element reads no position where its mesh is -1.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ from dynamics.types import FloatArray
 def rotating_frame_elements(model: Model) -> tuple[tuple[Element, ...], RotatingFrameLaws]:
     """Return the elements, and their laws, of the terms that effects add to rotors in rotation.
 
-    A lever makes lengths of angles. Terms that no freedom moves have no element.
+    Terms that no freedom moves have no element.
     """
     mechanism, freedoms = model.mechanism, model.freedoms
     lever, free = tilt_lever(mechanism.scene), mechanism.freely_turned
@@ -49,7 +50,7 @@ def rotating_frame_elements(model: Model) -> tuple[tuple[Element, ...], Rotating
 
 
 def _merged(terms: Sequence[FrameTerm], freedoms: Freedoms) -> list[FrameTerm]:
-    """Return the terms of a rotor, those of equal motion in sum: each term costs two unknowns a stage."""
+    """Return the terms of a rotor, with those of equal motion added up: a term costs two unknowns a stage."""
     merged: list[FrameTerm] = []
     for term in terms:
         for entry, other in enumerate(merged):
@@ -83,8 +84,8 @@ def _rotor_element(
 def frame_coupling_elements(model: Model) -> tuple[tuple[Element, ...], FrameCouplingLaws]:
     """Return the elements of all couplings between shafts of different frames, and their laws.
 
-    A lever makes lengths of tilts. The element reads the turn of its second frame against its first, a
-    position behind those of the meshes.
+    A coupling acts in n = 2 directions across the axis, or in 4 with the tilts. The element reads the turn of
+    its second frame against its first, a position behind those of the meshes.
     """
     scene, rotors = model.mechanism.scene, model.mechanism.rotors
     parts, lever = frame_couplings(scene), tilt_lever(scene)

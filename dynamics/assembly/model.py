@@ -21,7 +21,7 @@ from dynamics.scene.scene import Scene
 
 @dataclass(frozen=True)
 class Model(LoadedTrain):
-    """A mechanism with its effects decided; its flanks have the force laws as resolved."""
+    """A mechanism with the decisions on its effects; its flanks include those that effects add."""
 
     ledger: EffectLedger
 
@@ -49,6 +49,7 @@ def decide_model(scene: Scene, registry: tuple[Effect, ...]) -> Model:
 def _on_rotors(
     mechanism: Mechanism, flanks: Flanks, registry: Sequence[RotorEffect]
 ) -> tuple[Mechanism, EffectLedger]:
+    """Decide the effects of rotors, and extend the mechanism by those that are on."""
     ledger, choices = EffectLedger(), mechanism.scene.effects
     rotors = loaded_rotors(mechanism, flanks)
     names = [rotor.shaft.name for rotor in mechanism.rotors]
@@ -64,7 +65,7 @@ def _on_rotors(
 def _on_meshes(
     train: LoadedTrain, ledger: EffectLedger, registry: Sequence[MeshEffect]
 ) -> tuple[Flanks, EffectLedger]:
-    """Decide the effects of meshes too, and add the flanks that they add."""
+    """Decide the effects of meshes, and extend the flanks by those that are on."""
     flanks, scene, meshes = train.flanks, train.mechanism.scene, train.meshes
     names = [mesh.mesh.name for mesh in meshes]
     for effect in registry:

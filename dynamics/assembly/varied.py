@@ -46,7 +46,9 @@ def with_flank(system: System, mesh: int, table: MeshTable) -> System:
     table : MeshTable
         Table at one misalignment and center distance.
     """
-    used, plain, spatial = _used(system, mesh, table), *_laws(system)
+    used = _used(system, mesh, table)
+    plain, spatial = _laws(system)
+    # `_damped` writes into the copies of the damping, not into those of `system`
     plain = plain._replace(table=by_address(plain.table.with_table(mesh, used)), damping=plain.damping.copy())
     elements = system.arrays.elements
     if elements.law[mesh] == SPATIAL_FLANK:
@@ -59,9 +61,9 @@ def with_flank(system: System, mesh: int, table: MeshTable) -> System:
 
 
 def with_flanks(system: System, mesh: int, tables: Sequence[MeshTable]) -> Iterator[System]:
-    """Yield `with_flank` for tables of the same positions and number of levels, each until the next is taken.
+    """Yield `with_flank` for each of several tables of the same positions and number of levels.
 
-    They share its arrays. Raises as `with_flank`.
+    All results share arrays: each is valid until the next one is taken. Raises as `with_flank`.
     """
     changed_system = with_flank(system, mesh, tables[0])
     yield changed_system
@@ -91,7 +93,7 @@ def _used(system: System, mesh: int, table: MeshTable) -> PlainTable:
 def _damped(system: System, mesh: int, used: PlainTable) -> System:
     """Return `system` with damping and mean stiffness of the table `used`, which its laws have already."""
     elements, flanks = system.arrays.elements, system.flanks
-    force = float(flanks.nominal_force[mesh]) or float(used.level[1])
+    force = float(flanks.nominal_force[mesh]) or float(used.level[1])  # no load: the first level above 0
     stiffness = mean_stiffness(flanks.law.table, mesh, force)
     if system.scene.meshes[mesh].damping is None:
         factor = (stiffness / flanks.mean_stiffness[mesh]) ** 0.5
@@ -107,7 +109,8 @@ def _damped(system: System, mesh: int, used: PlainTable) -> System:
 def starting_at(system: System, time: float, quanta: IntArray) -> System:
     """Return `system` as it is from `time` (s) on, with that time as 0.
 
-    `quanta` (k,) counts the quanta of free trains that are in the reference by then.
+    `quanta` (k,) counts, for each law of the kinematic motion, the parts 1/`QUANTA_PER_TURN` of a revolution
+    of a train without a drive that the run has moved from the freedoms into the reference by then.
     """
     arrays, reference = system.arrays, system.arrays.reference
     pieces = np.diff(reference.speed.first)
@@ -142,8 +145,8 @@ def operating_points_at(system: System, displacement: FloatArray, time: float = 
     spatial = np.flatnonzero(elements.law[: points.shape[0]] == SPATIAL_FLANK)
     if spatial.size == 0:
         return points
-    rest = np.zeros(displacement.size)
-    coordinate = local_state(system.arrays, time, displacement, rest).coordinate
+    no_velocity = np.zeros(displacement.size)
+    coordinate = local_state(system.arrays, time, displacement, no_velocity).coordinate
     for index in spatial:
         entry = elements.entry[index]
         for axis in range(2):
@@ -153,9 +156,9 @@ def operating_points_at(system: System, displacement: FloatArray, time: float = 
 
 
 def with_static_reference(system: System, displacement: FloatArray, time: float = 0.0) -> System:
-    """Return `system` with the static transmission errors of meshes that follow their bodies at rest.
+    """Return `system` with static transmission errors at the operating points that bodies have at rest.
 
-    Where no table follows the bodies it is `system` itself.
+    They change for meshes whose tables follow the bodies; without any it is `system` itself.
     """
     fixed = np.array(
         [[mesh.misalignment, mesh.center_distance_change] for mesh in system.scene.meshes]

@@ -24,18 +24,18 @@ from dynamics.errors import InputError
 
 SLENDERNESS = (0.0, 0.09, 0.1, 0.11, 0.12, 0.15, 0.2, 0.25, 0.3)
 """Ball diameter over pitch diameter, at which `RATING` has values."""
-RATING = (14.7e6, 16.5e6, 16.4e6, 16.1e6, 15.9e6, 15.2e6, 14.0e6, 12.8e6, 11.6e6)  # Pa; straight between
-FILLED = math.radians(187.5)
-NUMBERS = range(5, 41)
-WALL = (
-    0.75  # a ball is smaller than this share of the section between bore and outside; measured: 0.58 to 0.62
-)
+RATING = (14.7e6, 16.5e6, 16.4e6, 16.1e6, 15.9e6, 15.2e6, 14.0e6, 12.8e6, 11.6e6)
+"""f_0, Pa, linear between its values."""
+FILLED = math.radians(187.5)  # angle from the first center to the last
+NUMBERS = range(5, 41)  # of balls
+WALL = 0.75
+"""Upper bound of the ball diameter over the section's height, bore to outside; measured: 0.58 to 0.62."""
 
 BAND = {"count": 0.0, "diameter": 0.01, "pitch_diameter": 0.035, "displacement": 0.125}
 """Largest relative errors on these five bearings.
 
-Displacement: radial, without clearance, at C_0/10, against grooves from 0.515 and 0.515 to 0.53 and 0.54,
-which no catalog states; against the same grooves 0.002.
+The displacement is radial, without clearance, at C_0/10. Its error is mostly that of the grooves, which no
+catalog states: from 0.515 at both rings to 0.53 and 0.54. With the grooves known it is 0.002.
 """
 
 

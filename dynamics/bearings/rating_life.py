@@ -53,6 +53,7 @@ def rating_life(
     positive("rating", rating)
     ball = isinstance(bearing, BallBearing)
     slope = 10.0 / 3.0 if ball else 4.5  # product of Weibull slope and load exponent
+    # exponents of the mean load: of a ring that turns against the load, and of one that stands
     turning, standing = (3.0, slope) if ball else (4.0, slope)
     exponents = (turning, standing) if inner_turns else (standing, turning)
     limits = (
@@ -61,12 +62,12 @@ def rating_life(
         else _lamina_ratings(bearing, rating)
     )
     stressed = load if ball else load * _edge_factor(load.shape[1])
-    failing = 0.0
+    damage = 0.0  # of both rings and all laminae; their probabilities of survival multiply
     for limit, exponent in zip(limits, exponents, strict=True):
         equivalent = np.mean(stressed**exponent, axis=0) ** (1.0 / exponent)
-        failing += float(np.sum((equivalent / limit) ** slope))
-    power = 3.0 if ball else 10.0 / 3.0
-    life = failing ** (-power / slope) if failing > 0.0 else math.inf
+        damage += float(np.sum((equivalent / limit) ** slope))
+    power = 3.0 if ball else 10.0 / 3.0  # load exponent of the life of the bearing
+    life = damage ** (-power / slope) if damage > 0.0 else math.inf
     return _RatingLife(1e6 * life, rating * life ** (-1.0 / power))
 
 
@@ -77,7 +78,7 @@ def _ball_ratings(bearing: BallBearing, rating: float) -> tuple[float, float]:
     osculation = inner / outer * (2.0 * outer - 1.0) / (2.0 * inner - 1.0)
     ratio = 1.044 * ((1.0 - share) / (1.0 + share)) ** 1.72 * osculation**0.41
     element_rating = rating / (bearing.count * math.cos(bearing.contact_angle) ** 0.7)
-    return _of_rings(element_rating, ratio, BALL_RINGS, 10.0 / 3.0)
+    return _ring_ratings(element_rating, ratio, BALL_RINGS, 10.0 / 3.0)
 
 
 def _lamina_ratings(bearing: RollerBearing, rating: float) -> tuple[float, float]:
@@ -85,12 +86,13 @@ def _lamina_ratings(bearing: RollerBearing, rating: float) -> tuple[float, float
     share = bearing.slenderness
     ratio = 1.038 * ((1.0 - share) / (1.0 + share)) ** (143.0 / 108.0)
     element_rating = rating / (ROLLER_QUALITY * bearing.count * math.cos(bearing.contact_angle))
-    return _of_rings(element_rating * bearing.laminae ** (-7.0 / 9.0), ratio, ROLLER_RINGS, 4.5)
+    return _ring_ratings(element_rating * bearing.laminae ** (-7.0 / 9.0), ratio, ROLLER_RINGS, 4.5)
 
 
-def _of_rings(
+def _ring_ratings(
     rating: float, ratio: float, constants: tuple[float, float], slope: float
 ) -> tuple[float, float]:
+    """Return the parts of the `rating` of both rings, whose own ones have the `ratio` inner to outer, N."""
     inner = rating / constants[0] * (1.0 + ratio**slope) ** (1.0 / slope)
     outer = rating / constants[1] * (1.0 + ratio**-slope) ** (1.0 / slope)
     return inner, outer

@@ -1,4 +1,11 @@
-"""The play of a bearing row at temperature, by the pressure between rings, shaft and housing."""
+"""The play of a bearing row at temperature, by the pressure between rings, shaft and housing.
+
+References
+----------
+.. [1] S. P. Timoshenko, J. N. Goodier, Theory of Elasticity, 3rd ed. 1970, section 28: thick cylinders.
+.. [2] T. A. Harris, M. N. Kotzalas, Essential Concepts of Bearing Technology, 5th ed. 2006, chapter 3: play
+   by interference and temperature.
+"""
 
 from __future__ import annotations
 
@@ -58,7 +65,7 @@ class WarmRings:
     """Play and interference of a row at temperature."""
 
     play: float
-    """Change of the row's clearance as it counts it, m."""
+    """Change of the row's clearance, m: along the axis if the row has a contact angle, else across it."""
     interference: tuple[float, float] | None
     """Interference of the inner ring on the shaft and of the outer ring in its bore, m; < 0: loose. None: no
     fits are stated.
@@ -81,10 +88,11 @@ def warm_rings(
 ) -> WarmRings:
     """Return the play of a row whose inner and outer ring have a thermal `strain`.
 
-    Its elements are as warm as the mean of both rings. The play across the axis grows with the difference of
-    the strains times the pitch diameter, and with what fits press the raceways apart [2]_; along the axis of
-    a row with a contact angle by 1/(2 tan) of that. Fits press, or cease to; they do not pull. `shaft`,
-    `housing`: what the rings sit on and in; the diameters of the seats themselves are those of the fits.
+    Its elements are as warm as the mean of both rings. The play across the axis grows by the difference of
+    the strains times the pitch diameter, and by the change of the raceways' diameters under the pressure of
+    the fits [2]_. The play along the axis of a row with a contact angle grows by 1/(2 tan) of that. Fits
+    press, or come loose; they do not pull. `shaft`, `housing`: what the rings sit on and in; the diameters of
+    the seats themselves are those of the fits.
     """
     across, interference = row.pitch_diameter * (strain[1] - strain[0]), None
     if fits is not None:

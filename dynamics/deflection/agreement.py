@@ -17,13 +17,13 @@ from model_studies.workers import InProcess, Workers
 TOLERANCE = 1e-6
 """Largest change of a misalignment by the last pass, over its size or `SMALL`."""
 SMALL = 1e-6
-"""Misalignment below which a change counts over this one, m."""
+"""Misalignment, m: the change of a smaller one is divided by this size, not by its own."""
 PASSES = 6
 """Most passes between table and deflection."""
-MARGIN, MIN_MARGIN = 0.5, 2e-6
-"""Distance of the first knots beyond the range of the misalignments without contact: over that range, and
-least distance, m.
-"""
+MARGIN = 0.5
+"""Distance of the outermost first knots beyond the range of misalignments, over the range."""
+MIN_MARGIN = 2e-6
+"""Least distance of the outermost first knots beyond the range of misalignments, m."""
 CLOSEST = 2e-8
 """Least distance of knots, m: a closer one takes the place of the one before."""
 
@@ -100,14 +100,14 @@ def _misalignments(deflection: Deflection, name: str) -> list[float]:
 
 
 def _first_knots(misalignments: Sequence[float], in_scene: float) -> list[float]:
-    """Return knots from the misalignments without the moment of uneven loads, m, increasing.
+    """Return knots, m, increasing, from misalignments that leave out the moment of uneven loads.
 
-    They reach to the misalignment that the scene states, at which its rest begins.
+    They reach to the misalignment that the scene states, at which the search for rest positions begins.
     """
     low, high = min(misalignments), max(misalignments)
     margin = max(MARGIN * (high - low), MARGIN * max(abs(low), abs(high)), MIN_MARGIN)
     ends = [min(low - margin, in_scene), max(high + margin, in_scene)]
-    return _with_knots(ends, misalignments, 0.1 * margin)
+    return _with_knots(ends, misalignments, closest=0.1 * margin)  # a first table needs no closer knots
 
 
 def _with_knots(knots: Sequence[float], further: Sequence[float], closest: float = CLOSEST) -> list[float]:

@@ -1,4 +1,7 @@
-"""Loads of bearings under load cases, and their basic reference rating life over all of them."""
+"""Loads of bearings under load cases, and their basic reference rating life over all of them.
+
+The rating life of one load case is that of ISO/TS 16281; load cases add up as in ISO 281.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +30,7 @@ def bearing_life(bearing: RollingBearing, displacement: FloatArray) -> float:
 
     The inner ring turns against a load that stands still. Loads of the elements are averaged over their
     passing. `displacement` (5,): of the inner ring against the outer, x, y, z, tilt_x, tilt_y, m and rad,
-    without what makes the axial preload.
+    without the shift along the axis that makes the preload.
     """
     if bearing.dynamic_capacity is None:
         return math.nan
@@ -38,7 +41,7 @@ def bearing_life(bearing: RollingBearing, displacement: FloatArray) -> float:
 
 
 def life_duration(revolutions: Sequence[float], speed: Sequence[float], share: Sequence[float]) -> float:
-    """Return the life under C load cases by linear damage, s: 1 / sum (q n / L) [2]_.
+    """Return the life under C load cases by linear damage, s: 1 / sum (q n / L).
 
     Parameters
     ----------

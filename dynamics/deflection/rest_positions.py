@@ -44,7 +44,7 @@ def rest_over(system: System, times: FloatArray) -> Rest:
     observed = observe(system.arrays, times, q, v)
     on_bearings = system.bearing_force(observed.force, q, v)
     force = np.zeros((times.size, len(system.supports.name), 5))
-    rows = min(on_bearings.shape[1], 5)
+    rows = min(on_bearings.shape[1], 5)  # 3 without moments; the sixth, about the axis, is left out
     force[:, :, :rows] = np.moveaxis(on_bearings, 2, 0)[:, :, :rows]
     mesh_force = observed.force[system.driving_rows].T
     largest = float(np.max(np.abs(mesh_force), initial=0.0))
@@ -61,7 +61,11 @@ def rest_over(system: System, times: FloatArray) -> Rest:
 
 
 def _load_arms(system: System, force: FloatArray) -> FloatArray:
-    """Return the arms of the forces (R, K) of the driving flanks, (m, K), m; NaN of none."""
+    """Return the arms (m, K) of the driving flanks by the forces (R, K) of all rows, m; NaN: no arm.
+
+    The force on the row of the misalignment is the moment of the mesh force about mid-face over the face
+    width, with a minus sign.
+    """
     elements, scene = system.arrays.elements, system.scene
     arm = np.full((len(scene.meshes), force.shape[1]), np.nan)
     for mesh in range(len(scene.meshes)):

@@ -11,7 +11,10 @@ from dynamics.mechanism.mechanism import Mechanism
 from dynamics.mechanism.rotor import Rotor
 
 BALANCED = 1e-6
-"""Part of the single thrusts below which those on a shaft cancel: lines of action are known to rounding."""
+"""Bound of the sum of the thrusts on a shaft over the sum of their sizes, below which they cancel.
+
+It allows for the rounding of the lines of action.
+"""
 
 
 class Axial(RotorEffect):
@@ -38,9 +41,10 @@ class Axial(RotorEffect):
     def check(self, mechanism: Mechanism) -> None:
         """Refuse a shaft that is pushed along its axis and that no bearing holds axially.
 
-        Idlers and planets between sun and ring balance themselves. So do double helical gears: their meshes
-        alone hold them, and between these the shaft floats; without axial stiffness it would not. Three
-        choices hold a shaft rigidly: the effect "off", a drive at rest, and no bearing on the shaft at all.
+        The thrusts on idlers, on planets between sun and ring, and on double helical gears cancel. A double
+        helical gear floats between its two meshes, but only if a bearing gives its shaft some axial
+        stiffness: without any, this model has no axial freedom. Three choices hold a shaft rigidly: the
+        effect "off", a drive at rest, and no bearing on the shaft at all.
 
         Raises `InputError`.
         """
@@ -68,9 +72,9 @@ class Axial(RotorEffect):
 
 def _thrusts(mechanism: Mechanism, rotor: Rotor) -> list[float]:
     """Return the axial forces of the meshes on a rotor, N; of unit mesh forces where there is no load."""
-    scene, force = mechanism.scene, mechanism.nominal_force
+    scene, nominal = mechanism.scene, mechanism.nominal_force
     gears = {gear.name for gear in scene.gears if gear.shaft == rotor.shaft.name}
-    size = np.where(force > 0.0, force, 1.0)
+    size = np.where(nominal > 0.0, nominal, 1.0)
     return [
         sign * float(force * line.force[2])
         for mesh, line, force in zip(scene.meshes, mechanism.lines, size, strict=True)

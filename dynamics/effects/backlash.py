@@ -32,10 +32,10 @@ class Backlash(MeshEffect):
     def called_for(self, mesh: LoadedMesh) -> Verdict:
         """Call for the effect where the run can take the load off the driving flank.
 
-        Flanks part when the dynamic force is as large as the mean. The mean is the least over the run that
-        balances loads and the inertia of the imposed motion; half the peak-to-peak transmission error, met by
-        the mesh stiffness and amplified by 1/(2 zeta) as in resonance, bounds the dynamic force of one
-        harmonic.
+        Flanks part when the dynamic force is as large as the mean force. The mean force balances loads and
+        the inertia of the imposed motion; its least value over the run counts. The dynamic force of one
+        harmonic is bounded by half the peak-to-peak transmission error times the mesh stiffness, amplified by
+        1/(2 zeta) as in resonance.
         """
         if mesh.mesh.coast is None:
             return Verdict(False, False, "no coast flank given: lift-off has no limit", 0.0)
@@ -67,7 +67,7 @@ class Backlash(MeshEffect):
 
 
 def _force_swing(mesh: LoadedMesh) -> float:
-    """Half the peak-to-peak transmission error times stiffness, amplified as in resonance, N."""
+    """Return half the peak-to-peak transmission error times stiffness, amplified as in resonance, N."""
     mechanism, flanks, index = mesh.train.mechanism, mesh.train.flanks, mesh.index
     damping = float(flanks.law.damping[index])
     mass = 1.0 / mesh_mobility(mechanism, index)

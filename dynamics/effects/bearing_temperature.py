@@ -63,7 +63,7 @@ def _differs(row: WarmBearing) -> bool:
 
 
 def _plays(rows: Sequence[WarmBearing]) -> Iterator[str]:
-    """Return the clearance of each row without contact angle in words; a negative clearance is a preload."""
+    """Yield the clearance of each row without contact angle in words; a negative clearance is a preload."""
     for row in rows:
         if row.drawn.row.contact_angle == 0.0:
             before, after = (1e6 * part.row.clearance for part in (row.drawn, row.warm))
@@ -74,11 +74,12 @@ def _plays(rows: Sequence[WarmBearing]) -> Iterator[str]:
 
 
 def _pair(rows: Sequence[WarmBearing]) -> Iterator[str]:
-    """Return the play or preload of rows that hold the shaft against each other, in words."""
+    """Yield the play or preload of rows that hold the shaft against each other, in words."""
     angled = [row for row in rows if row.drawn.row.contact_angle]
     if len({row.drawn.row.contact_angle > 0.0 for row in angled}) == 2:
         names = ", ".join(f'"{row.drawn.name}"' for row in angled)
-        before, after = (_state([getattr(row, at) for row in angled]) for at in ("drawn", "warm"))
+        before = _state([row.drawn for row in angled])
+        after = _state([row.warm for row in angled])
         yield f"pair {names}: {before} to {after}"
 
 
@@ -92,6 +93,7 @@ def axial_state(bearings: Sequence[RollingBearing]) -> tuple[float, float]:
 
     The preload is the axial force of those that hold it along z; 0 where there is play.
     """
+    # a row with a positive contact angle carries displacements along +z, one with a negative angle along -z
     ends: dict[float, list[float]] = {1.0: [], -1.0: []}
     for part in bearings:
         side = math.copysign(1.0, part.row.contact_angle)
@@ -115,11 +117,11 @@ def axial_state(bearings: Sequence[RollingBearing]) -> tuple[float, float]:
 def _mesh_displacement(rotor: LoadedRotor, rows: Sequence[WarmBearing]) -> float:
     """Return the largest change of the displacement at a mesh, linear between the bearings, m."""
     mechanism, bearings_rotor = rotor.mechanism, rotor.rotor
-    duties, more, at = mechanism.bearing_duty, [], []
+    duties, yields, heights = mechanism.bearing_duty, [], []
     for row in rows:
         duty = duties[row.drawn.name]
-        more.append(row_law(row.warm).deflection(duty) - row_law(row.drawn).deflection(duty))
-        at.append(bearings_rotor.shaft.origin[2] + row.drawn.position - float(bearings_rotor.center[2]))
+        yields.append(row_law(row.warm).deflection(duty) - row_law(row.drawn).deflection(duty))
+        heights.append(bearings_rotor.shaft.origin[2] + row.drawn.position - float(bearings_rotor.center[2]))
     levers = [mesh.lever for mesh in rotor.meshes] or [0.0]
-    line = np.polyfit(at, more, 1 if np.ptp(at) > 0.0 else 0)
+    line = np.polyfit(heights, yields, 1 if np.ptp(heights) > 0.0 else 0)
     return float(np.max(np.abs(np.polyval(line, levers))))

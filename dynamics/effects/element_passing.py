@@ -26,7 +26,8 @@ class ElementPassing(RotorEffect):
     def called_for(self, rotor: LoadedRotor) -> Verdict:
         """Call for the effect where the passing moves the shaft by more than a share of the mesh deflection.
 
-        Its influence is that motion: from peak to peak, along the typical load. Averaged without a tolerance.
+        Its influence is that motion: from peak to peak, along the typical load. If the scene states no
+        tolerance, the effect is off and the elements are averaged.
         """
         mechanism, shaft = rotor.mechanism, rotor.rotor.shaft.name
         bearings = [bearing for bearing in mechanism.scene.rolling_bearings if bearing.shaft == shaft]

@@ -59,10 +59,11 @@ class Friction(MeshEffect):
 def _sliding_gradients(flank: FlankInSpace) -> FloatArray:
     """Return the derivatives of sliding at the pitch point and of rolling on it, (2, N).
 
-    A contact at y n from the pitch point slides at (w_1 - w_2) y along z x n, whichever flank it is on: the
-    first row is the relative displacement along that direction, the second the relative rotation times the
-    driver's base radius, each in the sense in which the load slides at the y > 0 of the table. Where a ring
-    gear drives, that y runs against n and w_1 - w_2 against the sense of the driving flank.
+    With n the unit vector along the line of action, a contact at y n from the pitch point slides at
+    (w_1 - w_2) y along z x n, whichever flank it is on. The first row is the relative displacement along that
+    direction, the second the relative rotation times the driver's base radius. Both are positive as the
+    contact slides where the table has y > 0. Where a ring gear drives, the table's y runs against n, and
+    w_1 - w_2 against the sense of the driving flank.
     """
     scene, rotors, line = flank.mechanism.scene, flank.mechanism.rotors, flank.line
     mesh = scene.meshes[flank.index]

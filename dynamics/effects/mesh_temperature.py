@@ -39,6 +39,7 @@ class MeshTemperature(MeshEffect):
             return Verdict(False, False, "temperatures change nothing of this mesh", 0.0)
         shift = np.array([change.misalignment, change.distance_change])
         point = np.array([mesh.mesh.misalignment, mesh.mesh.center_distance_change])
+        # a scene whose temperatures list its meshes has them at temperature already
         other = point + (shift if scene.temperatures.meshes is None else -shift)
         influence = abs(_mean_error(mesh, point) - _mean_error(mesh, other))
         if mesh.mesh.coast is not None and np.min(mesh.train.mean_force[mesh.index]) <= 0.0:
@@ -50,10 +51,11 @@ def _mean_error(mesh: LoadedMesh, point: FloatArray) -> float:
     """Return the mean transmission error under the nominal force at a `point` of the table's axes, m."""
     table = mesh.mesh.table
     mean: FloatArray = np.mean(np.asarray(table.deflection, dtype=float), axis=2)
+    # the axes of `mean` from the last to the first
     axes = (table.level, mesh.force), (table.center_distance_change, point[1]), (table.misalignment, point[0])
-    for knots, at in axes:
-        share = [np.interp(at, knots, unit) for unit in np.eye(np.size(knots))]
-        mean = mean @ np.array(share)
+    for knots, value in axes:
+        weights = [np.interp(value, knots, unit) for unit in np.eye(np.size(knots))]
+        mean = mean @ np.array(weights)
     return float(mean)
 
 

@@ -48,7 +48,7 @@ def _why(rotor: LoadedRotor) -> str:
         return "a mesh is off the supports' center"
     if (rotor.meshes or rotor.applied) and abs(body.elastic_lever) > limit:
         return "the center of mass is off the supports' center"
-    if any(abs(along - body.elastic_lever) > limit for along in rotor.applied):
+    if any(abs(lever - body.elastic_lever) > limit for lever in rotor.applied):
         return "a load is off the supports' center"
     if any(any(force.moment[:2]) for force in forces if force.shaft == body.shaft.name):
         return "a moment tilts the shaft"

@@ -19,8 +19,9 @@ class FrameCouplingLaws(NamedTuple):
 
         d = a - R b,    F = K d + C d',    d' = a' - R b' - psi' J R b,    J = z x,
 
-    and F pushes the first shaft back and, turned by R^T, the second along. K and C are the same in all
-    directions across the axis: they commute with R.
+    where J maps x to y and y to -x: in it the other direction of component i is i + 1 or i - 1. F pushes the
+    first shaft back and, turned by R^T, the second along. K and C are the same in all directions across the
+    axis: they commute with R.
     """
 
     size: IntArray
@@ -32,6 +33,7 @@ class FrameCouplingLaws(NamedTuple):
 
 @inner
 def _turned(row: int, i: int, c: float, s: float, values: FloatArray) -> float:
+    """Return component `i` of R times the values from `row` on; R^T with -s."""
     if i % 2 == 0:
         return float(c * values[row + i] - s * values[row + i + 1])
     return float(s * values[row + i - 1] + c * values[row + i])
@@ -39,6 +41,7 @@ def _turned(row: int, i: int, c: float, s: float, values: FloatArray) -> float:
 
 @inner
 def _strain(row: int, n: int, i: int, c: float, s: float, coordinate: FloatArray) -> float:
+    """Return component `i` of d."""
     return float(coordinate[row + i]) - _turned(row + n, i, c, s, coordinate)
 
 

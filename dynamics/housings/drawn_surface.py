@@ -32,10 +32,10 @@ _AGGRESSIVENESS = 3.0, 5.0, 7.0
 """Aggressiveness of the tries of the mesh reduction: the first keeps shapes best, the last closes bores where
 too many triangles are left.
 """
-_OF_NORMALS, _MIN_AREA = 0.2, 1e-6
-"""Weight of normals relative to positions in the search for the nearest node, over the size of facets; least
-area of a facet over the mean area.
-"""
+_NORMAL_WEIGHT = 0.2
+"""Weight of unit normals in the search for the nearest node, over the size of a facet."""
+_MIN_AREA = 1e-6
+"""Least area of a facet over the mean area."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class DrawnSurface:
             if len(corners) <= maximum:
                 break
             points, facets = simplify(self.points, self.facets, target_count=maximum, agg=aggressiveness)
-            weight = _OF_NORMALS * float(np.linalg.norm(_across(points[facets]), axis=1).mean() ** 0.5)
+            weight = _NORMAL_WEIGHT * float(np.linalg.norm(_across(points[facets]), axis=1).mean() ** 0.5)
             simplified = np.hstack([points, weight * node_normals(points, facets)])
             descriptors = np.hstack([self.points, weight * node_normals(self.points, self.facets)])
             corners = np.asarray(cKDTree(descriptors).query(simplified)[1])[facets]

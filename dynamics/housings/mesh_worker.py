@@ -8,7 +8,7 @@ writes one to standard output, and the mesh as ``mesh.npz`` into its folder::
     {"file": "housing.msh", "format": "gmsh", "seconds": 60}
     {"groups": ["base", ...]}   or   {"unreadable": true}   or   {"cells": ["hexahedron"]}
 
-Arrays: ``points``, ``_tetrahedra`` (with four or ten nodes), ``group_0`` ... (nodes).
+The arrays are ``points``, ``tetrahedra`` (with four or ten nodes) and ``group_0`` ... (nodes of each group).
 """
 
 from __future__ import annotations
@@ -80,8 +80,9 @@ def _named_parts(content: Any) -> Iterator[tuple[str, Nodes]]:
             for cells, member in zip(content.cells, members, strict=True)
             if cells.type in SURFACE_CELLS and member is not None and len(member)
         ]
-        if parts and ":" not in name:
+        if parts and ":" not in name:  # names with a colon are those of meshlane itself
             yield name, np.concatenate(parts)
+    # number and dimension of each physical group; 2: a surface
     names = {int(value[0]): name for name, value in content.field_data.items() if int(value[1]) == 2}
     for key in (PHYSICAL, PROPERTY):
         for number, nodes in _by_number(content, key).items():

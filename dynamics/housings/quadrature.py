@@ -33,7 +33,7 @@ class _SurfaceIntegral(NamedTuple):
 
 @cache
 def triangle() -> _ShapeFunctions:
-    """Return the reference of triangles with six nodes, which scikit-fem orders as we do."""
+    """Return the shape functions of the reference triangle with six nodes, in scikit-fem's order."""
     from skfem import ElementTriP2  # noqa: PLC0415 (start-up time)
     from skfem.quadrature import get_quadrature  # noqa: PLC0415
 
@@ -44,7 +44,7 @@ def triangle() -> _ShapeFunctions:
 
 
 def _separate_mesh(points: FloatArray, tetrahedra: IntArray) -> Any:
-    """Return scikit-fem's mesh of the tetrahedra apart from each other, whose nodes it orders as we do."""
+    """Return scikit-fem's mesh of the tetrahedra, none of which shares a node: so it keeps their order."""
     from skfem import MeshTet2  # noqa: PLC0415 (start-up time)
 
     numbers = np.arange(tetrahedra.size).reshape(tetrahedra.shape)
@@ -61,9 +61,10 @@ def determinants(points: FloatArray, tetrahedra: IntArray) -> FloatArray:
 
 
 def over_volume(points: FloatArray, tetrahedra: IntArray) -> tuple[sp.csr_array, dict[int, sp.csr_array]]:
-    """Integrate products over a mesh without folds: of the shapes a, b of nodes in m^3, of their slopes in m.
+    """Return the integrals of products of two shape functions, m^3, and of two of their slopes, m.
 
-    Matrix 3 i + j of the second has slopes of a along i, of b along j; all are (n, n).
+    All matrices are (n, n) over the nodes of a mesh without folds. Matrix 3 i + j of the slopes has those of
+    the row's shape function along i and of the column's along j.
     """
     from skfem import Basis, BilinearForm, ElementTetP2  # noqa: PLC0415 (start-up time)
 
@@ -83,8 +84,8 @@ def over_volume(points: FloatArray, tetrahedra: IntArray) -> tuple[sp.csr_array,
 
 
 def over_surface(points: FloatArray, triangles: IntArray) -> _SurfaceIntegral:
-    """Map the reference onto triangles with six nodes."""
+    """Return the quadrature points and area vectors of t triangles with six nodes."""
     rule = triangle()
-    tangent = np.einsum("tai,akp->tpki", points[triangles], rule.slope, optimize=True)
+    tangent = np.einsum("tai,akp->tpki", points[triangles], rule.slope, optimize=True)  # (t, p, 2, 3)
     area = np.cross(tangent[:, :, 0], tangent[:, :, 1]) * rule.weight[:, None]
     return _SurfaceIntegral(area, np.einsum("tai,ap->tpi", points[triangles], rule.shape))

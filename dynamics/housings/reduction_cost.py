@@ -54,5 +54,5 @@ def reduction_cost(freedoms: int, modes: int, motions: int) -> Cost:
         + SOLVE * size**1.25 * (steps + REFINED * motions)
         + size**1.1 * (ORTHOGONALIZATION * steps * basis + PROJECTION * (modes + motions) ** 2)
     )
-    vectors = basis + modes + 4.0 * motions
+    vectors = basis + modes + 4.0 * motions  # vectors of all freedoms in memory at once
     return Cost(seconds, FILL * size**1.1 + 8.0 * freedoms * vectors)

@@ -11,7 +11,7 @@ from dynamics.housings.mesh_faces import COVERED, Bore
 from dynamics.types import FloatArray
 
 _SAME = 1e-6
-"""Directions; lengths in m at which axes, radii and heights are the same."""
+"""Difference below which directions (1), or positions, radii and heights (m), are the same."""
 
 
 @dataclass(frozen=True)
@@ -27,9 +27,10 @@ class BoreWall:
 
 
 def bores_of_walls(walls: Sequence[BoreWall]) -> Iterator[Bore]:
-    """Yield the bores that walls with one axis and radius form, each as high as they overlap or touch."""
+    """Yield the bores that walls with one axis and radius form; walls that overlap in height are one bore."""
     for group in _coaxial(walls):
-        first, parts = group[0], sorted(map(_ends, group, [group[0]] * len(group)))
+        first = group[0]
+        parts = sorted(_ends(wall, first) for wall in group)
         while parts:
             low, high, area = parts.pop(0)
             while parts and parts[0][0] < high - _SAME:

@@ -1,4 +1,4 @@
-"""A key of a scene's content: scenes with one key have the same sizes of effects."""
+"""A key of a scene's content: effects have the same sizes in all scenes with the same key."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import numpy as np
 from dynamics.scene import Scene
 
 UNREAD = frozenset(("integration", "on_violation", "level_tolerance", "outputs"))
-"""Fields of a scene that no size depends on; of its outputs the sampling counts."""
+"""Fields of a scene that no size of an effect depends on, except for the sampling of the outputs."""
 _PLAIN = (str, bytes, int, float, complex, bool, type(None), Enum, Fraction, PurePath)
 
 

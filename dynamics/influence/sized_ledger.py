@@ -1,4 +1,4 @@
-"""The effect ledger of a run or a study with the size of its effects, from which all outputs read them."""
+"""The effect ledger of a run or a study with the influences of its effects; all outputs read this ledger."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from dynamics.types import Json
 def sized_ledger(ledger: Json, automatic: Mapping[str, str], influences: Mapping[str, Influence]) -> Json:
     """Return `EffectLedger.to_json` with the size of every effect, and reasons and prices that follow.
 
-    `automatic` are effects that were left to "auto" and are not as the scene calls for them, and why: for the
-    tolerance, or because a run without them showed that they are needed. `influences` are what leaving
-    effects out in all their parts is estimated to change.
+    `automatic` gives, by name, why an effect left to "auto" is decided otherwise than the scene calls for:
+    the tolerance allows its neglect, or a run without it showed that it is needed. `influences` are the
+    estimated changes by leaving an effect out in all its parts.
     """
     entries = [_sized(entry, automatic, influences) for entry in ledger["entries"]]
     sizes = {name: influence.to_json() for name, influence in influences.items()}

@@ -15,6 +15,7 @@ from dynamics.errors import ResultError
 from dynamics.kernels.by_address import by_value
 
 VERSION = 3  # version of the content of checkpoints
+_VALUE = "fact "  # prefix of the values beside the state, by which a file tells both apart
 Arrays = dict[str, Any]
 
 
@@ -58,14 +59,15 @@ def write_checkpoint(path: Path, state: Any, **values: Any) -> None:
     """Write the arrays of `state`, and `values`, to a neighbor of `path`; then move it there in one step."""
     part = path.with_suffix(".part")
     with part.open("wb") as file:
-        np.savez(file, **dict(leaves_of(state)), **{f"fact {name}": value for name, value in values.items()})
+        named_values = {f"{_VALUE}{name}": value for name, value in values.items()}
+        np.savez(file, **dict(leaves_of(state)), **named_values)
         file.flush()
         os.fsync(file.fileno())
     part.replace(path)
 
 
 def read_checkpoint(path: Path) -> tuple[Arrays, Arrays]:
-    """Return the arrays of the state, and the facts.
+    """Return the arrays of the state, and the values that were written with it.
 
     Raises
     ------
@@ -77,5 +79,5 @@ def read_checkpoint(path: Path) -> tuple[Arrays, Arrays]:
             content = {name: file[name] for name in file.files}
     except (OSError, ValueError, zipfile.BadZipFile, KeyError) as error:
         raise ResultError(f"{path.name}: not a readable checkpoint. Start a new run.") from error
-    values = {name.removeprefix("fact "): value for name, value in content.items() if name[:5] == "fact "}
-    return {name: value for name, value in content.items() if name[:5] != "fact "}, values
+    values = {name.removeprefix(_VALUE): content[name] for name in content if name.startswith(_VALUE)}
+    return {name: value for name, value in content.items() if not name.startswith(_VALUE)}, values

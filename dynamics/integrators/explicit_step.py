@@ -1,4 +1,4 @@
-"""Compiled steps of an explicit method, and the powers at one instant: integrands of the energy audit."""
+"""Compiled steps of an explicit method; with an energy audit they write the powers at their stages."""
 
 from __future__ import annotations
 
@@ -28,7 +28,10 @@ STAGE_COUNT = 7  # stages of the method, the last at the end of the step
 
 @routine
 def explicit_step(system: SystemArrays, work: Workspace, level: int, audit: bool) -> bool:
-    """Try one step from the state in `work`; fill the fields that `implicit_step` fills; return True."""
+    """Try one step of the size number `level` from the state in `work`; return True: it needs no iteration.
+
+    It fills the fields of `work` that `implicit_step` fills.
+    """
     step, size = work.step_sizes[level], work.q.size
     for i in range(size):
         work.stage_v[0, i], work.stage_a[0, i] = work.v[i], work.a[i]

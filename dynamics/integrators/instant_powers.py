@@ -28,9 +28,9 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
     """Write row `stage` of ``work.power`` from the local state at that stage and its rates ``work.stage_v``.
 
     Drives supply the torque on their own shafts times their speeds. A table V(x, d) exerts dV/dd only along
-    the line of action; what dV/dx stores as the position moves on is counted as supplied by the position,
-    and likewise along the table's other axes, less the work of forces along them. All that a table stores is
-    dV, so the position has what d and the axes do not supply; dV itself is added at the end of the run. The
+    the line of action. What dV/dx stores as the position moves on counts as supplied by the position, and
+    likewise along the table's other axes, less the work of forces along them. All in all a table stores dV,
+    which is added at the end of the run: here the position's part is minus what d and the axes supply. The
     rotation of frames and the change of its speed count with the position.
     """
     velocity = work.stage_v[stage]
@@ -85,10 +85,11 @@ def _by_frame_speed(system: SystemArrays, work: Workspace, e: int) -> float:
 def _in_elements(
     system: SystemArrays, work: Workspace
 ) -> tuple[float, float, float, float, float, float, float]:
-    """Return the powers lost in bearings, flanks and friction, and the one that loads supply.
+    """Return the powers in the elements, W, in seven parts.
 
-    Then that which the kinematic motion exchanges with rotating frames: kinetic energy in the product of
-    displacements and speeds, which the balance does not hold. Last, what the position and the axes supply.
+    They are those lost in bearings, in flanks and by friction; supplied by loads; exchanged by the kinematic
+    motion with rotating frames; supplied by the position and by the other axes of tables. The energy of the
+    fifth is kinetic, in products of displacements and kinematic speeds, which the balance leaves out.
     """
     bearing, mesh, friction, supplied, frames, position, axes = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     elements, force, elastic = system.elements, work.force, work.local.elastic
@@ -131,7 +132,7 @@ def _drive_torque(
 ) -> float:
     """Return the torque that imposes the motion of one law, N m; 0 for a free rotation.
 
-    Without the symmetric part of the inertia, whose work `add_drive_work` knows in closed form.
+    The symmetric part of the inertia is left out: `add_drive_work` adds its work in closed form.
     """
     drive = system.drive
     torque = -drive.constant[law]

@@ -1,4 +1,11 @@
-"""Compiled elimination of linear force elements from the implicit stages."""
+"""Compiled elimination of linear force elements from the implicit stages.
+
+A local force accelerates all local coordinates and positions by W, which ``approach`` holds for each step
+size (`level`). Over the span s of a stage (step times diagonal coefficient) the linear elements, with
+stiffness K and damping C, answer a local acceleration with B = s^2 K + s C. H is the inverse of I + B W in
+their rows: ``linear`` lists these rows, in columns the row, and the first and the end, in the list, of its
+element.
+"""
 
 from __future__ import annotations
 
@@ -13,13 +20,13 @@ from dynamics.types import FloatArray
 def gauss_jordan(matrix: FloatArray, size: int) -> None:
     """Turn [A, I] in the first `size` rows into [I, inverse], with row pivoting (Gauss and Jordan)."""
     for p in range(size):
-        best = p
+        largest = p
         for i in range(p + 1, size):
-            if abs(matrix[i, p]) > abs(matrix[best, p]):
-                best = i
-        pivot = 1.0 / matrix[best, p]
-        for j in range(2 * size):
-            matrix[best, j], matrix[p, j] = matrix[p, j], matrix[best, j] * pivot
+            if abs(matrix[i, p]) > abs(matrix[largest, p]):
+                largest = i
+        pivot = 1.0 / matrix[largest, p]
+        for j in range(2 * size):  # exchange both rows, and scale the one with the pivot
+            matrix[largest, j], matrix[p, j] = matrix[p, j], matrix[largest, j] * pivot
         for i in range(size):
             factor = matrix[i, p]
             if i != p and factor != 0.0:
@@ -91,7 +98,7 @@ def _follow(work: Workspace, level: int, span: float) -> None:
         if _is_linear_row(work, row):
             continue
         for a in range(count):
-            work.resting[a] = _strain(work, level, span, a, row)
+            work.resting[a] = _strain(work, level, span, a, row)  # as scratch
         for b in range(count):
             force = 0.0
             for a in range(count):
@@ -105,10 +112,10 @@ def _follow(work: Workspace, level: int, span: float) -> None:
 
 @inner
 def _is_linear_row(work: Workspace, row: int) -> bool:
-    among = False
+    is_listed = False
     for a in range(work.linear.shape[0]):
-        among = among or work.linear[a, 0] == row
-    return bool(among)
+        is_listed = is_listed or work.linear[a, 0] == row
+    return bool(is_listed)
 
 
 @inner

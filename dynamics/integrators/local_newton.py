@@ -14,19 +14,22 @@ ITERATION_LIMIT = 25  # most Newton iterations of a stage
 
 
 WEAK = 0.01
-"""Change of a row's law with its own force, below which the row is iterated."""
+"""Change of a row's law with its own force, below which Newton's matrix leaves the row out."""
 
 
 SLOW = 0.1
-"""Part of the last update that is left, above which the equations are made anew."""
+"""Ratio of an update to the one before, above which Newton's matrix is computed anew."""
 
 
 ROUNDING = 2.0**-52
-"""Update over the largest force that rounding makes where coordinates are as small as deflections."""
+"""Update over the largest force that is rounding wherever coordinates are as small as deflections."""
 
 
 NOISE, STALL = 1e-10, 0.5
-"""Update over the largest force, and part of the last one left, from which on larger coordinates make it."""
+"""Bounds of an update that is rounding of larger coordinates.
+
+It is at most NOISE times the largest force, and at least STALL times the update before.
+"""
 
 
 @inner
@@ -39,8 +42,9 @@ def solve_local_forces(
     ``work.force`` is a first guess; on exit ``work.local`` holds the motion with them. `first` says whether
     this is the first stage of its step. The change of the positions with the forces is followed but left out
     of the equations: it is of the order of a deflection over a base pitch. Forces of linear elements are
-    part of the motion (`hold_linear`). An update leaves the part of itself that it was of the one before;
-    returns -1 if that fell neither to `tolerance` (N) nor to rounding.
+    part of the motion (`hold_linear`). `left` is the ratio of an update to the one before; the error after an
+    update is estimated by that ratio times the update. Returns -1 if it fell neither to `tolerance` (N) nor
+    to rounding.
     """
     fresh, last, left = first, math.inf, 1.0
     if first:  # later stages begin with the forces and the answer to them that the one before ended with
@@ -59,7 +63,7 @@ def solve_local_forces(
         if min(left, 1.0) * size <= tolerance or _is_rounding(work, size, left):
             _move(work, span)
             return iteration + 1
-        fresh = iteration > 0 and not left <= SLOW
+        fresh = iteration > 0 and not left <= SLOW  # also where `left` is NaN
         last = size
     return -1
 
@@ -88,7 +92,7 @@ def _respond(work: Workspace, level: int) -> None:
 
 @inner
 def _move(work: Workspace, span: float) -> None:
-    """Let the forces act: they move coordinates and positions by -span^2 response, rates by -span ..."""
+    """Let the forces move coordinates and positions by -span^2 response, and rates by -span response."""
     response, local, rows = work.response, work.local, work.force.size
     for k in range(rows):
         local.coordinate[k] = work.free[k] - span * span * response[k]
@@ -122,7 +126,7 @@ def _invert_equations(system: SystemArrays, work: Workspace, level: int, span: f
             if change > WEAK:
                 work.solved[size] = k
                 size += 1
-    work.solved[size] = -1
+    work.solved[size] = -1  # the end of the list
     for e in range(system.elements.law.size):
         first, end = system.elements.first[e], system.elements.first[e + 1]
         for b in range(size):

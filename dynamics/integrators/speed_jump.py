@@ -1,4 +1,7 @@
-"""Compiled steps that end where a speed law has a knot: the inertia of the kinematic motion jumps there."""
+"""Compiled steps that end where a speed law has a knot: the inertia of the kinematic motion jumps there.
+
+The last of the step sizes, the landing level, is for steps that end at a knot.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +26,7 @@ def next_jump(laws: Cubics, time: float) -> float:
     nearest = math.inf
     for k in range(laws.first.size - 1):
         piece = piece_at(laws, k, time)
-        if piece + 1 < laws.first[k + 1]:
+        if piece + 1 < laws.first[k + 1]:  # the law has a further piece
             start, c = laws.start[piece + 1], laws.coefficient
             s = start - laws.start[piece]
             before = c[piece, 1] + s * (2.0 * c[piece, 2] + 3.0 * s * c[piece, 3])

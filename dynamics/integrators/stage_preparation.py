@@ -23,7 +23,7 @@ def prepare_level(system: SystemArrays, work: Workspace, level: int, diagonal: f
         for entry in range(coupling.first[i], coupling.first[i + 1]):
             work.inverse[level, entry] = matrix[i, coupling.column[entry]]
     _invert_modal(system, work, level, span)
-    pushed, gradient = work.external, system.sparse.position_gradient
+    pushed, gradient = work.external, system.sparse.position_gradient  # `external` is free as scratch here
     for r in range(rows):
         for i in range(pushed.size):
             pushed[i] = 0.0

@@ -21,11 +21,11 @@ _HEADERS = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.r
 LARGEST = 2**27
 """Bytes of a CSV file, or of an archive unpacked: three matrices of 2300 rows."""
 
-PER_SEAT = (3, SEAT, SEAT + 1)
+PER_SEAT = (3, SEAT, SEAT + 1)  # possible numbers of rows per seat
 MATRICES = ("stiffness", "damping", "mass")
 PRECISION = 1e-6  # relative; a finite-element program writes its matrices with that many digits
 DEFINITE = 1e-13
-"""Least eigenvalue of a mass or a stiffness that is taken for more than rounding, diagonal entries 1."""
+"""Least eigenvalue of a positive definite matrix whose diagonal is scaled to 1; a smaller one is rounding."""
 DAMPING_RATIO = Declared(
     Kind.RATIO,
     "",
@@ -81,7 +81,10 @@ def read_archive(file: Path, field: str) -> dict[str, FloatArray]:
 
 
 def _array(archive: ZipFile, member: Any) -> FloatArray:
-    """Return an array of numbers, as large as its member: `numpy.load` makes room for what a header says."""
+    """Return an array of numbers, whose header must agree with the size of the member.
+
+    `numpy.load` would allocate whatever size a forged header states.
+    """
     with archive.open(member) as stream:
         shape, by_columns, kind = _HEADERS[np.lib.format.read_magic(stream)](stream)
         if kind.kind not in "iuf" or math.prod(shape) * kind.itemsize != member.file_size - stream.tell():
@@ -114,7 +117,7 @@ class Housing:
     `mass`, of as many rows as `stiffness`, is positive definite, and so is then `stiffness`: the housing is
     held at its feet. Behind the rows of the seats there may be those of modal coordinates, as in the form of
     Craig and Bampton. `seat_positions` are (x, y, z) of each seat in the fixed frame, m; None: where the
-    bearings are. The weight of the housing itself is left out: its seats are where they rest under it.
+    bearings are. The weight of the housing itself is left out: seat positions are those under its weight.
     """
 
     name: str
@@ -167,7 +170,7 @@ class Housing:
 
     @property
     def matrix_columns(self) -> tuple[int, ...]:
-        """The same among the rows of the matrices."""
+        """Indices of these `columns` among the rows of the matrices."""
         per = self.per_seat
         return tuple(
             per * seat + kind for seat in range(len(self.bushings)) for kind in range(min(per, SEAT))

@@ -1,4 +1,8 @@
-"""The exact common period of meshes and loads at constant speed."""
+"""The exact common period of meshes and loads at constant speed.
+
+A law is the rotation that a drive imposes. Rates are base pitches of a mesh, or turns of a phase, per
+revolution of the leading law, which is the first that turns.
+"""
 
 from __future__ import annotations
 
@@ -74,13 +78,14 @@ def common_period(system: System) -> CommonPeriod:
         for mesh, rate in zip(scene.meshes, rates, strict=True)
         if rate
     ]
-    turning = [
+    phase_rates = [
         (sum((turn * part for turn, part in zip(phase.rate, proportion, strict=True)), Fraction(0)), phase)
         for phase in repeating_phases(scene, system.kinematics)
     ]
-    turns += [phase.turns / abs(rate) for rate, phase in turning if rate]
+    turns += [phase.turns / abs(rate) for rate, phase in phase_rates if rate]
     if not any(rates):
         turns.append(Fraction(1))  # one turn of the leading shaft, by which orders then count
+    # the least common multiple of the fractions in lowest terms
     revolutions = Fraction(
         math.lcm(*(turn.numerator for turn in turns)), math.gcd(*(turn.denominator for turn in turns))
     )

@@ -35,8 +35,8 @@ def strain_shares(
     """
     energy = linear.spring_stiffness * np.abs(shape @ linear.strain.T) ** 2
     total = np.sum(energy, axis=1, keepdims=True)
-    none = total <= 0.0 if still is None else (total <= 0.0) | still[:, None]
-    return np.asarray(np.where(none, 0.0, energy / np.where(total > 0.0, total, 1.0)))
+    without = total <= 0.0 if still is None else (total <= 0.0) | still[:, None]
+    return np.asarray(np.where(without, 0.0, energy / np.where(total > 0.0, total, 1.0)))
 
 
 def kinetic_shares(linear: LinearSystem, shape: FloatArray | ComplexArray) -> FloatArray:
@@ -49,8 +49,8 @@ def spring_parts(system: System, spring: Sequence[str]) -> tuple[tuple[str, str]
     """Return the part that each of `spring` belongs to and its kind, one of `SPRING_KINDS`.
 
     The springs of a bearing's directions are one part, and so are the modes of a housing; a housing without
-    mass is one with its bearings. What is no mesh, bearing, housing, coupling or drive is of a shaft that
-    bends.
+    mass is one with its bearings. All other springs are those of shafts that bend. Meshes come first, in the
+    order of the scene; a name "part.direction" is a spring of that part.
     """
     scene = system.scene
     kinds = {part.name: "housing" for part in system.rotors.housings}

@@ -68,16 +68,16 @@ class OtherFlanks:
         return excitation_of(self.at, self.harmonics)
 
     def changes(self, tables: Sequence[MeshTable]) -> list[FlankExcitation]:
-        """Return the changes of the excitation with tables that differ a little, as differences.
+        """Return the excitation with each of the `tables` less that of this scene, to first order.
 
-        The tables are of the positions and the number of levels of each other.
+        The tables differ a little from that of the scene, and have the same positions and number of levels.
         """
-        kind, system = self.excitation, self.at.system
-        rests_of = RestsBeside.of(system, self.at.linear.equilibrium.displacement, self.at.time)
+        reference, system = self.excitation, self.at.system
+        linearized = RestsBeside.of(system, self.at.linear.equilibrium.displacement, self.at.time)
         rests = (
-            self._resting(other, rests_of.rest(other)) for other in with_flanks(system, self.mesh, tables)
+            self._resting(other, linearized.rest(other)) for other in with_flanks(system, self.mesh, tables)
         )
-        return [_difference(other.excitation, kind) for other in rests]
+        return [_difference(other.excitation, reference) for other in rests]
 
 
 def _difference(first: FlankExcitation, second: FlankExcitation) -> FlankExcitation:

@@ -78,10 +78,11 @@ class SpeedTorque:
 class AppliedForce:
     """A force and moment at a point of a shaft's axis: rows (where it acts) x course x frame.
 
-    `force` (N) and `moment` (N m; about x, y, and about +z, the axis) act on the shaft, along the fixed axes,
-    times the factor of the `course`. With `turns_with` they are those at t = 0 and turn with the rotation of
-    that shaft, its vibration included: a carrier or the shaft itself. `name` is unique among the forces. Both
-    may be zero: a load case then says what they are.
+    The course is how its size varies, the frame what its direction turns with. `force` (N) and `moment` (N m;
+    about x, y, and about +z, the axis) act on the shaft, along the fixed axes, times the factor of the
+    `course`. With `turns_with` they are those at t = 0 and turn with the rotation of that shaft, its
+    vibration included: a carrier or the shaft itself. `name` is unique among the forces. Both may be zero: a
+    load case then says what they are.
     """
 
     name: str

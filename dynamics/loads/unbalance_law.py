@@ -32,24 +32,24 @@ class UnbalanceLaws(NamedTuple):
     gravity: FloatArray
     """g, m/s^2. Shape (2,)."""
     steady: BoolArray
-    """Whether only the mean over a turn acts, which is none. Shape (1,)."""
+    """Whether only the mean force over a turn acts, which is 0. Shape (1,)."""
 
 
 @routine
 def unbalance(laws: UnbalanceLaws, entry: int, local: LocalState, row: int) -> None:
-    """Write forces and their derivatives in rates and accelerations; the forces resist, as all do.
+    """Write forces and their derivatives in rates and accelerations; forces resist, as those of all elements.
 
-    Their change with the angle is left to the phase.
+    The derivative in the angle is left out: the phase among the positions turns the forces.
     """
     rate, acceleration, lever = local.rate, local.acceleration, laws.lever[entry]
     amount = 0.0 if laws.steady[0] else laws.amount[entry]
     angle = laws.angle[entry] + 2.0 * math.pi * local.position[laws.phase[entry]]
     c, s = amount * math.cos(angle), amount * math.sin(angle)
     spin = (rate[row + 2] + local.drift[row + 2]) / lever
-    faster = acceleration[row + 2] / lever
+    spin_rate = acceleration[row + 2] / lever
     weight = laws.gravity[1] * c - laws.gravity[0] * s
-    local.force[row] = -spin * spin * c - faster * s
-    local.force[row + 1] = -spin * spin * s + faster * c
+    local.force[row] = -spin * spin * c - spin_rate * s
+    local.force[row + 1] = -spin * spin * s + spin_rate * c
     local.force[row + 2] = -(acceleration[row] * s - acceleration[row + 1] * c + weight) / lever
     local.viscous[row, 2], local.viscous[row + 1, 2] = -2.0 * spin * c / lever, -2.0 * spin * s / lever
     local.inertial[row, 2], local.inertial[row + 1, 2] = -s / lever, c / lever

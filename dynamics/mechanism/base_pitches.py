@@ -25,8 +25,8 @@ Corrections = dict[str, tuple[float, float]]
 def with_common_base_pitches(scene: Scene) -> tuple[Scene, Corrections]:
     """Return `scene` with one base pitch per train of meshing gears, and the corrections.
 
-    Radii are printed to one digit after the point, so the pitch of a train is that of least squares of all
-    its base radii: each counts in proportion to its teeth. Raises `InputError`: the base pitches of two gears
+    Printed radii are all rounded to the same length. So the pitch of a train is the least-squares fit of
+    radius = pitch x teeth / (2 pi) to all its base radii. Raises `InputError`: the base pitches of two gears
     that mesh differ by more than `PRINTED`.
     """
     corrected = _corrections(scene)

@@ -70,9 +70,9 @@ def _constant(scene: Scene, coupling: Coupling, matrix: FloatArray) -> FloatArra
     """Return the part of a coupling's `matrix` (6, 6) that no frame turns: all, or motion along the axis."""
     if not scene.crosses_frames(coupling):
         return matrix
-    across = matrix.copy()
-    across[list(ACROSS)], across[:, list(ACROSS)] = 0.0, 0.0
-    return across
+    constant = matrix.copy()
+    constant[list(ACROSS)], constant[:, list(ACROSS)] = 0.0, 0.0
+    return constant
 
 
 def full_matrix(matrix: Matrix | None, torsional: float) -> FloatArray:

@@ -53,5 +53,5 @@ def frame_joint(
     rotation_matrix[:2, :2] = rotation_matrix[3:, 3:] = [[c, -s], [s, c]]
     first, second = (section_rows(rotors, end, part.height)[:SEAT] for end in (part.first, part.second))
     matrix = full_matrix(scene.couplings[part.coupling].stiffness, 0.0)[:SEAT, :SEAT].copy()
-    matrix[2], matrix[:, 2] = 0.0, 0.0
+    matrix[2], matrix[:, 2] = 0.0, 0.0  # no frame turns the part along the axis: `gather_couplings` has it
     return first - rotation_matrix @ second, matrix

@@ -42,6 +42,7 @@ def _lent(rotor: Rotor, behind: Rotor, coupling: Coupling) -> tuple[int, ...]:
     """Return the directions in which the rotor lacks bearings and the coupling has stiffness to offer."""
     matrix = full_matrix(coupling.stiffness, 0.0)
     kinds: tuple[int, ...] = ()
+    # a rotor that could tilt needs a second radial support, away from its first
     if behind.radial_stiffness > 0.0 and (rotor.radial_stiffness == 0.0 or rotor.tilt_stiffness == 0.0):
         kinds += RADIAL
     if behind.axial_stiffness > 0.0 and rotor.axial_stiffness == 0.0:
@@ -52,8 +53,9 @@ def _lent(rotor: Rotor, behind: Rotor, coupling: Coupling) -> tuple[int, ...]:
 
 
 def _holding(scene: Scene, rotor: Rotor, coupling: Coupling, kinds: tuple[int, ...]) -> Rotor:
-    matrix, across = full_matrix(coupling.stiffness, 0.0)[:SEAT, :SEAT], np.zeros((SEAT, SEAT))
-    at = np.ix_(kinds, kinds)
-    across[at] = matrix[at]
+    """Return the rotor with a further support: the coupling's stiffness in the directions `kinds`."""
+    matrix, support = full_matrix(coupling.stiffness, 0.0)[:SEAT, :SEAT], np.zeros((SEAT, SEAT))
+    block = np.ix_(kinds, kinds)
+    support[block] = matrix[block]
     lever = float(scene.shaft(coupling.first).origin[2] + coupling.position - rotor.center[2])
-    return replace(rotor, curved=(*rotor.curved, (across, lever)))
+    return replace(rotor, curved=(*rotor.curved, (support, lever)))

@@ -35,11 +35,12 @@ def nominal_forces(scene: Scene, kinematics: Kinematics, inertia: FloatArray, *,
     force = force[: len(scene.meshes)]
     driving_only = [mesh.coast is None or not coasts for mesh in scene.meshes]
     for index, value in enumerate(force):
-        if value < -1e-9 * np.max(np.abs(force)) and driving_only[index]:
+        if value < -1e-9 * np.max(np.abs(force)) and driving_only[index]:  # smaller: rounding
             bound, suggestion = "loaded on its driving flank", "Turn the load, or give it its coast flank."
             raise InputError(f"meshes[{index}]", Quantity(float(value), "N", digits=6), bound, suggestion)
     balanced = np.where(driving_only, np.maximum(force, 0.0), np.abs(force))
-    return np.array([b if g is None else g for g, b in zip(specified, balanced, strict=True)], dtype=float)
+    pairs = zip(specified, balanced, strict=True)
+    return np.array([balance if force is None else force for force, balance in pairs], dtype=float)
 
 
 def shafts_without_drive(scene: Scene, kinematics: Kinematics) -> list[int]:
@@ -49,7 +50,7 @@ def shafts_without_drive(scene: Scene, kinematics: Kinematics) -> list[int]:
 
 
 def load_moments(scene: Scene, kinematics: Kinematics, moments: FloatArray) -> FloatArray:
-    """Mean load torque about +z on every shaft at `moments` (T,), (s, T)."""
+    """Return the mean load torque about +z on every shaft at the times `moments` (T,), (s, T)."""
     torque = np.zeros((len(scene.shafts), moments.size))
     for load in scene.loads:
         shaft = scene.shaft_index(load.shaft)
@@ -70,10 +71,10 @@ def load_moments(scene: Scene, kinematics: Kinematics, moments: FloatArray) -> F
 
 
 def levers(scene: Scene, kinematics: Kinematics) -> FloatArray:
-    """Torque on each shaft per mesh force (m) and per torque of a coupling, (shafts, meshes + couplings).
+    """Return the torque on each shaft per mesh force, m, and per torque of a coupling, 1.
 
-    The planets' centers go with the carrier, so that a mesh turns it by the difference of what it turns
-    both gears by.
+    Shape (shafts, meshes + couplings). The planets' centers move with the carrier, so that the torque of a
+    mesh on the carrier balances those on its two gears.
     """
     couplings = [coupling for coupling in scene.couplings if coupling.joins_rotations]
     lever = np.zeros((len(scene.shafts), len(scene.meshes) + len(couplings)))
@@ -95,7 +96,7 @@ def levers(scene: Scene, kinematics: Kinematics) -> FloatArray:
 def shaft_acceleration(
     scene: Scene, kinematics: Kinematics, inertia: FloatArray, torque: FloatArray
 ) -> FloatArray:
-    """Angular acceleration of each shaft of trains without a drive, rad/s^2, shaped as `torque` (s, ...)."""
+    """Return the angular acceleration of shafts in trains without a drive, rad/s^2, shaped as `torque`."""
     ratio = kinematics.float_ratio[:, len(scene.drives) :]
     if ratio.shape[1] == 0:
         return np.zeros_like(torque)

@@ -15,9 +15,9 @@ FREQUENCY = 2.0 * math.pi * 1000.0
 
 def under_laws(scene: Scene) -> tuple[Housing, ...]:
     """Return the housings without mass that carry bearings that are not linear."""
-    lawful = {law.bushing for law in scene.bearing_laws}
+    nonlinear = {law.bushing for law in scene.bearing_laws}
     return tuple(
-        part for part in scene.housings if part.mass is None and not lawful.isdisjoint(part.bushings)
+        part for part in scene.housings if part.mass is None and not nonlinear.isdisjoint(part.bushings)
     )
 
 

@@ -1,8 +1,8 @@
 """A scene at its steady temperatures: warm parts in place of the parts as drawn.
 
-All parts expand freely and alike in all directions. Parts whose sizes matter to 1e-4 stay as drawn: lengths,
-radii, base pitches. Differences remain: play and axial force of bearings, center distance, backlash and
-misalignment of meshes.
+All parts expand freely and alike in all directions. Lengths, radii and base pitches stay as drawn: their
+relative change of some 1e-4 is neglected. What depends on small differences of sizes changes: play and axial
+force of bearings, center distance, backlash and misalignment of meshes.
 """
 
 from __future__ import annotations
@@ -23,9 +23,10 @@ from dynamics.temperatures import Temperatures, WarmBearing
 
 
 def warmed_bearings(scene: Scene) -> Scene:
-    """Return `scene` with its bearings as temperatures leave them; itself if they are so or it has none.
+    """Return `scene` with its bearings at temperature.
 
-    Raises `InputError`: a row or a curve of a bearing is none any more.
+    A scene without temperatures, or whose bearings are at temperature already, is returned itself. Raises
+    `InputError`: temperatures change a row or a curve of a bearing beyond its bounds.
     """
     warm = scene.temperatures
     if warm is None or warm.bearings is not None:
@@ -74,7 +75,7 @@ def _seat(warm: Temperatures, shaft: Shaft, position: float) -> Cylinder:
     ends = accumulate(section.length for section in shaft.sections)
     under = [part for part, end in zip(shaft.sections, ends, strict=True) if position <= end]
     if not shaft.sections:
-        return Cylinder(0.0, 1.0, strain=strain)
+        return Cylinder(0.0, 1.0, strain=strain)  # the fits give the diameter of the seat
     seat = under[0] if under else shaft.sections[-1]
     return Cylinder(seat.bore_diameter, seat.outer_diameter, seat.youngs_modulus, seat.poissons_ratio, strain)
 
@@ -88,7 +89,8 @@ def _wall(warm: Temperatures, bearing: RollingBearing) -> Cylinder:
 def _outgrown(scene: Scene, warm: Temperatures, bearing: Bushing | RollingBearing) -> float:
     """Return the expansion of the shaft along z relative to the housing at a bearing, m.
 
-    Where it is held along z it moves by nothing on the average: one bearing locates it, a pair shares.
+    Bearings that hold the shaft along z move by 0 on the average: a single one locates it, a pair shares the
+    expansion between them.
     """
     bearings = on_ground(scene, bearing.shaft)
     axial_positions = [part.position for part in bearings if _holds_axially(scene, part)]

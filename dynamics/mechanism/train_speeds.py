@@ -10,7 +10,9 @@ Row = dict[int, Fraction]
 class TrainSpeeds:
     """All sets of shaft speeds that the meshes joined so far allow, as an exact basis.
 
-    `shafts`: number of shafts, all free at first.
+    `shafts`: number of shafts, all free at first. The basis has two parts: `_set` are the vectors of laws,
+    `_open` those that no law sets. A condition on the speeds, or a law, takes one vector out of `_open` and
+    subtracts a multiple of it from the others, such that they meet the condition.
     """
 
     def __init__(self, shafts: int) -> None:

@@ -14,6 +14,7 @@ def grid_energy(grid: GridTables, flank: int, cell: Cell, deflection: float) -> 
     Its derivatives are those at constant deflection. With levels F_k at deflections d_k and stiffness K_k, a
     whole interval of width h holds h (F_k + F_k+1)/2 + h^2 (K_k - K_k+1)/12.
     """
+    # the table's first level among those of all tables, and the last interval between its levels
     level, last = grid.base.offset[flank, 4], grid.base.offset[flank, 5] - 2
     value, in_x, in_m, in_a = 0.0, 0.0, 0.0, 0.0
     low = sample(grid.number, cell, 0, DEFLECTION)
@@ -43,7 +44,10 @@ def grid_energy(grid: GridTables, flank: int, cell: Cell, deflection: float) -> 
 
 @inner
 def _area(w: float, start: float, top: float, ends: Weights) -> float:
-    """Energy of a level interval up to the fraction `w`; `ends`: deflections, then stiffnesses."""
+    """Return the energy of a level interval up to the fraction `w`; `ends`: deflections, then stiffnesses.
+
+    The force on the interval is start + rise w + c2 w^2 + c3 w^3.
+    """
     span = ends[1] - ends[0]
     rise, fall, step = span * ends[2], span * ends[3], top - start
     c2, c3 = 3.0 * step - 2.0 * rise - fall, rise + fall - 2.0 * step
@@ -52,7 +56,10 @@ def _area(w: float, start: float, top: float, ends: Weights) -> float:
 
 @inner
 def _area_slope(w: float, start: float, top: float, ends: Weights, slopes: Weights) -> float:
-    """Differentiate `_area` as the ends move by `slopes`: at constant deflection, or with w = 1 kept."""
+    """Return the derivative of `_area` as the ends move by `slopes`.
+
+    The deflection stays constant; in an interval below it, where w = 1, w does.
+    """
     span, span_slope = ends[1] - ends[0], slopes[1] - slopes[0]
     rise, fall, step = span * ends[2], span * ends[3], top - start
     c2, c3 = 3.0 * step - 2.0 * rise - fall, rise + fall - 2.0 * step

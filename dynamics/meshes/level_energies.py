@@ -8,14 +8,15 @@ from dynamics.kernels.compiled import compiled
 from dynamics.types import FloatArray
 
 ORDER = 9
-"""Degree in the position: a width, cubic, squared, times a stiffness, cubic."""
+"""Degree in the position: width^2 times stiffness, where both are cubic."""
 
 
 def energy_below(row: FloatArray, level: FloatArray) -> FloatArray:
-    """Return ascending coefficients (P L, ORDER + 1), J, of a table of P `row`s at the levels (L,).
+    """Return ascending coefficients (P L, ORDER + 1), J, of a table at P positions and the levels (L,).
 
-    With levels F_k at deflections d_k(u) and stiffness K_k(u), an interval of width h = d_k+1 - d_k holds
-    h (F_k + F_k+1)/2 + h^2 (K_k - K_k+1)/12; row k has the sum over the intervals below level k.
+    `row` (P L, 8) holds four coefficients of the deflection, then four of the stiffness. With levels F_k at
+    deflections d_k(u) and stiffness K_k(u), an interval of width h = d_k+1 - d_k holds h (F_k + F_k+1)/2 +
+    h^2 (K_k - K_k+1)/12; row k has the sum over the intervals below level k.
     """
     energy = np.zeros((row.shape[0], ORDER + 1))
     _add_intervals(row, level, energy)

@@ -16,7 +16,7 @@ from dynamics.types import FloatArray
 PER_HARMONIC = 64
 """Knots per period of the highest harmonic: cubic pieces are then within 2.5e-7 of its amplitude."""
 LEVEL = 1e3
-"""Force of a table's second level, N; it is straight from lift-off on, so any would do."""
+"""Force of a table's second level, N. Its size is arbitrary: the force is linear from lift-off on."""
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ def stiffness_table(
     error : PeriodicCurve, optional
         e, transmission error without load, m; left out: none.
     teeth : StandardTeeth, optional
-        Whose sliding the table has; left out: it has none.
+        Teeth whose sliding the table has; left out: it has none.
     """
     error = error or PeriodicCurve.constant(0.0)
     position = np.union1d(stiffness.position, error.position)
@@ -103,7 +103,7 @@ def stiffness_table(
     (k, k_slope), (e, e_slope) = stiffness(position), error(position)
     if np.any(k <= 0.0):
         raise InputError("value", float(np.min(k)), "above 0 N/m at all positions, as a stiffness")
-    twice = np.ones((1, 1, 1, 2))
+    twice = np.ones((1, 1, 1, 2))  # over misalignments, center distances, positions, and the two levels
     level = np.array([0.0, LEVEL])
     return PlainTable(
         position=position,

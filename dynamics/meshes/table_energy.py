@@ -1,4 +1,7 @@
-"""Compiled potential energy of a mesh-force table and its derivative in position."""
+"""Compiled potential energy of a mesh-force table and its derivative in position.
+
+A row of a table has the cubic of the deflection from column 0 on, that of the stiffness from column 4 on.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +17,8 @@ def table_energy(
 ) -> tuple[float, float]:
     """Return V = integral of the force over the deflection from lift-off, J, and dV/dx, J per base pitch.
 
-    The intervals below hold ``PackedTables.energy``; the last one is integrated up to `deflection`.
+    ``PackedTables.energy`` gives the energy of the level intervals below that of `deflection`, which itself
+    is integrated up to it.
     """
     row, u, per_width = position_interval(table, flank, position)
     k, low, high = level_interval(table, flank, row, u, deflection, hint)
@@ -51,7 +55,7 @@ def energy_below(table: PackedTables, row: int, u: float) -> tuple[float, float]
 def _interval_energy(
     table: PackedTables, flank: int, row: int, k: int, u: float, w: float, w_slope: float
 ) -> tuple[float, float]:
-    """Energy and its derivative in u of level interval k, up to the fraction w of it (dw/du = w_slope)."""
+    """Return the energy of level interval k up to its fraction w (dw/du = w_slope), and its slope in u."""
     level = table.offset[flank, 4] + k
     span = cubic_value(table.row, row + k + 1, 0, u) - cubic_value(table.row, row + k, 0, u)
     stiff, stiff_end = cubic_value(table.row, row + k, 4, u), cubic_value(table.row, row + k + 1, 4, u)

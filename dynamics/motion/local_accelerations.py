@@ -12,8 +12,9 @@ from dynamics.motion.motion import ACCELERATION
 from dynamics.types import FloatArray
 
 ITERATIONS = 30
-"""Most iterations. Each leaves, of the error, the ratio of the center of mass's distance from the axis to the
-radius of gyration.
+"""Most iterations.
+
+Each multiplies the error by the distance of the center of mass from the axis over the radius of gyration.
 """
 
 
@@ -43,8 +44,8 @@ def settle_unbalance(
 ) -> None:
     """Make unbalances and the accelerations q'' (n,) that they depend on agree.
 
-    `external` (n,) are all forces with those of the elements in ``local.force``, and `acceleration` is what
-    they make; both change along.
+    `external` (n,) are all forces, with those of the elements in ``local.force``, and `acceleration` is the
+    acceleration by them; both are updated.
     """
     elements, sparse = system.elements, system.sparse
     for _ in range(ITERATIONS):

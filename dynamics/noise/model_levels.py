@@ -42,7 +42,7 @@ class ModelLevels:
     predicted: Mapping[str, Cost]
     """Cost of each model on this host, computed or not."""
     replaced: FloatArray | None = None
-    """Natural frequencies at which monopoles say nothing of the mode, Hz; None: there is no estimate."""
+    """Natural frequencies at which monopoles are invalid for the mode, Hz; None: there is no estimate."""
     lines: tuple[ExactLine, ...] | None = None
     """Lines that boundary elements correct; None: they do not correct this housing."""
 
@@ -56,10 +56,10 @@ class ModelLevels:
 def model_levels(
     response: BearingHarmonics, housing: SoundingHousing, sound: RadiatedSound, radiation: Radiation
 ) -> ModelLevels | None:
-    """Return the models at the loudest point of a housing; None of a silent one.
+    """Return the results of the models at the loudest point of a housing; None for a silent one.
 
-    Points that the mesh resolves come first: the others are beyond all models but one. Raises `InputError` as
-    `models_at`.
+    A point whose waves the mesh resolves is preferred: at others only one of the models holds. Raises
+    `InputError` as `models_at`.
     """
     resolved = resolved_frequency(outer_hull(housing.body), Air())
     points = [point for point in loudest(sound) if point.frequency <= resolved] or loudest(sound, 1)
@@ -119,7 +119,7 @@ def _estimate(
     return _Estimate(
         {ESTIMATE: float(sound_power_level(sound.power[at]))},
         {ESTIMATE: band},
-        {ESTIMATE: panels.predicted[MONOPOLES.model_name]},  # which it is made of
+        {ESTIMATE: panels.predicted[MONOPOLES.model_name]},  # the estimate is made of monopoles
         plain.replaced(sound.natural_frequency),
     )
 
@@ -145,6 +145,7 @@ def _exact_lines(
     if corrected is None:
         return _ExactLines(predicted, {}, {}, {})
     omitted = {name: "; ".join(corrected.omitted)} if corrected.omitted else {}
+    # a corrected line holds at frequencies within the ratio `FLAT` of its own
     near = [line for line in corrected.lines if max(line.frequency / hertz, hertz / line.frequency) <= FLAT]
     if not near:
         return _ExactLines(predicted, omitted, {}, {})

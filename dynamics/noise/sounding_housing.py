@@ -39,7 +39,7 @@ class Radiation:
     boundary_elements: bool = True
     """Whether boundary elements correct the loudest lines of the estimate."""
     cache: Path | None = None
-    """Directory of kept results; None: neither read nor written."""
+    """Directory of cached results; None: neither read nor written."""
     progress: Progress = silent
     workers: Workers = field(default_factory=InProcess)
 
@@ -78,16 +78,18 @@ def sounding_housings(
     radiation: Radiation,
     run: RunResult | None = None,
 ) -> tuple[SoundingHousing, ...]:
-    """Return housings with their radiation; lines that boundary elements correct are divided among them.
+    """Return housings with their radiation; the budget of boundary elements is divided among them.
 
-    `run`: whose sound over time the radiation must reach too. Raises `InputError` as `housing_radiation`.
+    `run`: a run whose sound over time the radiation must cover too. Raises `InputError` as
+    `housing_radiation`.
     """
     hertz, budget = _frequencies(response, run), BUDGET / max(len(surfaces), 1)
     model = BoundaryElements(progress=radiation.progress, workers=radiation.workers)
     housings = []
     for surface in surfaces:
         body, bearings = surface.body, surface.bearings
-        plain, corrected = _plain_radiation(body, hertz, radiation), None
+        plain = _plain_radiation(body, hertz, radiation)
+        corrected = None
         if isinstance(plain, EstimatedRadiation) and radiation.boundary_elements:
             corrected = corrected_radiation(response, body, bearings, plain, model, radiation.cache, budget)
         housings.append(SoundingHousing(surface.name, body, bearings, plain, corrected))
@@ -95,7 +97,10 @@ def sounding_housings(
 
 
 def _frequencies(response: BearingHarmonics, run: RunResult | None) -> FloatArray:
-    """Return the frequencies of the orders, and the ends of those left out and of the output of a run, Hz."""
+    """Return the frequencies that the radiation must cover, Hz.
+
+    They are those of the orders, and the ends of the bands of the left-out orders and of a run's output.
+    """
     hertz = response.frequency
     if response.floor is not None:
         hertz = np.append(hertz.ravel(), response.floor.frequency[[0, -1]])

@@ -47,20 +47,20 @@ class ContactChecks:
         ``parted`` is the share of the samples out of contact, ``widest_gap`` in m how far flanks were apart
         along the line of action, ``holds`` whether leaving the coast flank out changed nothing: none parted,
         or the gap stayed below a backlash that is given. ``since`` is the time of the last sample before they
-        parted first, s; None if they never did, or from the start: without effect on what came before.
+        parted first, s, up to which the result holds; None if they never parted, or from the start.
         """
         return [self._check(index) for index in self._watched]
 
     def _check(self, index: int) -> Check:
         mesh, gap = self._system.scene.meshes[index], float(self._gap[index])
         first = int(self._first[index])
-        room = mesh.coast.backlash if mesh.coast is not None else 0.0
+        backlash = mesh.coast.backlash if mesh.coast is not None else 0.0
         return Check(
             self._system.ledger.effect_adding(COAST_FLANKS),
             "coast flanks are not reached",
             mesh.name,
-            bool(gap <= room),
-            _contact_text(gap, mesh.coast is not None, room),
+            bool(gap <= backlash),
+            _contact_text(gap, mesh.coast is not None, backlash),
             {
                 "parted": float(self._parted[index] / max(self._samples, 1)),
                 "widest_gap": gap,
@@ -69,10 +69,10 @@ class ContactChecks:
         )
 
 
-def _contact_text(gap: float, known: bool, room: float) -> str:
+def _contact_text(gap: float, known: bool, backlash: float) -> str:
     if gap == 0.0:
         return "the driving flanks stayed in contact"
-    if known and gap <= room:
+    if known and gap <= backlash:
         return "the flanks lifted off by less than the backlash: the coast flank was not reached"
     if known:
         return "the flanks lifted off by more than the backlash: enable the effect"

@@ -1,4 +1,11 @@
-"""Beam elements of varying cross section, from the flexibility of a clamped piece."""
+"""Beam elements of varying cross section, from the flexibility of a clamped piece.
+
+A piece is clamped at its left end, and a force and a moment act at its right end. Its flexibility gives the
+stiffness matrix, and its deflection along the piece, exact under end loads, the shapes of the mass matrix.
+Axis letters: k pieces, p = n Gauss points along a piece, a deflection and rotation, i and j the freedoms of
+both ends. `at` are properties at the Gauss points; `inside` those at Gauss points of the part left of each of
+them.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +37,7 @@ class Piece(NamedTuple):
 
     @property
     def length(self) -> float:
-        """M."""
+        """Length of the part, m."""
         return (self.end - self.start) * self.section.length
 
 
@@ -73,7 +80,7 @@ def beam_elements(pieces: Sequence[Piece]) -> ElementMatrices:
 
 
 def _along(pieces: Sequence[Piece], share: FloatArray) -> _Along:
-    """Return the properties at shares (...) of the pieces, (k, ...) each."""
+    """Return the properties at shares (...) of the pieces, (k, ...) each, in the order of `_Along`."""
     rows = []
     for section, start, end in pieces:
         cut = section.cross_section(start + share * (end - start))
@@ -92,34 +99,35 @@ def _along(pieces: Sequence[Piece], share: FloatArray) -> _Along:
 
 
 def _bending(length: FloatArray, at: _Along, inside: _Along) -> tuple[FloatArray, FloatArray]:
-    """Mass and stiffness (k, 4, 4) in one plane."""
+    """Return mass and stiffness (k, 4, 4) in one plane."""
     far = length[:, None] * (1.0 - _SHARE)
     step = length[:, None] * _WEIGHT
-    tip = _stacked(
+    flexibility = _stacked(  # deflection and rotation of the right end per force and moment there
         np.sum(step * (far**2 / at.bent + 1.0 / at.sheared), axis=1),
         np.sum(step * far / at.bent, axis=1),
         np.sum(step * far / at.bent, axis=1),
         np.sum(step / at.bent, axis=1),
     )
     unit, zero = np.ones_like(length), np.zeros_like(length)
+    # motion of the right end against a rigid motion with the left end, per freedom: (k, 2, 4)
     relative = np.stack(
         [np.stack([-unit, -length, unit, zero], axis=-1), np.stack([zero, -unit, zero, unit], axis=-1)],
         axis=1,
     )
-    clamped = np.linalg.solve(tip, relative)
+    clamped = np.linalg.solve(flexibility, relative)  # force and moment at the right end
     stiffness = relative.transpose(0, 2, 1) @ clamped
     s = length[:, None] * _SHARE
     shape = _deflection(length, inside) @ clamped[:, None]
-    shape[..., 0, 0] += 1.0
+    shape[..., 0, 0] += 1.0  # the rigid motion with the left end
     shape[..., 0, 1] += s
     shape[..., 1, 1] += 1.0
-    per = np.stack([step * at.mass, step * at.diametral], axis=-1)
-    mass = np.einsum("kpai,kpa,kpaj->kij", shape, per, shape)
+    inertia = np.stack([step * at.mass, step * at.diametral], axis=-1)
+    mass = np.einsum("kpai,kpa,kpaj->kij", shape, inertia, shape)
     return mass, 0.5 * (stiffness + stiffness.transpose(0, 2, 1))
 
 
 def _deflection(length: FloatArray, inside: _Along) -> FloatArray:
-    """Deflection and rotation at the points per force and moment at the right end, (k, n, 2, 2)."""
+    """Return deflection and rotation at the points per force and moment at the right end, (k, n, 2, 2)."""
     s = length[:, None, None] * _SHARE[:, None]
     t, step = s * _SHARE, s * _WEIGHT
     rest, arm = s - t, length[:, None, None] - t
@@ -134,7 +142,7 @@ def _deflection(length: FloatArray, inside: _Along) -> FloatArray:
 def _rod(
     length: FloatArray, at: FloatArray, inside: FloatArray, mass: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return mass and stiffness (k, 2, 2) of rods under tension or torsion; `at`, `inside` of unit length."""
+    """Return mass and stiffness (k, 2, 2) of rods in tension or torsion; `at`, `inside`: their rigidity."""
     step = length[:, None] * _WEIGHT
     total = np.sum(step / at, axis=1)
     extension = np.sum(length[:, None, None] * _SHARE[:, None] * _WEIGHT / inside, axis=-1) / total[:, None]

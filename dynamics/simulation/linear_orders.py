@@ -18,10 +18,10 @@ MAX = 1e6
 
 
 def linear_orders(system: System) -> Json:
-    """Return the entry of the receipt of a run on orders above its band; empty where there are none.
+    """Return the entry of the receipt of a run on orders above its band.
 
-    Nor where linear theory says nothing of the scene. Shafts are resolved to these orders; amplitudes are
-    peak values.
+    It is empty where there are none, or where the scene has no linear response. Shafts are resolved to these
+    orders; amplitudes are peak values.
     """
     scene, sampling = system.scene, system.sampling
     top = sampling.mesh_orders * sampling.mesh_frequency
@@ -34,8 +34,8 @@ def linear_orders(system: System) -> Json:
         time = np.linspace(0.0, scene.duration, SPEED_POINTS)
         speed = np.broadcast_to(np.abs(law.speed(time)), time.shape)
         fastest = int(np.argmax(speed))
-        orders = sampling.mesh_orders, float(time[fastest])
-        response = harmonic_response(resolved, speed[fastest : fastest + 1], *orders)
+        instant = float(time[fastest])
+        response = harmonic_response(resolved, speed[fastest : fastest + 1], sampling.mesh_orders, instant)
     except (InputError, SolveError):
         return {}
     return {"linear_orders": _above(response, sampling.band)}

@@ -1,8 +1,9 @@
-"""The step error of a whole run, where windows cannot see it: against a run at a tenth of its tolerance.
+"""The step error of a whole run, measured against a run at a tenth of its tolerance.
 
-Windows start from the state of the run, so they see no error that this state carries. It carries those of all
-impacts, and of the whole past where vibration decays slowly. A motion in which such an error grows to a tenth
-of the vibration and stays there is chaotic: its trace is one drawing of many; levels and peaks have errors.
+Usually short windows of a run are run again. They start from the state of the run, so they see no error that
+this state carries. It carries those of all impacts, and of the whole past where vibration decays slowly. A
+motion in which such an error grows to a tenth of the vibration and stays there is chaotic: its trace is one
+random sample of many, so that errors are stated for its levels and peaks instead.
 """
 
 from __future__ import annotations
@@ -163,17 +164,16 @@ class RunPair:
     def _orders(self, first: int, stop: int) -> _Orders:
         first = max(first, stop - PART_SAMPLES)
         time = np.arange(first, stop) / self.system.sampling.rate
-        (position, error, force), (_, other, pushed) = (
-            observed_signals(self.system, time, of(first, stop)) for of in (self.run, self.finer)
-        )
+        position, error, force = observed_signals(self.system, time, self.run(first, stop))
+        _, finer_error, finer_force = observed_signals(self.system, time, self.finer(first, stop))
         count = min((orders_seen(at, ORDERS) for at in position), default=0)
         if stop - first < 2 or np.ptp(position[0]) < 1.0:
             count = 0
-        traces = np.array([error, other, error - other])
+        traces = np.array([error, finer_error, error - finer_error])
         by_error = np.stack(
             [order_amplitudes(at, traces[:, m], count) for m, at in enumerate(position)], axis=1
         )
-        forces = np.array([force, pushed, force - pushed])
+        forces = np.array([force, finer_force, force - finer_force])
         by_force = np.linalg.norm(order_amplitudes(position[0], forces, count), axis=2)
         return _Orders(by_error[:2], by_error[2], by_force[:2], by_force[2])
 
@@ -232,10 +232,10 @@ def _of_levels(traces: Sequence[_Traces], orders: Sequence[_Orders]) -> Json:
 
 
 def level_error(power: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return errors of amplitudes and of levels (dB) of the mean of `power` (B, 2, ...) over B parts.
+    """Return the errors of the mean of `power` (B, 2, ...) over B parts, as amplitudes and as levels in dB.
 
-    Two runs of a chaotic motion are two drawings of it: their difference in a part has twice the variance of
-    the power there, and so has that of the run from the truth.
+    Two runs of a chaotic motion are two random samples of it: their difference in a part has twice the
+    variance of the power there. The difference of the run from the truth, a third sample, has the same.
     """
     mean = np.mean(power[:, 0], axis=0)
     spread = SPREAD * np.sqrt(np.mean((power[:, 0] - power[:, 1]) ** 2, axis=0) / len(power))

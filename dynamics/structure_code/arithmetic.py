@@ -1,5 +1,6 @@
-"""Arithmetic of loops written out: on numbers known beforehand at once, on others as instructions.
+"""Arithmetic of loops written out as instructions of LLVM.
 
+Operations on numbers that are known beforehand are done at once; on others an instruction is written.
 Operations, their order and their rounding are those of the ordinary compiled loops.
 """
 
@@ -20,6 +21,7 @@ from dynamics.kernels.by_address import WORD
 FLOAT, FLAG, BYTE = ir.DoubleType(), ir.IntType(1), ir.IntType(8)
 TYPES: dict[type, Any] = {float: FLOAT, int: WORD, bool: FLAG}
 Scalar = bool | int | float
+# the function of known numbers, then the instructions on floats and on integers; empty: there is none
 _BINARY: dict[type, tuple[Callable[..., Any], str, str]] = {
     ast.Add: (operator.add, "fadd", "add"),
     ast.Sub: (operator.sub, "fsub", "sub"),
@@ -118,7 +120,7 @@ class Arithmetic:
         return square if exponent == 2 else self.binary(ast.Mult(), square, base)
 
     def unary(self, op: ast.unaryop, value: Any) -> Any:
-        """Return a number with its sign changed, or a truth denied."""
+        """Return a number with its sign changed, or the negation of a truth value."""
         if not isinstance(value, Value):
             return _UNARY[type(op)](value)
         if isinstance(op, ast.Not):

@@ -19,8 +19,8 @@ POINTER = WORD.as_pointer()
 MAX_EXPRESSIONS = 150_000
 """Most expressions of a module: beyond them compiling takes longer than runs do."""
 FEW_EXPRESSIONS = 500
-"""Most expressions of a function that is written anew for known numbers, though it could be for any: a
-frame's terms have 300.
+"""Most expressions of a function that is written once for each set of known numbers although one for any
+numbers is possible; the terms of a frame have 300.
 """
 
 
@@ -30,7 +30,7 @@ class Module:
     Attributes
     ----------
     expressions : int
-        Read so far: what compiling takes grows with them.
+        Number of expressions read so far; the time of compiling grows with it.
     """
 
     def __init__(self) -> None:
@@ -47,7 +47,7 @@ class Module:
             raise Unsupported("the structure is too large")
 
     def alias(self, array: Any) -> Any:
-        """Return the mark of accesses of an array; arrays with another first item have another one."""
+        """Return the metadata that mark accesses of an array; arrays at another address have others."""
         address = array.__array_interface__["data"][0] if array.size else -id(array)
         if address not in self._aliases:
             kind = self.module.add_metadata([str(len(self._aliases)), self._root, WORD(0)])
@@ -65,10 +65,10 @@ class Module:
         self._write(python, exported, [next(groups) if kind is POINTER else number for kind in kinds])
 
     def function(self, routine: Routine, values: Sequence[Any]) -> Any:
-        """Return the function of `routine` for these tuples and numbers of any value.
+        """Return the function of `routine` for these tuples, and for numbers of any value if possible.
 
-        Where it reads known items by a number, and cannot otherwise be written or is short, it is one for the
-        known numbers among `values`.
+        A routine that reads known items by a number is written for the known numbers among `values` instead,
+        if it is short or cannot be written otherwise.
         """
         tuples = tuple(id(value.value) for value in values if isinstance(value, Group))
         key: tuple[Any, ...] = (routine.symbol, tuples)
@@ -92,7 +92,10 @@ class Module:
         return function if self._write(unwrap(routine), function, values) else None
 
     def _write(self, python: Any, function: Any, values: Sequence[Any]) -> bool:
-        """Write `python` for these tuples and numbers; return whether it is what a caller wants."""
+        """Write `python` for these tuples and numbers; return whether to use it.
+
+        A function for any numbers that could read known items (`lost`) is used only if it is long.
+        """
         arguments = [
             replace(value, pointer=argument) if isinstance(value, Group) else _operand(value, argument)
             for value, argument in zip(values, function.args, strict=True)

@@ -1,8 +1,8 @@
 """Functions of compiled loops, read as Python and written out statement by statement.
 
 Branches and loops that known numbers decide are decided here: loops over them are unrolled. A loop whose
-passes all do the same with numbers stays a loop. Names that a branch or a loop of the other kind assigns
-become variables: which of their values holds is known when it runs.
+passes all do the same with numbers stays a loop. Other branches and loops are decided when the code runs; the
+names that they assign become variables.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from dynamics.structure_code.function import (
 )
 
 FEW, MANY = 4, 16
-"""Passes up to which a loop is always unrolled, and from which a product of a long row is not."""
+"""Passes up to which a loop is always unrolled, and above which a plain loop (`is_plain`) is never."""
 
 
 class Statements(ArrayAccess):
@@ -198,7 +198,7 @@ class Statements(ArrayAccess):
 
     @contextmanager
     def _undecided(self, *nodes: ast.stmt) -> Iterator[None]:
-        """Make variables of the names that the statements assign, but for those that they alone read."""
+        """Make variables of the names that the statements assign, except those that only they read."""
         names, within = self.frame.names, sum(map(reads_in, nodes), Counter())
         assigned = frozenset().union(*map(assigned_in, nodes))
         for name in sorted(assigned):
@@ -275,8 +275,9 @@ class Statements(ArrayAccess):
             return False
         if self.frame.sums:
             raise Unsupported("sums whose order the compiler chooses")
-        passes = 0 if not known or has_in(node, ast.Break) else stop - start
-        if 0 < passes <= FEW or (passes and not self._even(node) and not (passes > MANY and is_plain(node))):
+        passes = 0 if not known or has_in(node, ast.Break) else stop - start  # 0: cannot be unrolled
+        is_long = passes > MANY and is_plain(node)
+        if 0 < passes <= FEW or (passes and not self._even(node) and not is_long):
             return self._unrolled(node, range(start, stop, step), result)
         return self._loop(node, start, stop, step, result)
 

@@ -29,14 +29,14 @@ def table_of_solution(
     Parameters
     ----------
     position : ndarray, shape (P,)
-        Those of one base pitch, which the solution may repeat.
+        Positions of one base pitch; the solution may have them in several.
     misalignment : float
         m.
     """
     period = len(solution.deflection) // position.size
     fields = contact_fields(pair, problem, solution)
     if period == 1:
-        del fields["pair_pressure"]
+        del fields["pair_pressure"]  # only tables of several base pitches store it
     return SteDatabase(
         position=(np.arange(period)[:, None] + position).ravel(),
         force=solution.load,
@@ -54,7 +54,7 @@ def table_of_solution(
 
 
 def table_fields(points: OperatingPoints, contacts: Sequence[SolvedContact]) -> dict[str, NDArray[Any]]:
-    """Arrays of the database at the requested loads, (P, F, M, D, ...), and its pair axis."""
+    """Return the arrays of the database at the requested loads, (P, F, M, D, ...), and its pair axis."""
     pair_of_candidates = np.concatenate([contact.problem.candidates.pair for contact in contacts])
     pairs = np.arange(pair_of_candidates.min(), pair_of_candidates.max() + 1)
     stored = [dict(contact.stored) for contact in contacts]
@@ -72,7 +72,7 @@ def table_fields(points: OperatingPoints, contacts: Sequence[SolvedContact]) -> 
 
 
 def table_support(points: OperatingPoints, contacts: Sequence[SolvedContact]) -> dict[str, NDArray[Any]]:
-    """Support loads that converged everywhere, and their arrays (P, S, M, D)."""
+    """Return the support loads that converged everywhere, and their arrays (P, S, M, D)."""
     good = np.all([contact.solution.status == Status.CONVERGED for contact in contacts], axis=(0, 1))
     arrays = {
         name: points.gathered([contact.stored[name][:, good] for contact in contacts]) for name in OF_SUPPORT

@@ -1,4 +1,4 @@
-"""Size of the part of a compliance that is cached: it is not computed, and takes as much memory."""
+"""Sizes of cached compliances: what is cached is not computed again, and takes as much memory."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from fe_contact.mesh.bore_support import PlaneStrain, bore_support
 
 
 def solid_cached(gear: Toothing, recipe: SectorRecipe, cache: Path | None) -> int:
-    """Return the bytes of the compliance over the face that is kept, 0 if it is not."""
+    """Return the bytes of the cached compliance over the face, 0 if it is not cached."""
     if cache is None:
         return 0
     support = bore_support(gear.right_handed())
@@ -23,7 +23,10 @@ def solid_cached(gear: Toothing, recipe: SectorRecipe, cache: Path | None) -> in
 
 
 def free_ends_cached(gear: Toothing, recipe: SectorRecipe, teeth: int, cache: Path | None) -> int:
-    """Return the bytes kept of the solids that correct the plane with `teeth` teeth; 0 if one is missing."""
+    """Return the bytes of the cached solids by which a plane of `teeth` teeth is corrected for its free ends.
+
+    0 if one of both solids is not cached.
+    """
     if cache is None:
         return 0
     gear, reach = gear.whole, min(teeth - 1, gear.teeth // 2)
@@ -37,7 +40,7 @@ def free_ends_cached(gear: Toothing, recipe: SectorRecipe, teeth: int, cache: Pa
 def section_cached(
     gear: Toothing, recipe: MeshRecipe, hypothesis: PlaneHypothesis, teeth: int, cache: Path | None
 ) -> int:
-    """Return the bytes of the compliance of `teeth` teeth in the plane that is kept, 0 if it is not."""
+    """Return the bytes of the cached compliance of `teeth` teeth in the plane, 0 if it is not cached."""
     if cache is None:
         return 0
     count = condensed_teeth(gear, recipe, teeth)

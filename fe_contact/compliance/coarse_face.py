@@ -43,6 +43,7 @@ class _CoarseFace:
 
         `frames` (m, 20, 3, 3) are the axes of the nodes above; those of this face are cylindrical.
         """
+        # axes: element, node and Cartesian component, then node and component of the freedom
         transform = np.zeros((len(frames), 20, 3, 20, 3))
         free_nodes = np.setdiff1d(np.arange(20), LOWER_FACE)
         transform[:, free_nodes, :, free_nodes] = frames[:, free_nodes].transpose(1, 0, 2, 3)
@@ -60,6 +61,7 @@ def coarse_face(section: FloatArray, thickness: float, angle: float, half: int) 
     `section` (m, 8, 2) are their section nodes at the middle of the thin layer, which turns by `angle` in
     rad, m.
     """
+    # levels count from the middle of the thin layer in its thickness; the coarse face is two thicknesses high
     nodes = above(section[:, SIDE], ACROSS - 0.5 * half, thickness, angle)
     return _CoarseFace(nodes, face_functions(ALONG, 0.5 * (ACROSS + half)))
 

@@ -1,4 +1,9 @@
-"""Prediction of the cost of a three-dimensional flank compliance."""
+"""Prediction of the cost of a three-dimensional flank compliance.
+
+The sector of a tooth is condensed to its flank and to its two cuts, the faces to the neighboring sectors.
+Then the flank is held, the ring of all sectors is closed harmonic by harmonic, and the displacements are
+summed.
+"""
 
 from __future__ import annotations
 
@@ -20,9 +25,9 @@ from fe_contact.mesh.swept_sector import swept_sector
 from host import cpu_seconds
 from model_studies.host_speed import cached_speed
 
-RANK_SHARE = 0.23  # flank loads that are solved for over flank freedoms, at most; measured 0.22 to 0.24
+RANK_SHARE = 0.23  # most flank loads that the ring is solved for, over flank freedoms; measured 0.22 to 0.24
 
-RANK, RANK_FACE = 45.0, 6.0  # the same of fine meshes: so many and so many for each module of the face
+RANK, RANK_FACE = 45.0, 6.0  # most flank loads on fine meshes: a number, and more for each module of the face
 
 SPACE = 2.2  # dimension of the space of solutions over loads; measured 2.0 to 2.5
 
@@ -39,7 +44,7 @@ ELEMENT = 4e6  # one element matrix, likewise
 
 CHECKED = 130.0  # one number of a factor that the checks pass over, likewise
 
-KEEPING = 1000.0  # one number of the result that is hashed, written and mirrored, likewise
+KEEPING = 1000.0  # one number of the result in the cache: hashed, written and mirrored, likewise
 
 RING_LOSS = 1.6  # time of the ring's steps over that of their operations at the dense rate
 

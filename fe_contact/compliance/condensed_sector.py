@@ -66,7 +66,7 @@ def condense_sector(mesh: GearMesh, matrix: sp.csc_array, normals: FloatArray) -
     Parameters
     ----------
     mesh : GearMesh
-        Its sector and whether the sector's bottom is the clamped bore matter.
+        Mesh of a gear. Its sector is condensed; without a hub the bottom of the sector is the clamped bore.
     matrix : (2n, 2n) sparse array
         Stiffness of the sector, N/m per m.
     normals : (k, 2) array

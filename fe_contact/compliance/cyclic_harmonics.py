@@ -1,4 +1,8 @@
-"""Loads that turn from tooth to tooth of a ring, harmonic by harmonic, and the sum of their displacements."""
+"""Loads that turn from tooth to tooth of a ring, harmonic by harmonic, and the sum of their displacements.
+
+A cut is the face between two neighboring sectors, with nc freedoms. Cuts are scaled such that the stiffness
+of a cut against itself is the unit matrix. C is the stiffness between the two cuts of a sector.
+"""
 
 from __future__ import annotations
 
@@ -76,7 +80,7 @@ def left_cuts(solutions: Iterable[ComplexArray], teeth: int, reach: int, first: 
     solutions : iterable of (nc, p) array
         Left cut of sector 0 under loads that turn from tooth to tooth, by harmonic.
     teeth, reach : int
-        See `close_ring`.
+        Number of teeth of the ring, and largest distance of teeth whose displacements are wanted.
     first : int
         Number of loads that only the sectors -reach - 1 .. reach are wanted for.
     """

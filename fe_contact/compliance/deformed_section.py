@@ -57,8 +57,8 @@ def _field(ring: Ring, load: Mapping[int, FloatArray]) -> Field:
 
 def _deformed(ring: Ring, field: Field, lame: tuple[float, float], out_of_plane: float) -> DeformedGear:
     mesh = ring.mesh
-    out = field.load - field.internal
-    out[mesh.bore_nodes] = 0.0
+    unbalanced = field.load - field.internal
+    unbalanced[mesh.bore_nodes] = 0.0  # the bore is held
     quality = mesh_quality(mesh.points, mesh.triangles)
     stress = element_stress(mesh, field.displacement, lame, out_of_plane)
     inward = {
@@ -76,7 +76,7 @@ def _deformed(ring: Ring, field: Field, lame: tuple[float, float], out_of_plane:
             "scaled_jacobian": quality.scaled_jacobian,
         },
         flank_displacement=inward,
-        residual=float(np.linalg.norm(out) / np.linalg.norm(field.load)),
+        residual=float(np.linalg.norm(unbalanced) / np.linalg.norm(field.load)),
     )
 
 

@@ -1,8 +1,9 @@
 """Compiled sums of a front: the updates of its children and the matrices of its elements.
 
 The blocks of a front are parts of the lower triangle of its matrix, column by column in flat memory: of the
-inner freedoms (i, i), of the border by the inner ones (b, i), and of the border (b, b). An update is the
-lower triangle of what is left of the last one, its columns packed: the first of b numbers, the last of one.
+inner freedoms (i, i), of the border by the inner ones (b, i), and of the border (b, b). After the elimination
+of the inner freedoms the border block holds the update of the parent front. An update is stored as the lower
+triangle, its columns packed: the first has b numbers, the last one.
 """
 
 from __future__ import annotations

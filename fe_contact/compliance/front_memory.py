@@ -1,8 +1,9 @@
-"""Memory of the fronts of one elimination, as large as its tree says.
+"""Memory of the fronts of one elimination, whose sizes follow from its tree.
 
-Three pieces in place of three for every front: the system clears large pages once and not as many small ones
-again for each front. Within `shared_factors` eliminations take the piece of the factors one after the other:
-fresh pages have to be cleared, and a virtual machine first gets them from its host, at ten times the cost.
+All fronts share three arrays (factors, border block, updates), so that the system clears fresh memory once
+and not again for every front. Within `shared_factors` the array of the factors serves one elimination after
+the other: fresh memory has to be cleared, and a virtual machine first gets it from its host, at ten times the
+cost.
 """
 
 from __future__ import annotations
@@ -20,16 +21,18 @@ from fe_contact.compliance.front_assembly import pack
 from fe_contact.types import FloatArray
 
 _UNUSED = 3
-"""References to a shared piece that no factor is part of: of its list, of a name here, and of the count."""
+"""References to a shared array of which no view is in use: its list, the local name, and the argument of
+`sys.getrefcount`.
+"""
 _shared: ContextVar[list[FloatArray] | None] = ContextVar("shared", default=None)
-"""Piece for factors that eliminations of this context share, alone in its list."""
+"""List of the one array for factors that eliminations of this context share; None: they share none."""
 
 
 @contextmanager
 def shared_factors() -> Iterator[None]:
-    """Let eliminations within take the memory of the factors of those before them, once these are gone.
+    """Let each elimination within take the memory of the factors of the one before, once these are deleted.
 
-    It stays until the end: the largest elimination comes first.
+    The memory is freed at the end. It is allocated once if the largest elimination comes first.
     """
     token = _shared.set([])
     try:
@@ -39,7 +42,7 @@ def shared_factors() -> Iterator[None]:
 
 
 def _factor_memory(size: int) -> FloatArray:
-    """Return memory of `size` numbers, which hold anything."""
+    """Return memory of `size` numbers, not initialized."""
     shared = _shared.get()
     if shared is None:
         return np.empty(size)
@@ -52,7 +55,7 @@ def _factor_memory(size: int) -> FloatArray:
 
 
 class FrontBlocks(NamedTuple):
-    """Lower triangle of a front by blocks, flat and column by column; at first they hold anything."""
+    """Lower triangle of a front by blocks, flat and column by column; not initialized at first."""
 
     within: FloatArray
     """Block of the i inner freedoms of a front, i * i numbers."""

@@ -29,6 +29,8 @@ def gear_checks(gear: CondensedGear, loads: FloatArray, lever: float, bore_radiu
     bore_radius : float
         m.
     """
+    # fields of sector 0 under the first probe load: on tooth 0; with the `shares` on all teeth, which consist
+    # of solved harmonics alone (`solved`); and the sum of the latter over all sectors (`turning`)
     load, ring, sector = loads[:, :1], gear.ring, gear.sector
     solved = replace(gear, ring=replace(ring, left=ring.solved))
     everywhere = np.tile(ring.solved.sum(axis=0), (2, 1))[:, :1]
@@ -85,14 +87,14 @@ def residual(gear: CondensedGear, forces: FloatArray, load: FloatArray, shares: 
     sector = gear.sector
     free = sector.element_freedoms >= 0
     inside = np.bincount(sector.element_freedoms[free], forces[free], minlength=sector.size)
-    out: FloatArray = -inside.astype(float)
-    out[sector.loaded] += shares[0] * load[:, 0]
+    unbalanced: FloatArray = -inside.astype(float)
+    unbalanced[sector.loaded] += shares[0] * load[:, 0]
     size = gear.condensed.cut_size
-    out[sector.left] -= gear.cut_forces(1, shares[1] * load)[size:, 0]
-    out[sector.right] -= gear.cut_forces(-1, shares[-1] * load)[:size, 0]
+    unbalanced[sector.left] -= gear.cut_forces(1, shares[1] * load)[size:, 0]
+    unbalanced[sector.right] -= gear.cut_forces(-1, shares[-1] * load)[:size, 0]
     for cut in (sector.left, sector.right):
-        out[cut] -= gear.ring.restraining[:, 0]
-    return float(np.linalg.norm(out) / np.linalg.norm(load))
+        unbalanced[cut] -= gear.ring.restraining[:, 0]
+    return float(np.linalg.norm(unbalanced) / np.linalg.norm(load))
 
 
 def _bore_moment(gear: CondensedGear, forces: FloatArray, bore_radius: float) -> float:
@@ -111,9 +113,10 @@ def _bore_moment(gear: CondensedGear, forces: FloatArray, bore_radius: float) ->
 
 
 def _reciprocity(gear: CondensedGear, loads: FloatArray) -> float:
-    """Return how far the work of one probe load on the other's displacement, tooth to tooth, is not mutual.
+    """Return the largest relative error of reciprocity between loads on two teeth.
 
-    Also the asymmetry of S_0 over its largest entry.
+    The work of one probe load on tooth m by the displacement under another on tooth 0 must equal that with
+    both exchanged. The asymmetry of S_0 over its largest entry counts too.
     """
     reach = len(gear.ring.blocks) - 1
     works = {m: loads.T @ gear.flank(m, loads) for m in range(-reach, reach + 1)}
@@ -124,12 +127,15 @@ def _reciprocity(gear: CondensedGear, loads: FloatArray) -> float:
 
 
 def least_eigenvalue(matrix: FloatArray) -> float:
-    """Return the least eigenvalue of a symmetric matrix by inverse iteration, minus its norm if none."""
+    """Return the least eigenvalue of a symmetric matrix by inverse iteration.
+
+    The result is minus the norm of the matrix if it is not positive definite.
+    """
     try:
         factor = cho_factor(matrix, lower=True)
     except np.linalg.LinAlgError:
         return -float(np.linalg.norm(matrix))
-    vector = np.cos(np.arange(len(matrix), dtype=float))  # of no particular shape, and the same every time
+    vector = np.cos(np.arange(len(matrix), dtype=float))  # an arbitrary start, the same every time
     value = np.inf
     for _ in range(INVERSE_ITERATIONS):
         vector /= np.linalg.norm(vector)

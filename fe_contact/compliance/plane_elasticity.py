@@ -31,7 +31,7 @@ def stiffness_matrix(
     lame : (float, float)
         lambda and mu of the plane problem, Pa.
     thickness : (m,) array or float
-        Of the elements, in units of thickness.
+        Thickness of the elements over the unit thickness.
 
     Returns
     -------

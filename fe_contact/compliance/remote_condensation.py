@@ -37,7 +37,7 @@ class _Solid:
 
 
 def condensing(workers: Workers) -> Workers:
-    """Return who condenses gears: their results are kept by the cache, nobody else need remember them."""
+    """Return the workers that condense gears: those that do not remember results, which the cache holds."""
     return workers.others if isinstance(workers, Remembering) else workers
 
 

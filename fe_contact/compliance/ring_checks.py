@@ -123,13 +123,13 @@ def ring_checks(ring: Ring, tooth_index: int, load: _FlankLoad, matrix: FloatArr
     works = [float(np.sum(field.displacement * forces)) for forces in (field.internal, field.load)]
     works.append(load.work(matrix))
     stiffness = np.repeat(_stiffness_alone(ring), 2)
-    left = left_by_rounding(stiffness, field.displacement.ravel(), field.load, works[0])
+    unbalanced, energy = left_by_rounding(stiffness, field.displacement.ravel(), field.load, works[0])
     return ComplianceChecks(
         residual=float(np.linalg.norm(out_of_balance) / np.linalg.norm(field.load)),
         reciprocity=float(np.abs(matrix - matrix.T).max() / np.abs(matrix).max()),
         bore_moment=abs(moment + load.moment) / load.moment,
         energy=float(np.ptp(works) / works[0]),
         least_eigenvalue=float(eigh(matrix, subset_by_index=[0, 0], eigvals_only=True)[0]),
-        residual_rounding=left[0],
-        energy_rounding=left[1],
+        residual_rounding=unbalanced,
+        energy_rounding=energy,
     )

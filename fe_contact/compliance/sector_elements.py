@@ -95,13 +95,15 @@ def sector_elements(gear: Toothing, section: QuadSector, sector: SweptSector) ->
     parts = []
     for batch in bodies:
         local, frames = placed_layer(section, batch, axes, twist(gear))
+        # heights of the middles of the layers, which lie at half numbers between the ends of the layers
         middle = np.interp(
             sector.grid_cell[batch.elements[:, 0], 2], np.arange(len(sector.layers.ends)), sector.layers.ends
         )
         turns = np.stack([turn_about_axis(twist(gear) * float(z)) for z in middle])
         nodes[batch.elements] = np.einsum("cxy,mpy->cmpx", turns, local)
         nodes[batch.elements, :, 2] += middle[:, None, None]
-        mesh, (inner, outer) = hexahedra(local), (0.5 * (at.T + 1.0) for at in (INNER, REFERENCE))
+        mesh = hexahedra(local)
+        inner, outer = (0.5 * (at.T + 1.0) for at in (INNER, REFERENCE))  # in 0 .. 1, as scikit-fem has them
         volume = determinants(mesh, np.hstack([inner, outer]))
         jacobian[batch.elements] = volume.min(axis=1) / np.abs(volume).max(axis=1)
         parts.append(_Part(batch.elements, frames, gradients(mesh, inner), turns))

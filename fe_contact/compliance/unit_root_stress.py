@@ -2,8 +2,8 @@
 
 Mesh and hypotheses are those of the flank compliances. The stress is computed on request only.
 
-In the plane, with the sector's stiffness split as in `ring_2d` and R the rows that make stresses of
-displacements,
+In the plane, with the stiffness K of the sector split into interior i and boundary b, the forces N q on the
+flank, and R the rows that give stresses by displacements u,
 
     sigma = R_i u_i + R_b u_b = (N' X)' q + (R_b - X' K_ib) u_b,    X = K_ii^-1 R_i',
 
@@ -205,7 +205,10 @@ def _compute_in_plane(
 
 
 def _unit_load_stress(ring: Ring, functionals: sp.csr_array, tooth: int, index: IntArray) -> FloatArray:
-    """Return the stresses (t, r, k) of tooth `tooth` by how far it is ahead of the loaded ones of `index`."""
+    """Return the stresses (t, r, k) of tooth `tooth` under unit forces on each of t teeth.
+
+    They are in the order in which `tooth` is -t // 2 to t // 2 teeth ahead of the loaded one.
+    """
     sector = ring.sector
     inner, border = sector.interior, freedoms(sector.boundary)
     by_row = sector.solve(functionals[:, inner].T.toarray())
@@ -214,7 +217,7 @@ def _unit_load_stress(ring: Ring, functionals: sp.csr_array, tooth: int, index: 
     right = np.zeros((ring.matrix.shape[0], len(on_border)))
     right[ring.rows(tooth)] = ring.turned(tooth, on_border.T)
     shared = ring.solve(right)
-    # Tooth `own` is n ahead of tooth own - n.
+    # `tooth` is n ahead of tooth - n; `index` holds tooth + n for increasing n
     loaded = 2 * tooth - index
     stress = np.stack([shared[ring.rows(int(i))].T @ ring.turned(int(i), sector.transmitted) for i in loaded])
     stress[len(index) // 2] += local

@@ -12,24 +12,24 @@ from fe_contact.types import BoolArray, FloatArray
 from host.loops import njit
 
 _EDGE = 0.08
-"""Slope against the flank from which on a break is an edge: less than any chamfer's, more than a relief's."""
+"""Least jump of slope at a break of the gap that is an edge: below any chamfer's, above any relief's."""
 
 
 def contact_pressure(problem: ContactProblem, force: FloatArray) -> tuple[FloatArray, BoolArray]:
     """Return the peak pressure of each contact in Pa, and whether its strip reaches an edge, (P, L, n).
 
-    It is 2 p/(pi h), the peak of an elliptic pressure over the strip 2 h as it is: Hertz's on a plain flank.
-    Where a relief begins the pressure of a sharp kink is infinite at a point; this is the mean over the
-    strip, times 4/pi. At the edge of a tip or of its chamfer, which is never sharp, it is Hertz's as if the
-    flank went on, which only indicates how hard the edge presses: there the pressure is singular. A rounded
-    tip is what it is. `force`: normal forces, N.
+    It is 2 p/(pi h), the peak of an elliptic pressure over the strip 2 h of the true gap: Hertz's on a plain
+    flank. Where a relief begins the pressure of a sharp kink is infinite at a point; this is the mean over
+    the strip, times 4/pi. At the edge of a tip or of its chamfer the pressure is singular too; the result is
+    Hertz's as if the flank went on, which only indicates how hard the edge presses. A rounded tip is part of
+    the gap. `force`: normal forces, N.
     """
     candidates = problem.candidates
     loaded = np.nonzero(force.any(axis=1))
-    gap, none = candidates.gap_at(loaded), np.full(loaded[0].size, np.inf)
+    gap, infinite = candidates.gap_at(loaded), np.full(loaded[0].size, np.inf)
     line_load = np.moveaxis(force, 1, 2)[loaded] / candidates.width[loaded][:, None]
     at_edge = (gap.low >= 0.0) | (gap.high <= 0.0)
-    endless = _unchamfered(gap)._replace(low=-none, high=none)
+    endless = _unchamfered(gap)._replace(low=-infinite, high=infinite)
     endless = endless._replace(slope=np.where(at_edge, 0.0, endless.slope))
     half = _strips(gap_table(endless), line_load, problem.modulus)
     chamfer = np.where(gap.jump >= _EDGE, np.abs(gap.offset), np.inf).min(axis=-1, initial=np.inf)
@@ -46,8 +46,8 @@ def contact_pressure(problem: ContactProblem, force: FloatArray) -> tuple[FloatA
 def _unchamfered(about: Gap) -> Gap:
     """Return the gaps as if flanks went on over their chamfers.
 
-    At an edge that holds the touching point slope and curvature are those to its left: a chamfer's, or else
-    what the chamfer to the right of it is added to.
+    Where the touching point is an edge, the gap has the slope and curvature to the left of it. There is
+    either the chamfer, whose part is taken off, or the flank, with the chamfer to the right.
     """
     chamfer = about.jump >= _EDGE
     at_chamfer = chamfer & (about.offset == 0.0)

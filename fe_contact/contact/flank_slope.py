@@ -17,9 +17,10 @@ def flank_slope(
     s: tuple[FloatArray, FloatArray],
     step: FloatArray,
 ) -> FloatArray:
-    """Return how fast the material removed from a flank grows over its roll length, of a ring as that falls.
+    """Return the slope of the material removed from a flank over its roll length, towards the tip.
 
-    By differences over about a contact strip, within the flank.
+    Towards the tip the roll length of a ring gear falls. The slope is a difference over about a contact
+    strip, within the flank.
 
     Parameters
     ----------
@@ -44,7 +45,7 @@ def flank_slope(
 
 
 def rolls_at(pair: ParallelAxes, s_1: FloatArray, s_2: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Roll lengths in m of flank coordinates of both gears."""
+    """Return the roll lengths in m at flank coordinates of both gears."""
     return (
         np.sqrt(2.0 * pair.pinion.base_radius * np.maximum(s_1, 0.0)),
         np.sqrt(2.0 * pair.wheel.base_radius * np.maximum(pair.wheel.sign * s_2, 0.0)),

@@ -41,13 +41,14 @@ def load_weights(
     """
     c = problem.candidates
     shares = c.torque_share * np.concatenate([np.ones((1, *c.gap.shape)), rows])
+    # S times the torque share n, and times its products with the quantities
     pushed = np.zeros((len(shares), *solution.force.shape))
-    middle, half = np.zeros((2, *solution.force.shape))
+    middle, half = np.zeros((2, *solution.force.shape))  # further results of `weigh`, not used here
     weigh(point_problems(problem), solution.force, shares, pushed, middle, half)
-    stiffness, *of_rows = np.einsum("rplm,pm->rpl", pushed, c.motion_arm)
+    stiffness, *row_slopes = np.einsum("rplm,pm->rpl", pushed, c.motion_arm)
     weight = pushed[0] / stiffness[..., None]
     weights = [
-        (more[..., None] * weight - nominal) / solution.load[:, None]
-        for more, nominal in zip(of_rows, pushed[1:], strict=True)
+        (slope[..., None] * weight - nominal) / solution.load[:, None]
+        for slope, nominal in zip(row_slopes, pushed[1:], strict=True)
     ]
     return weight, np.stack(weights) if weights else pushed[1:]

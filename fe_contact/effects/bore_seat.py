@@ -35,7 +35,7 @@ class BoreSeatElasticity(Effect):
         return replace(model, parts=(*model.parts, "seat"))
 
     def across_face(self, scene: ContactScene) -> str | None:
-        """Say so where there is one."""
+        """Return the seat as a reason for a model over the face, None where both bores are fixed."""
         seated = any(gear.seat != CLAMPED for gear in scene.gears.values())
         return "a seat of the bore" if seated else None
 

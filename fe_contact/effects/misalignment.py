@@ -30,21 +30,22 @@ class MisalignmentGap:
     grids: ClassVar[tuple[None, None]] = (None, None)
 
     def breaks(self, pair: ParallelAxes, face: FloatArray) -> tuple[Break, ...]:
-        """None: it stays the same as a touching point moves along the profile, across the plane of action."""
+        """Return none: along the profile, across the plane of action, the gap is constant."""
         return ()
 
     def __call__(
         self, pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, face: FloatArray
     ) -> FloatArray:
-        """Gap in m, negative on the side that comes closer."""
+        """Return the gap in m, negative on the side that comes closer."""
         arm = pair.tilt_arm(roll_1, face) - pair.common_face_center
         return np.asarray(self.growth * arm / pair.face_width)
 
     def extent(self, pair: ParallelAxes) -> Extent:
-        """Largest gap to either side; with the helix it grows along the line of action.
+        """Return the largest gap to either side; with the helix it grows along the line of action.
 
-        Beyond the ends of the path of contact it gains on the gap of a tip edge, x^2/(2 R'), by slope^2 R'/2
-        at most; twice that is allowed, as the edge parts a little slower.
+        Beyond the ends of the path of contact the gap of a tip edge grows as x^2/(2 R'), that of misalignment
+        by at most slope x: so it exceeds the edge's by at most slope^2 R'/2. Twice that is allowed, as the
+        gap of the edge grows a little more slowly.
         """
         slope = abs(self.growth * math.tan(pair.base_helix_angle)) / pair.face_width
         reach = self.reach(pair) + slope**2 * max(_edge_radii(pair))
@@ -100,7 +101,7 @@ class Misalignment(Effect):
         return replace(model, gaps=(*model.gaps, MisalignmentGap(growth)))
 
     def across_face(self, scene: ContactScene) -> str | None:
-        """Say so where there is any."""
+        """Return misalignment as a reason for a model over the face; None where the axes are parallel."""
         return "misalignment" if np.any(scene.misalignment != 0.0) else None
 
     def extent(self, scene: ContactScene) -> Extent:

@@ -31,13 +31,13 @@ class SeatCompliance:
         # shear coefficient of the full circle: G. R. Cowper, J. Appl. Mech. 33 (1966) 335-340
         coefficient = 6.0 * (1.0 + ratio) / (7.0 + 6.0 * ratio)
         shear = coefficient * modulus / (2.0 * (1.0 + ratio)) * math.pi * shaft.diameter**2 / 4.0
-        both = np.zeros((2, 2))
+        flexibility = np.zeros((2, 2))  # displacement and tilt per force and moment
         for low, high in pairwise(sorted((0.0, shaft.length, shaft.position))):
-            both += _section(shaft, low, high, bending, shear)
+            flexibility += _section(shaft, low, high, bending, shear)
         if shaft.bearing_stiffness is not None:
             for reaction in _reactions(shaft):
-                both += np.outer(reaction, reaction) / shaft.bearing_stiffness
-        return cls(float(both[0, 0]), float(both[0, 1]), float(both[1, 1]))
+                flexibility += np.outer(reaction, reaction) / shaft.bearing_stiffness
+        return cls(float(flexibility[0, 0]), float(flexibility[0, 1]), float(flexibility[1, 1]))
 
 
 def _reactions(shaft: Shaft) -> tuple[FloatArray, FloatArray]:

@@ -34,7 +34,7 @@ class ThinRim(Effect):
         return replace(model, parts=(*model.parts, "blank"))
 
     def across_face(self, scene: ContactScene) -> str | None:
-        """Say so where there is one."""
+        """Return the web as a reason for a model over the face; None where both bodies are solid."""
         return "a web narrower than the face" if scene.pair.pinion.web or scene.pair.wheel.web else None
 
     def refuse_plane(self, scene: ContactScene) -> None:

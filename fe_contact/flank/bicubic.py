@@ -1,4 +1,7 @@
-"""Bicubic Hermite interpolation, compiled."""
+"""Bicubic Hermite interpolation, compiled.
+
+A node has four numbers: value, slope along the roll length, slope along the face, and mixed slope.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,7 @@ def cell_weights(axis: FloatArray, span: tuple[int, int], at: float, cell: int, 
     Parameters
     ----------
     axis, span : ndarray, (int, int)
-        The axis is that part of the array: its first entry, and how many there are.
+        Array with the nodes of the axis, and the part of it that is the axis: first entry, number of entries.
     cell : int
         Where the search begins: most points are near the one before.
     """

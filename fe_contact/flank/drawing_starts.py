@@ -136,7 +136,14 @@ def _along_radius(gear: Tooth, field: str, value: float) -> float:
     names = {form: f"the form {way.text}", tip: f"the tip {way.text}"}
     low, high = sorted(names)
     end = tip if at_tip else form
-    bound = Bound(low, high, end == low, end == high, low_name=names[low], high_name=names[high])
+    bound = Bound(
+        low,
+        high,
+        low_open=end == low,  # a relief does not start at the end to which it runs
+        high_open=end == high,
+        low_name=names[low],
+        high_name=names[high],
+    )
     if not bound.holds(value):
         raise InputError(f"modification.{field}", value, bound, _REMEDY)
     radius = radius_at_roll_length(gear.base_radius, way.roll_length(gear.base_radius, value))

@@ -31,7 +31,7 @@ else:
     _Figures = object
 
 PARTS: tuple[type[FlankPart], ...] = (*AlongProfile.__bases__, *AlongFace.__bases__, *OverFlank.__bases__)
-"""The modifications that there are, each a line of these lists, in the order of their figures."""
+"""All kinds of modification, the bases of three classes, in the order of their figures."""
 Flank = TypeVar("Flank")
 _DEFAULTS = {kind: (kind(), {entry.name: entry.default for entry in fields(kind)}) for kind in PARTS}
 """All parts at their defaults, which most parts of most flanks have, with their fields."""
@@ -104,7 +104,8 @@ class FlankModification(_Figures):
     def check_fits(self, gear: Tooth) -> None:
         """Raise `InputError` if a part does not fit the gear.
 
-        As a relief longer than the involute or half the face, a grid beside it, an edge that leaves no tip.
+        Examples are a relief longer than the involute or half the face, a grid beside the flank, and an edge
+        that leaves no tip.
         """
         for part in self.parts:
             part.check_fits(gear)
@@ -117,7 +118,7 @@ class FlankModification(_Figures):
     def material_removed(
         self, gear: Tooth, roll_length: ArrayLike, face_position: ArrayLike = 0.0
     ) -> FloatArray:
-        """Material removed normal to the involute, in the transverse plane.
+        """Return the material removed normal to the involute, in the transverse plane.
 
         Parameters
         ----------
@@ -140,7 +141,10 @@ class FlankModification(_Figures):
         return self.removed(gear, np.minimum(np.maximum(roll, low), high), face)
 
     def removed(self, gear: Tooth, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:
-        """Sum over the parts in m: those of the profile, those of the face, and those of both."""
+        """Return the sum over the parts, m: those of the profile, those of the face, then those of both.
+
+        The order of the sum is fixed, so that its rounding is.
+        """
         removed = np.zeros(roll_length.shape)
         for direction in (Direction.PROFILE, Direction.FACE):
             along = (part for part in self._acting if part.along is direction)
@@ -153,7 +157,7 @@ class FlankModification(_Figures):
     def relief_starts(self, gear: Tooth, face_position: FloatArray | float = 0.0) -> tuple[ReliefStart, ...]:
         """Return where reliefs, and the tip's edge if it is not sharp, begin along the profile.
 
-        Where they run aslant over the flank, at face positions (n,) in m from mid-face.
+        Starts that vary over the face are at the face positions (n,), m from mid-face.
         """
         return tuple(start for part in self._acting for start in part.relief_starts(gear, face_position))
 

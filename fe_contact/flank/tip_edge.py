@@ -141,6 +141,7 @@ class CutTip(FlankPart):
         """See `FlankPart.removed`."""
         (edge,) = self.relief_starts(gear)
         start = edge.roll_length
+        # arc length of the flank from the tip form point on
         along = gear.sign * (roll_length - start) * (roll_length + start) / (2.0 * gear.base_radius)
         inside = np.maximum(along, 0.0)
         return np.asarray(inside * (edge.jump + 0.5 * edge.bend * inside))
@@ -152,6 +153,8 @@ class CutTip(FlankPart):
         """
         if self.tip_rounding:
             start = _rounding_start(gear, self.tip_rounding)
-            return (ReliefStart(start, True, 0.0, 1.0 / self.tip_rounding - gear.sign / start, True),)
-        start = _chamfer_start(gear, self.tip_chamfer)
-        return (ReliefStart(start, True, math.tan(self.tip_chamfer_angle), -gear.sign / start, True),)
+            jump, bend = 0.0, 1.0 / self.tip_rounding - gear.sign / start
+        else:
+            start = _chamfer_start(gear, self.tip_chamfer)
+            jump, bend = math.tan(self.tip_chamfer_angle), -gear.sign / start
+        return (ReliefStart(start, towards_tip=True, jump=jump, bend=bend, ends_flank=True),)

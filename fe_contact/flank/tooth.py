@@ -14,19 +14,19 @@ class Tooth(Protocol):
 
     @property
     def normal_module(self) -> float:
-        """m_n."""
+        """Normal module m_n."""
 
     @property
     def face_width(self) -> float:
-        """B."""
+        """Face width b."""
 
     @property
     def base_radius(self) -> float:
-        """r_b."""
+        """Base radius r_b."""
 
     @property
     def base_helix_angle(self) -> float:
-        """beta_b; > 0: right hand."""
+        """Helix angle at the base circle, beta_b; > 0: right hand."""
 
     @property
     def base_thickness_half_angle(self) -> float:
@@ -38,7 +38,7 @@ class Tooth(Protocol):
 
     @property
     def form_roll_length(self) -> float:
-        """Roll length there."""
+        """Roll length at the form radius."""
 
     @property
     def tip_radius(self) -> float:
@@ -46,7 +46,7 @@ class Tooth(Protocol):
 
     @property
     def tip_roll_length(self) -> float:
-        """Roll length there."""
+        """Roll length at the tip radius."""
 
     def roll_length(self, radius: float) -> float:
         """Roll length at a radius from the base radius on."""

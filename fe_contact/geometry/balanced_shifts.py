@@ -1,4 +1,4 @@
-"""Profile shifts that share the sliding fairly between pinion and wheel."""
+"""Profile shifts with which pinion and wheel have the same largest specific sliding."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ _HALVINGS = 60
 def balanced_shifts(pinion: Gear, wheel: Gear, center_distance: float) -> tuple[float, float]:
     """Return x_1 and x_2 that fill a center distance in m without backlash and balance the specific sliding.
 
-    It then is equal in magnitude at both ends of the path of contact, where either root meets the mating tip.
-    x_1 is sought from -1 to 1.5; tips are those of the basic rack. Shifts and allowances of the gears do not
-    count.
+    The specific sliding is then equal in magnitude at both ends of the path of contact, where either root
+    meets the mating tip. x_1 is sought from -1 to 1.5; tips are those of the basic rack. Shifts and
+    allowances of the gears do not count.
     """
     pressure = working_pressure_angle(pinion, wheel, center_distance)
     total = tight_shift_sum(pinion, wheel, pressure)
@@ -28,7 +28,8 @@ def balanced_shifts(pinion: Gear, wheel: Gear, center_distance: float) -> tuple[
         middle = 0.5 * (low + high)
         first, second = _tip_roll(pinion, middle), _tip_roll(wheel, total - middle)
         at_start, at_end = tangent - second, tangent - first  # roll lengths of either root
-        # at_start grows with x_1, at_end falls: the balance is crossed once
+        # specific sliding: 1 - second/(ratio at_start) at the pinion's root, 1 - ratio first/at_end at the
+        # wheel's; at_start grows with x_1, at_end falls: the balance is crossed once
         if at_start <= 0.0 or (at_end > 0.0 and second * at_end > ratio**2 * first * at_start):
             low = middle
         else:

@@ -1,4 +1,8 @@
-"""The tooth root fillet of an internal gear: envelope of a pinion cutter's tip rounding."""
+"""The tooth root fillet of an internal gear: envelope of a pinion cutter's tip rounding.
+
+The tool angle names a point of the rounding, as in `trochoid`: pi/2 is the cutter's tip. The crossing is the
+point in which the normal of the rounding at that point meets the cutter's pitch circle.
+"""
 
 from __future__ import annotations
 
@@ -27,16 +31,16 @@ class CutterTrochoid(FilletCurve):
         return self.half_pitch_angle - self.cutter.corner_angle * self.cutter.ratio
 
     def _reach(self, tool_angle: FloatArray) -> FloatArray:
-        """Projection of the cutter's pitch radius on the normal, m, >= 0."""
+        """Distance of the crossing along the normal from the foot of the cutter's axis on it, m, >= 0."""
         across = self.cutter.corner_center_radius * np.cos(tool_angle)
         return np.asarray(np.sqrt(self.cutter.pitch_radius**2 - across**2), dtype=float)
 
     def _crossing(self, tool_angle: FloatArray) -> FloatArray:
-        """Distance q along the normal from the rounding's center to the pitch circle, m."""
+        """Distance q of the crossing along the normal from the rounding's center, m."""
         return self._reach(tool_angle) - self.cutter.corner_center_radius * np.sin(tool_angle)
 
     def _crossing_angle(self, tool_angle: FloatArray) -> FloatArray:
-        """Polar angle of that crossing on the cutter, from the rounding's center, rad."""
+        """Polar angle of the crossing on the cutter, from the rounding's center, rad."""
         crossing = self._crossing(tool_angle)
         along = self.cutter.corner_center_radius + crossing * np.sin(tool_angle)
         return np.asarray(np.arctan2(crossing * np.cos(tool_angle), along), dtype=float)

@@ -23,9 +23,6 @@ from fe_contact.geometry.toothing import Toothing
 from fe_contact.involute import involute_normal, involute_point
 from fe_contact.types import BoolArray, FloatArray
 
-if TYPE_CHECKING:
-    from fe_contact.geometry.toothing import Toothing
-
 
 class FlankProfile:
     """Right flank of one tooth of `gear`; mirror x for the left one.

@@ -56,7 +56,7 @@ class PinionCutter:
 
     @property
     def first_tool_angle(self) -> float:
-        """Tool angle at which the rounding leaves the involute, rad (see `_CutterTrochoid`)."""
+        """Tool angle at which the rounding leaves the involute, rad (see `CutterTrochoid`)."""
         return math.atan2(self.corner_roll_length, self.base_radius)
 
     @property

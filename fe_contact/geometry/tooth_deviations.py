@@ -122,6 +122,7 @@ class Wave:
         lead : float
             Angle in rad by which the gear turns while a contact line runs over its face width.
         """
+        # turn of the phase over the face, against crests along the contact lines
         inclined = 0.0 if self.face_waves is None else 2.0 * math.pi * self.face_waves - self.order * lead
         return np.asarray(self.amplitude * np.cos(self.order * turn + inclined * along - self.phase))
 

@@ -57,7 +57,10 @@ def surfaces_excess(
 
 @inner(error_model="numpy")
 def _form(height: float, waves: float, at: float) -> float:
-    """Return a shape of this height whose mean line over -1 to 1 is zero: a measurement splits it so."""
+    """Return a form deviation of this height over -1 to 1; its mean line is zero, as in a measurement.
+
+    It is a parabola where `waves` is 0, else a cosine of so many waves.
+    """
     if height == 0.0:
         return 0.0
     if waves == 0.0:

@@ -1,4 +1,4 @@
-"""The lifting law on a cycle: deviations of single teeth move the curve no further than they reach."""
+"""The lifting law on a hunting cycle: deviations of single teeth bound how far they move the curve."""
 
 from __future__ import annotations
 
@@ -15,15 +15,16 @@ _LIFTING = Law("lifting by single teeth", "transmission error less that of gears
 
 
 def check_cycle(contact: CycleContact, ste: FloatArray, error: FloatArray) -> LawCheck:
-    """Hold a cycle (T, P, L) in m against the gears without deviations of single teeth.
+    """Check the curve `ste` (T, P, L) of a cycle in m against that of gears without deviations of teeth.
 
-    It lies between theirs plus the least and plus the largest deviation of the teeth in mesh, and by how much
-    one pair alone gives way under the whole load, since forces come to lie elsewhere.
+    The change by the deviations is at least the least and at most the largest deviation of the teeth in mesh.
+    To both sides it may exceed these by the deflection of one pair alone under the whole load, since the
+    deviations redistribute the forces.
 
     Parameters
     ----------
     error : ndarray, shape (L,)
-        Of a pitch that was not solved, m.
+        Error of the curve in a pitch that was not solved, m.
     """
     pair, pitches = contact.point.contact.pair, np.arange(contact.pitches)
     _, alike = contact.nominal()
@@ -32,11 +33,11 @@ def check_cycle(contact: CycleContact, ste: FloatArray, error: FloatArray) -> La
     low, high = np.min(extent.low, axis=1), np.max(extent.high, axis=1)
     alone = single_pair_deflection(pair, alike.problem, contact.load)
     alone = np.where(np.isfinite(alone), alone, alike.solution.deflection)
-    room = alone + error
+    margin = alone + error
 
     def location(pitch: int, position: int, load: int) -> str:
         at = pitch + contact.position[position]
         return f"position {at:.6g}, force {contact.load[load]:.6g} N"
 
     change = ste - alike.solution.deflection
-    return _LIFTING.between(change, low[:, None, None] - room, high[:, None, None] + room, location)
+    return _LIFTING.between(change, low[:, None, None] - margin, high[:, None, None] + margin, location)

@@ -39,9 +39,9 @@ def effect_ledger(
     assumptions : sequence of Assumption
         What was checked after the run.
     plan : Plan, optional
-        Of the run: costs are those of its mesh and slices; default: those that the accuracy asks for.
+        Plan of the run, for the cost of its mesh and slices; default: those that the accuracy requires.
     influences : mapping of str to Influence, optional
-        Of the plan, whatever the run found; default: estimated here.
+        Influences estimated for the plan, before the run; default: estimated here.
     estimates : bool
         Whether influence and cost are estimated, in milliseconds; without it they are None.
     """
@@ -70,7 +70,8 @@ def _entry(
 def _costs(checked: Checked, cache: Path | None, plan: Plan | None) -> dict[str, float | None]:
     """Predict the CPU seconds that each effect adds to the run.
 
-    None if it cannot be toggled, and where it is off without having been called for: nothing was saved.
+    None if the effect cannot be toggled. Effects that are off and not called for are left out: leaving them
+    out saved nothing.
     """
     cost = _predicted(checked, cache, plan)
     acting = [entry for entry in checked.ledger if entry.on or entry.verdict.on]
@@ -80,7 +81,7 @@ def _costs(checked: Checked, cache: Path | None, plan: Plan | None) -> dict[str,
 def _cost(
     checked: Checked, entry: LedgerEntry, cost: float, known: tuple[Path | None, Plan | None]
 ) -> float | None:
-    """CPU seconds of one effect, of which the run itself is predicted to take `here`."""
+    """Return the CPU seconds of one effect in a run that is predicted to take `cost`."""
     try:
         other = toggled(checked, entry.name, "off" if entry.on else "on")
     except InputError:
@@ -90,7 +91,7 @@ def _cost(
 
 
 def _predicted(checked: Checked, cache: Path | None, run: Plan | None) -> float:
-    """CPU seconds of a request, on the mesh and in the slices of the run if that is over the face as well."""
+    """Return the CPU seconds of a request, with the mesh of a run, and its slices if it has several."""
     if run is None:
         return checked.predicted(checked.planned(cache), cache).cpu_seconds
     slices = run.discretization.slices
@@ -108,12 +109,12 @@ def _price(entry: LedgerEntry, influence: Influence | None, seconds: float | Non
 def toggled(checked: Checked, name: str, choice: str) -> Checked:
     """Return the request with one effect on or off and all others as they were decided.
 
-    Raises `InputError`: the model cannot be had, as a plane with what acts across the face.
+    Raises `InputError`: there is no such model, as a plane with an effect that acts across the face.
     """
     request = checked.request
     choices = flipped(request.registry, checked.decision, name, choice)
     face, _ = request.model_effects
-    # choices of every effect are explicit now, so that an explicit model has no say about them any more
+    # choices of every effect are explicit now, so the model must not decide any of them
     plane_stress = request.options.model == "plane_stress" and choices[face] == "off"
     options = replace(request.options, model="plane_stress" if plane_stress else "auto", effects=choices)
     neglected = {other: reason for other, reason in request.neglected.items() if other != name}

@@ -1,9 +1,10 @@
-"""Bounds of how far the transmission error goes between neighboring positions.
+"""Bounds of the change of the transmission error between neighboring positions.
 
-Where a pair carries, the transmission error follows its gap and its compliance. Along the line of action it
-changes no faster than deviations slope, the gap of a tip edge opens while it may carry, and the compliance of
-teeth grows towards their tips, times the deflection. Rough flanks touch at one crest and then at the next:
-the curvature of the strip jumps there, and its approach with it.
+Where a pair carries, the transmission error follows its gap and its compliance. Its slope along the line of
+action is at most the sum of three: the slope of the deviations, the rate at which the gap of a tip edge opens
+while the edge may carry, and the rate at which the compliance of teeth grows towards their tips, times the
+deflection. Rough flanks touch at one crest and then at the next: the curvature of the strip jumps there, and
+its approach with it.
 """
 
 from __future__ import annotations
@@ -16,14 +17,16 @@ from fe_contact.flank.extent import Extent
 from fe_contact.geometry import ParallelAxes, Side, corner_contact
 from fe_contact.types import FloatArray
 
-_OVERSHOOTS = 129
+_OVERSHOOTS = 129  # distances beyond the end of contact, over one base pitch
 _SIDES: tuple[Side, Side] = ("approach", "exit")
 ELASTIC = 2.0
-"""Change of the transmission error over that of the deflection at constant forces: they change as much."""
+"""Change of the transmission error over that of the deflection at constant forces: the forces change too, and
+by as much again.
+"""
 
 
 def edge_slope(pair: ParallelAxes, level: FloatArray) -> FloatArray:
-    """Return how fast gaps of tip edges open at most, m/m, while they are below levels (...) in m."""
+    """Return the largest slopes (...) of gaps of tip edges, m/m, while they are below levels (...) in m."""
     overshoot = np.linspace(0.0, pair.base_pitch, _OVERSHOOTS)
     slope = np.zeros(level.shape)
     for side in _SIDES:
@@ -39,7 +42,7 @@ def edge_slope(pair: ParallelAxes, level: FloatArray) -> FloatArray:
 
 
 def compliance_slope(problem: ContactProblem, base_pitch: float) -> float:
-    """Return the largest relative change of a slice's compliance per way along the line of action, 1/m."""
+    """Return the largest relative change of a slice's compliance per length of the line of action, 1/m."""
     count = len(problem.compliance)
     position = problem.candidates.position[:count]
     slices = np.einsum("qii->qi", problem.compliance)
@@ -58,7 +61,8 @@ def approach_steps(
     """Return by how much the approach in a strip changes from each position to the next (P, L), m.
 
     Under a line load p it changes by p/(pi E*) times the logarithm of the ratio of the curvatures. One pair
-    carries the loads (L,) in N over the face. Positions that follow from derivatives have the largest change.
+    carries the loads (L,) in N over the face. Where base pitches follow from derivatives and have no touching
+    points, all positions have the largest change.
     """
     touch = problem.candidates.touch
     curvature = np.where(np.isfinite(touch.gap), touch.curvature, np.nan)
@@ -76,14 +80,14 @@ def largest_steps(
     deviations: Extent,
     deflection: FloatArray,
 ) -> FloatArray:
-    """Return the most by which a curve goes from each position to the next (P, L), m.
+    """Return the largest change of a curve from each position to the next (P, L), m.
 
     Parameters
     ----------
     way : ndarray, shape (P,)
-        To the next position along the line of action, m.
+        Distance to the next position along the line of action, m.
     deviations : Extent
-        Of the teeth in mesh, arrays (P,).
+        Bounds of the deviations of the teeth in mesh, arrays (P,).
     deflection : ndarray, shape (L,)
         Largest transmission error of each load above the least gap, m.
     """

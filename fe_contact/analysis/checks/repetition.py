@@ -1,4 +1,4 @@
-"""Repetition of a run that shows that something it took for granted is wrong."""
+"""Repetition of a run whose result shows that one of its assumptions does not hold."""
 
 from __future__ import annotations
 

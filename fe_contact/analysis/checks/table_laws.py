@@ -1,4 +1,9 @@
-"""Laws of mechanics on a finished table; a run whose table breaks one fails."""
+"""Laws of mechanics on a finished table; a run whose table breaks one fails.
+
+Axes: P positions, F loads, M misalignments, D center distances. A check gets a harmless value, such as 0
+below a bound of 1, at points that are not solved. In a table of several base pitches only some are solved;
+the others follow from derivatives.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +38,8 @@ between loads.
 """
 ONE_TO_ONE = 1e-6
 """Least compliance over the tangent compliance at the higher load where base pitches follow from derivatives.
-Errors of derivatives may bend the curve, but the force at a deflection stays unique.
+
+Errors of derivatives may bend the curve there, but it must rise.
 """
 LEVERS = 2.0
 """Allowed change of a compliance over the difference of lever arms. The largest in 160 random pairs is 1.3.
@@ -71,7 +77,7 @@ def check_laws(
     Parameters
     ----------
     points : sequence of OperatingPoint
-        Its operating points, center distance running fastest.
+        Operating points of the table, center distance running fastest.
     solved : sequence of (ContactProblem, ContactSolution)
         Problem of each in the first base pitch, and its solution.
     support : sequence of ContactSolution
@@ -84,7 +90,7 @@ def check_laws(
         alignment = _AlignmentLaws(table, point, problem, solutions, *divmod(i, distances))
         for law in alignment.laws():
             key = law.law, law.quantity
-            if key not in worst or not law.ratio <= worst[key].ratio:
+            if key not in worst or not law.ratio <= worst[key].ratio:  # a ratio of NaN is worse than any
                 worst[key] = law
     return tuple(sorted(worst.values(), key=lambda law: -math.inf if law.broken else -law.ratio))
 
@@ -127,9 +133,9 @@ class _AlignmentLaws:
 
     @cached_property
     def _exact(self) -> BoolArray:
-        """Positions (P,) that do not follow from derivatives, their strips within the load patches.
+        """Positions (P,) that do not follow from derivatives, and whose strips are within the load patches.
 
-        Strips that outgrow these follow a straight law, which is reported as an assumption that is wrong.
+        Strips that outgrow their patches have a linear law; the checks of assumptions report them.
         """
         solved = np.isfinite(self.table.residuals[:, :, self.m, self.d, 0]).any(axis=1)
         outgrown = np.any([solution.beyond.any(axis=1) for solution in self.solutions], axis=0)
@@ -157,7 +163,7 @@ class _AlignmentLaws:
         """Bound the curve without load and under load by the deviations of the teeth in mesh."""
         low, high = (np.asarray(values) for values in (self._deviations.low, self._deviations.high))
         alone = single_pair_deflection(self.point.contact.pair, self.problem, self.table.force)
-        alone = np.tile(alone, (self._ste.shape[0] // len(alone), 1))
+        alone = np.tile(alone, (self._ste.shape[0] // len(alone), 1))  # in every base pitch
         carried = np.isfinite(alone).all(axis=1)
         above = np.where(carried, high, np.inf)
         rigid = np.flatnonzero(carried)
@@ -204,11 +210,11 @@ class _AlignmentLaws:
             )
 
     def _softening(self, largest: FloatArray) -> FloatArray:
-        """Return the relative change (P,) of a compliance that has other causes than gaps that close.
+        """Return the relative change (P,) of a compliance by other causes than gaps that close.
 
-        By forces that move to tip edges: there the torque has another lever arm than the motion, so that load
-        and deflection follow no energy. And by flanks that roll as they deflect by the `largest` amounts (P,)
-        in m, over the module.
+        One cause are forces that move to tip edges. There the torque has another lever arm than the motion,
+        so that the load is not the derivative of an energy by the deflection. The other is the rolling of
+        flanks as they deflect by the `largest` amounts (P,), m: its part is the deflection over the module.
         """
         count, touch = len(self.problem.compliance), self.problem.candidates.touch
         carries = np.any([solution.force[:count].any(axis=1) for solution in self.solutions], axis=0)
@@ -272,7 +278,7 @@ class _AlignmentLaws:
         return np.asarray(minimum.reshape(share.shape[:2]))
 
     def _steps(self) -> Iterator[LawCheck]:
-        """Bound steps between neighboring positions; without tip edges pairs come and go at once."""
+        """Bound steps between neighboring positions; a model without tip edges has jumps at the handover."""
         if not self.point.model.corner_contact or self.table.position.size < 2:
             return
         t = self.table

@@ -1,4 +1,7 @@
-"""Monotonicity of the transmission error in the load, from that without any."""
+"""Monotonicity of the transmission error in the load, from no load on.
+
+Axes: T base pitches of the cycle, P positions in each.
+"""
 
 from __future__ import annotations
 
@@ -19,12 +22,13 @@ def rising_deflection(
 ) -> tuple[FloatArray, FloatArray, FloatArray] | None:
     """Return the transmission error (T, P, ...) without load, at the loads, and at the support loads, m.
 
-    In pitches that were not solved support loads yield to the loads of the table, as far as their errors
-    let them cross. None where these do not rise.
+    In pitches that were not solved, curves at support loads that cross those at loads of the table are moved
+    just clear of them. None if the curves at the loads of the table do not rise with load.
     """
     loads, support = envelope.contact.load, support_envelope.contact.load
     force = np.concatenate([[0.0], loads, support])
-    kind = np.repeat([0, 1, 2], [1, loads.size, support.size])
+    no_load, requested, supporting = 0, 1, 2
+    kind = np.repeat([no_load, requested, supporting], [1, loads.size, support.size])
     order = np.argsort(force)
     unloaded = _unloaded(envelope)
     levels = np.concatenate([unloaded[..., None], envelope.ste, support_envelope.ste], axis=2)[..., order]
@@ -34,12 +38,12 @@ def rising_deflection(
         if part.contact.load.size
     ]
     step = _MIN_COMPLIANCE * min(tangents) * np.diff(force[order])
-    tables = np.flatnonzero(kind[order] == 1)
+    tables = np.flatnonzero(kind[order] == requested)
     rising = levels.copy()
     for k in range(tables[0] - 1, -1, -1):
         rising[..., k] = np.minimum(rising[..., k], rising[..., k + 1] - step[k])
     for k in range(tables[0] + 1, order.size):
-        if kind[order[k]] == 2:
+        if kind[order[k]] == supporting:
             rising[..., k] = np.maximum(rising[..., k], rising[..., k - 1] + step[k - 1])
     if not np.all(np.diff(rising, axis=2) > 0.0):
         return None
@@ -49,9 +53,10 @@ def rising_deflection(
 
 
 def _unloaded(envelope: Envelope) -> FloatArray:
-    """Return the transmission error without load (T, P), m: of most pitches by the gaps of their teeth.
+    """Return the transmission error without load (T, P), m: in most pitches the least gap of their teeth.
 
-    Flanks that slope touch a little beside; what that is in the pitches solved is taken off in the mean.
+    Flanks that slope touch a little beside the point of that gap. The mean error by this over the pitches
+    that are solved is subtracted.
     """
     contact = envelope.contact
     model, gaps = contact.point.model, envelope.gaps

@@ -1,12 +1,11 @@
 """Errors of a table, by source.
 
-The finite-element error comes from a second, coarser discretization solved at the same points; with quadratic
-elements and Galerkin patches the error falls at least with the square of the element size, which bounds what
-is left of the difference (`Discretization.remaining`). The table's error is measured at the middles between
-its nodes. Where the plane stands in for three dimensions, a part of what it was corrected by is its error; it
-is measured against three-dimensional solutions (docs/effects.md#finite_width). The errors of a plane that is
-not corrected are those of its model: what it leaves out of the finite width has a sign, and is a correction
-(`ste.plane_bias`).
+The finite-element error comes from a second, coarser discretization solved at the same points. With quadratic
+elements and Galerkin patches the error falls at least with the square of the element size; so the error is at
+most a known part of the difference (`Discretization.remaining`). The table's error is measured at the middles
+between its nodes. Where a plane model is corrected for the finite width, a part of the correction is its
+error; that part is measured against three-dimensional solutions (docs/effects.md#finite_width). A plane that
+is not corrected has the errors of its model, and a bias of known sign by the finite width (`ste.plane_bias`).
 """
 
 from __future__ import annotations
@@ -28,9 +27,10 @@ from fe_contact.ste.curve_errors import METHOD, PLANE
 from fe_contact.types import FloatArray, Json, Status
 
 CORRECTION_ERROR = 0.03
-"""Error of the correction for a finite width in parts of the correction itself. The largest seen of mean,
-peak-to-peak and harmonics on its pairs (docs/lab/index.md, "Constants") is 0.033, of peak-to-peak at a
-face of 1.2 modules, of which the mesh covers its part."""
+"""Error of the correction for a finite width over the correction itself. The largest measured one of mean,
+peak-to-peak and harmonics (docs/lab/index.md, "Constants") is 0.033: of peak-to-peak at a face of 1.2
+modules,
+where the stated mesh error covers the excess."""
 
 
 @dataclass(frozen=True)
@@ -88,29 +88,29 @@ def estimate_errors(
     Parameters
     ----------
     solved : list of (ContactProblem, ContactSolution)
-        The table's.
+        Problems and solutions of the table.
     positions : PositionErrors
         The largest of the assessed operating points stand for every place.
     """
     discretization, nominal = plan.discretization, points.nominal.pair
     solutions = [solution for _, solution in solved]
 
-    def left(these: FloatArray, those: FloatArray, part: float) -> FloatArray:
+    def left(finer: FloatArray, coarser: FloatArray, part: float) -> FloatArray:
         """Return a part of the differences of STE, at all points."""
-        return nested.sample.spread_points(part * np.nan_to_num(np.abs(these - those)))
+        return nested.sample.spread_points(part * np.nan_to_num(np.abs(finer - coarser)))
 
-    face, lags = (
-        isinstance(discretization, FaceDiscretization),
-        [np.nan_to_num(s.deflection) for s in solutions],
-    )
+    face = isinstance(discretization, FaceDiscretization)
+    lags = [np.nan_to_num(solution.deflection) for solution in solutions]
     return _ErrorSources(
-        left(nested.patched, nested.coarse, discretization.remaining)
+        discretization=left(nested.patched, nested.coarse, discretization.remaining)
         + left(nested.plane, nested.patched, plan.remaining_patches),
-        left(nested.table, nested.sliced, discretization.remaining_slices),
-        np.broadcast_to(positions.band[:, :, None, None], (*positions.band.shape, *points.shape)),
-        points.gathered([contact_error(solution) for solution in solutions]),
-        left(nested.table, nested.plane, CORRECTION_ERROR),
-        points.gathered([point_error(nominal, plan.load, lag, over_face=face) for lag in lags])
+        slices=left(nested.table, nested.sliced, discretization.remaining_slices),
+        interpolation=np.broadcast_to(
+            positions.band[:, :, None, None], (*positions.band.shape, *points.shape)
+        ),
+        contact=points.gathered([contact_error(solution) for solution in solutions]),
+        plane=left(nested.table, nested.plane, CORRECTION_ERROR),
+        method=points.gathered([point_error(nominal, plan.load, lag, over_face=face) for lag in lags])
         + points.gathered([rough_flank_errors(*pair) for pair in solved]),
     )
 

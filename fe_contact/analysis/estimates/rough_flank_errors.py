@@ -21,7 +21,8 @@ gap is fitted at edges.
 def rough_flank_errors(problem: ContactProblem, solution: ContactSolution) -> FloatArray:
     """Return the errors (P, L) of the transmission error in m; zero where no flank is rough.
 
-    Contacts count by their force. Where pitches follow from derivatives, they have the largest of the others.
+    It is the mean error of the contacts, weighted with their forces. If the solution has more positions than
+    forces, since base pitches follow from derivatives, all have the largest error of the first pitch.
     """
     shape, force = solution.deflection.shape, np.moveaxis(solution.force, 1, 2)
     touch = problem.candidates.touch
@@ -29,8 +30,9 @@ def rough_flank_errors(problem: ContactProblem, solution: ContactSolution) -> Fl
         return np.zeros(shape)
     rows = slice(len(force))
     crests = touch.curvature[rows] * touch.radius[rows]
-    edge = (touch.low[rows] >= 0.0) | (touch.high[rows] <= 0.0)
+    edge = (touch.low[rows] >= 0.0) | (touch.high[rows] <= 0.0)  # the flank ends at the touching point
     ragged = np.abs(np.log(np.where(edge & (crests > 0.0), crests, 1.0)))
+    # 2 p/(pi E*), m: the load P of `contact.rough_strip` times the relative radius
     scaled = 2.0 / (np.pi * problem.modulus) * force / problem.candidates.width[rows][..., None]
     error, radius = touch.approach_error[rows][..., None], touch.radius[rows][..., None]
     of_gap = BETWEEN_LOADS * error * np.sqrt(scaled * radius)

@@ -156,7 +156,7 @@ class ValidationLoads:
     def _shares(self, probes: SupportLoads, change: FloatArray, goal: IntervalGoal) -> FloatArray:
         """Return the larger part of the tolerance that the changes of mean and peak-to-peak take, (L,).
 
-        Every point of an interval states the error of the worst: the least that is allowed in it counts.
+        All points of an interval state its largest error, so the least error allowed in the interval counts.
         """
         at_nodes = self._at_rows.static_transmission_error[..., 0]
         ste = np.concatenate([at_nodes, probes.deflection[..., 0]], axis=1)
@@ -224,7 +224,7 @@ def _ends(table: SteDatabase) -> list[float]:
 
 
 def _joined(first: SupportLoads, second: SupportLoads) -> SupportLoads:
-    """Return both in order of load."""
+    """Return the solutions of both, in order of load."""
     force = np.concatenate([first.force, second.force])
     order = np.argsort(force)
     return SupportLoads(

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
 from bounds.brief import brief
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.types import FloatArray
-
-if TYPE_CHECKING:
-    from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 
 
 @brief

@@ -23,8 +23,9 @@ from fe_contact.types import FloatArray
 FIGURES = ("line_load", "face_load_factor", "largest_face_load_factor", "pressure", "edge_line_load")
 """Fields of `FlankErrors`."""
 REMAINING = np.array([1.5, 1.5, 1.5, 1.0, 1.5])
-"""Part that is left of the changes of the figures by positions, slices, patches and meshes, as searches of
-flanks have it (benchmarks/limit_coverage.py)."""
+"""Error of each figure over its change by rougher positions, slices, patches and meshes.
+
+Searches of flanks use the same factors (benchmarks/limit_coverage.py)."""
 FREE_ENDS = {
     "line_load": 0.015,
     "face_load_factor": 0.015,
@@ -81,7 +82,7 @@ def _kink_length(flanks: LoadDistribution, problem: ContactProblem) -> float:
 
 
 def _model(flanks: LoadDistribution) -> tuple[dict[str, float], str]:
-    """Return the model's part of the errors, and why figures that are not in it have none."""
+    """Return the relative errors of the figures by the model, and why other figures have no error."""
     if flanks.face_position.size == 1:
         return IN_THE_PLANE, "a plane model assumes an even load"
     if flanks.base_helix_angle and np.any(flanks.at_edge):
@@ -93,7 +94,7 @@ def _model(flanks: LoadDistribution) -> tuple[dict[str, float], str]:
 def _changes(
     flanks: LoadDistribution, solved: SolvedOperatingPoint, cache: Path | None
 ) -> Iterator[FloatArray]:
-    """Yield the changes of the figures by rougher discretizations, in parts of them."""
+    """Yield the relative changes of the figures by rougher discretizations."""
     for half in halves(flanks.position):
         yield _change(flanks, flanks.at(half))
     for both in rougher_solutions(solved, cache):

@@ -1,4 +1,4 @@
-"""Laws of mechanics on flank results; results that break one are none."""
+"""Laws of mechanics on flank results; results that break one are refused."""
 
 from __future__ import annotations
 
@@ -114,9 +114,9 @@ class _Flanks:
     def _pressures(self) -> Iterator[LawCheck]:
         """Bound pressures by those of Hertz under their line loads on the flattest and sharpest gaps.
 
-        A strip on a gap that rises at least as a parabola is no longer than on that parabola and holds the
-        touching point. The mean of g' sin t over it, which is the pressure over E*, is no more than that of
-        all curvatures and kinks that it can reach.
+        If a gap rises at least as a parabola, the strip on it is at most as long as that on the parabola, and
+        holds the touching point. The pressure over E* is the mean of g' sin t over the strip. It is at most
+        that of all curvatures and kinks within reach of the strip.
         """
         flanks, modulus = self.flanks, self.problem.modulus
         rows = len(flanks.force)
@@ -134,6 +134,7 @@ class _Flanks:
         parabola = (bends == 0.0) & (kinks == 0.0) & (np.abs(about.curvature * plain - 1.0) < STRAIGHT)
         radius = np.where(parabola, plain, plain / flattest_touch(candidates.touch))
         longest = np.where(parabola, half_width(load, plain, modulus), longest)
+        # largest pressure over E*: of all curvature within the strip, and of all kinks at their worst place
         kinked = 0.5 * (about.curvature + bends) * longest + (kinks + np.abs(about.slope)) / math.pi
         pressure = flanks.pressure.reshape(rows, -1)[loaded]
         minimum = (1.0 - STRAIGHT) * peak_pressure(load, radius, modulus)

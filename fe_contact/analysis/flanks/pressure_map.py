@@ -10,7 +10,7 @@ from host.loops import njit
 
 ROWS = 96  # along the profile
 
-_SAME = 0.01  # of the mean distance of contacts; nearer ones, as on a tip edge, stand on one place
+_SAME = 0.01  # of the mean distance of contacts; nearer ones, as on a tip edge, count as one place
 
 
 def pressure_map(flanks: LoadDistribution, roll: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -46,7 +46,8 @@ def _pass_between(
 ) -> None:
     """Interpolate the pressures (P, N, K) of a part of the contacts at `rows` into `out` (R, K).
 
-    Between the places where it is known, the largest of those on one place; held to both ends, 0 beyond.
+    Of several contacts at one place the largest pressure counts. Beyond the first and the last contact of a
+    slice the pressure stays constant up to the `ends` of the part, and is 0 beyond these.
     """
     for k in range(out.shape[1]):
         points = np.flatnonzero(part[:, :, k].copy().ravel())

@@ -1,8 +1,8 @@
 """Errors of a table that was solved on a condensed pair, at a part of the cost of solving it.
 
-The rougher discretizations are those of an analysis, at half of the positions or fewer, and the parts of
-their changes that are left are the same. What is between the positions is told by half of them. Coarse meshes
-that are not at hand are no reason to compute any: the error known of the level stands in.
+The rougher discretizations are those of an analysis, at half of the positions or fewer, and the errors are
+the same parts of their changes. The error between the positions is estimated from half of them. Where no
+coarse meshes are cached, none are computed: the usual error of the mesh level is stated instead.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from fe_contact.planning.expected_error import usual_mesh_error
 from fe_contact.planning.plan import Plan
 from fe_contact.ste import SteDatabase
 from fe_contact.ste.curve_errors import AT_NODES
-from fe_contact.ste.curve_quantities import MEAN, QUANTITIES
+from fe_contact.ste.curve_quantities import MEAN, PEAK_TO_PEAK, QUANTITIES
 from fe_contact.types import FloatArray
 
 OVER_MEDIAN = 2.0
@@ -38,7 +38,7 @@ def condensed_errors(
     """Estimate the errors of a table of one alignment.
 
     `contacts` have the same flanks on rougher discretizations, assembled at the `sample`, whose points are
-    solved again. Between the loads nothing is estimated (NaN): the table is of the loads asked.
+    solved again. Errors between the loads are not estimated (NaN): the table is for its loads alone.
     """
     points, solution, plan = run.places, run.solution, run.plan
     start = sample.start(run.problem, solution)
@@ -66,14 +66,23 @@ def condensed_errors(
     _, between = interval_errors(errors.shape[2:], {})
     every = np.concatenate([errors, between])
     nowhere = np.empty((0,) * 4)  # no point between nodes is assessed
-    return AssessedTable(sources.total, every, of_arm, nowhere, None, sources.to_json(), {}, bias)
+    return AssessedTable(
+        band=sources.total,
+        curve_error=every,
+        load_arm_error=of_arm,
+        interval_error=nowhere,
+        inserted=None,
+        by_source=sources.to_json(),
+        validation={},
+        bias=bias,
+    )
 
 
 def _expected(table: SteDatabase, plan: Plan, contact: PairContact) -> tuple[FloatArray, FloatArray]:
     """Return the known errors of the level of the meshes, (23, F, 1, 1), and its band (1, F, 1, 1), m.
 
-    A harmonic may be wrong by as much as peak-to-peak. A misaligned pair leads at no load, and so may its
-    mean: what the meshes are wrong by then hangs on what the load adds.
+    The error of a harmonic is that of peak-to-peak. At no load the transmission error of a misaligned pair is
+    negative, and so its mean may be small or negative; the error then is a part of what the load adds.
     """
     ste = np.nan_to_num(table.static_transmission_error)
     added = (ste - np.nan_to_num(table.no_load_transmission_error)[:, None]).mean(axis=0)
@@ -82,4 +91,4 @@ def _expected(table: SteDatabase, plan: Plan, contact: PairContact) -> tuple[Flo
     of_mean, of_ripple = usual_mesh_error(contact.pair, plan)
     errors[:] = OVER_MEDIAN * of_ripple * mean
     errors[MEAN] = OVER_MEDIAN * of_mean * mean
-    return errors, errors[MEAN][None] + 0.5 * errors[MEAN + 1][None]
+    return errors, errors[MEAN][None] + 0.5 * errors[PEAK_TO_PEAK][None]

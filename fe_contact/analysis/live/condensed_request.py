@@ -15,7 +15,7 @@ from fe_contact.effects import EFFECTS
 from fe_contact.geometry import ParallelAxes
 
 OF_BODIES = tuple(effect.name for effect in EFFECTS if effect.of_bodies)
-"""Effects that decide which finite elements there are."""
+"""Effects that change the finite-element meshes of the bodies."""
 
 
 def condense(pair: ParallelAxes, acting: Checked, cache: Path | None) -> CondensedPair:
@@ -28,8 +28,8 @@ def condense(pair: ParallelAxes, acting: Checked, cache: Path | None) -> Condens
     pair : GearPair or InternalGearPair
         Of the bodies, with any flanks.
     acting : Checked
-        The request of the same bodies in which everything acts that may act later: by it model and mesh are
-        chosen, and the highest load decides the load patches.
+        The request of the same bodies in which every effect acts that may act later. It decides model and
+        mesh, and its highest load the load patches.
     cache : Path, optional
         Directory of flank compliances.
     """

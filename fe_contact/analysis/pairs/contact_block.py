@@ -88,7 +88,7 @@ def solve_block(bodies: Bodies, block: ContactBlock) -> SolvedBlock:
 
 
 def deflect_block(bodies: Bodies, block: ContactBlock) -> tuple[FloatArray, ...]:
-    """Return the curves (rows, L, 2) of each model alone, of one set of loads: one task."""
+    """Return the curves (rows, L, 2) of each model under the one set of loads of a block: one task."""
     where, (load,) = block.candidates.position, block.loads
     return tuple(
         curves_of_point(point, where, load, block.pitches, block.start(k))

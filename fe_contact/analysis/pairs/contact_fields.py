@@ -24,9 +24,10 @@ def contact_fields(
     solution: ContactSolution,
     pressed: tuple[FloatArray, BoolArray] | None = None,
 ) -> dict[str, NDArray[Any]]:
-    """Arrays (P, F, ...) of one operating point by name in the database; `OF_PAIRS` by its own pairs.
+    """Return the arrays (P, F, ...) of one operating point by their names in the database.
 
-    `pressed`: the `contact_pressure` of its forces, if it is known.
+    The last axis of `OF_PAIRS` are the N pairs of its candidates (m of them). `pressed`: the
+    `contact_pressure` of its forces, if it is known.
     """
     candidates = problem.candidates
     good = solution.status == Status.CONVERGED
@@ -61,7 +62,7 @@ def largest_by_pair(candidates: Candidates, values: FloatArray) -> FloatArray:
 def support_fields(
     _pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution
 ) -> dict[str, NDArray[Any]]:
-    """Arrays (P, S) of one place at the support loads."""
+    """Return the arrays (P, S) of one operating point at the support loads, by name."""
     carrying = carrying_pairs(solution.force, problem.candidates)
     return dict(zip(OF_SUPPORT, (solution.deflection, solution.tangent, carrying), strict=True))
 

@@ -29,7 +29,7 @@ def problems_in_parts(
 ) -> Iterator[ContactProblem]:
     """Yield the contact of positions (P,) in [0, 1) of each base pitch (T,), several base pitches at a time.
 
-    `pitches` None stands for the first base pitch. Where all teeth are alike, one base pitch is all.
+    `pitches` None stands for the first base pitch. Where all teeth are alike, only the first is yielded.
     """
     contact, model = point.contact, point.model
     if pitches is None or model.period == 1:

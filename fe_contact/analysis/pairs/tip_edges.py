@@ -27,14 +27,14 @@ def handovers(pair: ParallelAxes) -> FloatArray:
 def edge_depth(point: OperatingPoint, problem: ContactProblem, solution: ContactSolution) -> FloatArray:
     """Return how far tip edges would be inside the mating flanks (L,), m; 0 where they stay clear.
 
-    Under the forces as solved: what the loaded teeth move at the unloaded edges is in.
+    The forces are those of the solution. The motion of the unloaded edges with the loaded teeth is included.
     """
     where = problem.candidates.position
     phase, pitch = where[: len(problem.compliance)] % 1.0, np.floor(where).astype(np.int64)
     model = replace(point.model, corner_contact=True)
     edges = point.contact.problem(model, phase, pitch if model.tooth_gaps else None)
     touch = edges.candidates.touch
-    off_line = (touch.lever_1 != 1.0) | (touch.lever_2 != 1.0)
+    off_line = (touch.lever_1 != 1.0) | (touch.lever_2 != 1.0)  # contacts of edges off the line of action
     force = _carried(problem.candidates, edges.candidates, np.nan_to_num(solution.force))
     motion = edges.displacement(force)
     closing = edges.candidates.motion_arm[:, None, :] * np.nan_to_num(solution.deflection)[:, :, None]
@@ -42,10 +42,10 @@ def edge_depth(point: OperatingPoint, problem: ContactProblem, solution: Contact
     return np.asarray(np.max(closing - motion - gap[:, None, :], axis=(0, 2), initial=0.0))
 
 
-def _carried(these: Candidates, those: Candidates, force: FloatArray) -> FloatArray:
-    """Return forces (P, L, n) of some candidates on others, of which they are a part."""
-    column = {key: i for i, key in enumerate(zip(those.pair.tolist(), those.face_position, strict=True))}
-    carried = np.zeros((*force.shape[:2], those.pair.size))
-    keys = zip(these.pair.tolist(), these.face_position, strict=True)
+def _carried(part: Candidates, whole: Candidates, force: FloatArray) -> FloatArray:
+    """Return the forces (P, L, n) on candidates that are `part` of others, on the `whole` of these."""
+    column = {key: i for i, key in enumerate(zip(whole.pair.tolist(), whole.face_position, strict=True))}
+    carried = np.zeros((*force.shape[:2], whole.pair.size))
+    keys = zip(part.pair.tolist(), part.face_position, strict=True)
     carried[:, :, [column[key] for key in keys]] = force
     return carried

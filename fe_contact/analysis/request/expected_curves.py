@@ -1,9 +1,10 @@
 """Expected mean and ripple of the transmission error, before anything is computed.
 
-Errors of meshes and slices are parts of the mean transmission error; requested is a part of peak-to-peak,
-which may be half of the mean or a thousandth. Uncoupled slices tell which in hundredths of a second. Without
-the coupling of the teeth and the bodies their mean is 0.55 to 0.94 of that of finite elements (median 0.78),
-their ripple 0.8 to 1.4 times it where it is above 5 % of the mean (docs/accuracy.md, "Plan").
+Errors of meshes and slices are parts of the mean transmission error, but a tolerance is a part of
+peak-to-peak, the ripple, which may be half of the mean or a thousandth of it. Uncoupled slices give both in
+hundredths of a second. They lack the coupling of the teeth and the bodies: their mean is 0.55 to 0.94 of that
+of finite elements (median 0.78), their ripple 0.8 to 1.4 of it where it is above 5 % of the mean
+(docs/accuracy.md, "Plan").
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ UNSEEN_RIPPLE = 0.007
 def expected_curves(checked: Checked) -> ExpectedCurves | None:
     """Solve some loads and alignments of a request by thin slices, in its first base pitch.
 
-    None for internal pairs, which the stiffness of the slices does not know, and where shafts couple them.
+    None for internal pairs, for which the slices have no stiffness, and where shafts couple the slices.
     """
     request, model = checked.request, checked.model
     if request.pair.internal or model.compliances:

@@ -1,4 +1,4 @@
-"""The influence of every effect of a request at its nominal load: the one source of their sizes."""
+"""The influence of every effect of a request at its nominal load, from which all results take it."""
 
 from __future__ import annotations
 
@@ -23,8 +23,9 @@ def estimated_influences(checked: Checked, names: Iterable[str] | None = None) -
     Returns
     -------
     dict of str to Influence
-        At the highest load and the largest misalignment in size. None where one of the two states cannot be
-        had, as a plane with what acts across the face, or the springs do not know it.
+        Influences at the highest load and the largest misalignment in size. None where the model with or the
+        one without the effect does not exist, as a plane with what acts across the face, or where the springs
+        of the estimate do not represent the effect.
     """
     chosen = [effect.name for effect in checked.request.registry] if names is None else list(names)
     neglected = [name for name in chosen if name in checked.request.neglected]

@@ -1,4 +1,7 @@
-"""Limits of a plane model, all that acts across the face, and what only a plane model has."""
+"""Refusal of requests that their model does not hold.
+
+A plane model holds nothing that acts across the face; a model in three dimensions holds no sectors of gears.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +31,7 @@ def refuse_beyond_plane(scene: ContactScene, model: ContactModel, ledger: Sequen
         raise InputError("pinion.helix_angle", pair.pinion.helix_angle, "0 for a plane model", remedy)
     for name, gear in scene.gears.items():
         _refuse_varying_flanks(f"{name}.modification", gear.modification.along_face, remedy)
-        if pair.shafts[name == "wheel"] is not None:
+        if pair.shafts[name == "wheel"] is not None:  # index 0: pinion
             raise InputError(f"{name}.shaft", "given", "left out for a plane model", remedy)
     if np.any(scene.misalignment != 0.0):
         raise InputError("misalignments", scene.misalignment.tolist(), "[0.0] for a plane model", remedy)

@@ -111,7 +111,11 @@ def _checked(
 
 
 def _composed(request: Request) -> tuple[ContactModel, tuple[LedgerEntry, ...]]:
-    """Compose the model; the ledger says what was requested, and of what is neglected what the scene held."""
+    """Compose the model, and return it with its ledger.
+
+    An entry of the ledger has the choice as requested. For a neglected effect it has the verdict on the scene
+    with that effect.
+    """
     composed, ledger = compose(request.scene, request.choices)
     choices, overrides = request.requested_choices, {**request.neglected, **request.turned_on}
     scene = request.complete_scene

@@ -14,7 +14,7 @@ from fe_contact.planning.discretization import PLANE_REFINEMENT
 from fe_contact.ste import SteDatabase
 
 SECTOR_FLANK_SIZE = {"draft": 0.2, "standard": 0.15, "fine": 0.1}
-"""Modules; of `SectorRecipe`."""
+"""Sizes of elements on the flank in modules, those of `SectorRecipe`."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,8 @@ class FiniteElementFidelity:
     def as_computed(self, checked: Checked) -> Checked:
         """Return the request with this model and mesh; explicit choices of other effects stay."""
         request = checked.request
-        model_effects = face, width = request.model_effects
+        model_effects = request.model_effects
+        face, width = model_effects
         effects = {
             name: choice for name, choice in request.options.effects.items() if name not in model_effects
         }

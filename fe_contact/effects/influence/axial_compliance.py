@@ -22,7 +22,7 @@ SAMPLES = 101
 
 @lru_cache(maxsize=64)
 def plate_bending(gear: Toothing) -> FloatArray:
-    """Axial displacement (z,) of the load's place per axial force, m/N, 0, 1, ... teeth apart."""
+    """Return the axial displacement (z,) per axial force, m/N, at the load and 1, 2, ... teeth from it."""
     material, radius = gear.material, gear.root_radius
     rigidity = material.youngs_modulus * gear.face_width**3 / (12.0 * (1.0 - material.poissons_ratio**2))
     ratio, above = gear.seat_radius / radius, abs(gear.reference_radius / radius - 1.0)
@@ -33,7 +33,7 @@ def plate_bending(gear: Toothing) -> FloatArray:
 
 @lru_cache(maxsize=64)
 def antiplane_shear(gear: Toothing) -> FloatArray:
-    """Axial displacement (z,) per line load, m/(N/m), of the body's edge 0, 1, ... teeth apart.
+    """Return the axial displacement (z,) of the body's edge per line load, m/(N/m), as in `plate_bending`.
 
     A load is spread over half a pitch, the thickness of its tooth.
     """
@@ -46,22 +46,23 @@ def antiplane_shear(gear: Toothing) -> FloatArray:
 
 
 def _around(gear: Toothing, amplitudes: FloatArray) -> FloatArray:
-    """Sum the harmonics of a force at tooth 0 at all teeth; the even one counts half."""
+    """Return the sum (z,) of the harmonics of a force at tooth 0 at all teeth; harmonic 0 counts half."""
     amplitudes = amplitudes * np.where(np.arange(amplitudes.size) == 0, 0.5, 1.0)
     angle = 2.0 * math.pi * np.arange(gear.teeth) / gear.teeth
     return np.asarray(np.cos(angle[:, None] * np.arange(amplitudes.size)) @ amplitudes)
 
 
 def _bent(n: int, ratio: float, above: float, poisson: float) -> float:
-    """Displacement at a lever `above` the edge, for harmonic `n` of a unit force there.
+    """Return the axial displacement at a distance `above` the edge, for harmonic `n` of a unit force there.
 
-    A plate whose edge has the radius 1 and whose rigidity is 1, held at the radius `ratio`: inside, or
-    outside as a ring gear is. Its shapes are r^n, r^-n, r^(n + 2), r^(2 - n), with ln r where two are one.
+    The plate has the radius 1 at its edge, the rigidity 1, and is held at the radius `ratio`: inside, or
+    outside as a ring gear is. Its shapes are r^n, r^-n, r^(n + 2), r^(2 - n), with ln r where two coincide.
     """
     powers = [(n, 0), (-n, 0), (n + 2, 0), (2 - n, int(n == 1))] if n else [(0, 0), (0, 1), (2, 0), (2, 1)]
     inner_edge, edge = (np.array([_derivatives(*power, r) for power in powers]).T for r in (ratio, 1.0))
     value, slope, second, third = edge
     outwards = math.copysign(1.0, 1.0 - ratio)
+    # radial bending moment and effective shear force of each shape at the edge, by Kirchhoff's plate theory
     moment = second + poisson * (slope - n**2 * value)
     force = third + second - (1 + n**2) * slope + 2 * n**2 * value - (1.0 - poisson) * n**2 * (slope - value)
     factors = np.linalg.solve(

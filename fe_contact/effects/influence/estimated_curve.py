@@ -42,6 +42,7 @@ _PATCH, _EDGE = 0.15, 0.0125
 
 
 _MAX_STEPS, _EVEN = 512, 3
+"""Number of steps tried by `spread_pitches`, and orders of each gear's rotation that it looks at."""
 
 
 UNEVEN_PITCHES = 4
@@ -114,10 +115,10 @@ class Springs:
 
 
 def spread_pitches(periods: Sequence[int]) -> IntArray:
-    """Return at most `MAX_PITCHES` base pitches of gears that repeat after so many, by equal steps.
+    """Return at most `MAX_PITCHES` base pitches, at equal steps, of gears that repeat after `periods`.
 
-    Of all steps the one by which both gears stand most evenly at all their angles, and against each other:
-    the orders up to `_EVEN` of both, their sums and differences have the least mean.
+    The step is the one that spreads the angles of both gears, and against each other, most evenly: the
+    largest mean of the orders up to `_EVEN` of both gears, and of their sums and differences, is least.
     """
     common_period = math.lcm(*periods)
     if common_period <= MAX_PITCHES:

@@ -1,4 +1,9 @@
-"""Compliance of a tooth under a line load, in closed form."""
+"""Compliance of a tooth under a line load, in closed form.
+
+References
+----------
+C. Weber, K. Banaschek: Formaenderung und Profilruecknahme bei gerad- und schraegverzahnten Raedern, 1953.
+"""
 
 from __future__ import annotations
 
@@ -34,7 +39,7 @@ class _ToothBending:
 
 @lru_cache(maxsize=64)
 def tooth_bending(gear: Toothing) -> _ToothBending:
-    """Integrate over the tooth of `gear`, plane strain.
+    """Return the compliance of a tooth of `gear` in plane strain, by Weber's and Banaschek's integrals.
 
     A helical tooth bends in its normal section: there it is thinner, and longer by the same factor.
     """
@@ -59,7 +64,10 @@ def tooth_bending(gear: Toothing) -> _ToothBending:
 def _energy(
     height: FloatArray, thickness: FloatArray, lever: FloatArray, slope: FloatArray, ratio: float
 ) -> FloatArray:
-    """12 int (h - y)^2/t^3 dy + (2.4/(1 - nu) + tan^2) int dy/t up to the lever h of every load."""
+    """Return 12 int (h - y)^2/t^3 dy + (2.4/(1 - nu) + tan^2) int dy/t up to the lever h of every load.
+
+    The terms are bending, shear and compression.
+    """
     zeroth, first, second = (_up_to(lever, height, height**k / thickness**3) for k in range(3))
     bending = lever**2 * zeroth - 2.0 * lever * first + second
     return np.asarray(
@@ -73,5 +81,5 @@ def _up_to(lever: FloatArray, height: FloatArray, values: FloatArray) -> FloatAr
 
 
 def half_plane(gear: Toothing) -> float:
-    """2 (1 - nu^2)/(pi E), 1/Pa."""
+    """Return the compliance 2 (1 - nu^2)/(pi E) of a half plane, 1/Pa."""
     return 2.0 * (1.0 - gear.material.poissons_ratio**2) / (math.pi * gear.material.youngs_modulus)
