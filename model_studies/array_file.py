@@ -106,7 +106,7 @@ def _dimension(sizes: dict[str, int], name: str, size: int) -> str:
 
 
 def _restored(values: Any, kind: list[Any]) -> Any:
-    """Return an array from its variable, None if it has none; `kind` is type and shape."""
+    """Return an array from its variable, which is None for an empty array; `kind` is type and shape."""
     dtype, shape = np.dtype(kind[0]), tuple(kind[1])
     if dtype.kind not in NUMBERS:
         raise ValueError(dtype)
@@ -118,7 +118,7 @@ def _restored(values: Any, kind: list[Any]) -> Any:
 
 
 def _digest(documents: str, arrays: Mapping[str, Any]) -> str:
-    """SHA-256 over the documents and all arrays in their order."""
+    """Return the SHA-256 of the documents and all arrays in their order."""
     hasher = hashlib.sha256(documents.encode())
     for name, values in arrays.items():
         hasher.update(name.encode())

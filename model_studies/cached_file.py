@@ -14,36 +14,36 @@ Cached = TypeVar("Cached")
 def read_cached(
     file: Path | None, read: Callable[[Path], Cached], unreadable: type[Exception]
 ) -> Cached | None:
-    """Return what a file keeps; None where it is absent or damaged, or there is no file.
+    """Return the result in a cache file, None without a file or where it is absent or damaged.
 
     Parameters
     ----------
     file : Path or None
-        None: nothing is kept.
+        Cache file; None: there is no cache.
     read : callable
-        Of the file.
+        Reads the result from the file.
     unreadable : type of Exception
-        What `read` raises of a file that is absent or damaged.
+        What `read` raises if the file is absent or damaged.
     """
     if file is None:
         return None
     with suppress(unreadable):
         result = read(file)
-        with suppress(OSError):  # of another owner
-            os.utime(file)  # its last use, by which caches are kept small
+        with suppress(OSError):  # the file belongs to another user
+            os.utime(file)  # time of last use: a cache that grows too large drops the oldest files
         return result
     return None
 
 
 def keep_cached(result: Cached, file: Path | None, write: Callable[[Cached, Path], object]) -> None:
-    """Write a result into its file; a folder that cannot be written is no reason to lose it.
+    """Write a result into its cache file, if the folder can be written.
 
     Parameters
     ----------
     file : Path or None
-        None: it is not kept.
+        Cache file; None: there is no cache.
     write : callable
-        Of the result, into the file.
+        Writes the result into the file.
     """
     if file is None:
         return

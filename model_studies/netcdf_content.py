@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 _PACKED = {"compression": "gzip", "compression_opts": 4, "shuffle": True}
 _NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable."
+"""Name that netCDF-4 gives to a dimension without coordinate, before its size in ten places."""
 
 
 class Variable(NamedTuple):
@@ -85,7 +86,10 @@ class NetcdfContent:
             return image
 
     def _added(self, file: Any, name: str, scales: Mapping[str, Any]) -> Any:
-        """Add a variable that is not the coordinate along a dimension; netCDF marks one called as another."""
+        """Add a variable that is not the coordinate along a dimension.
+
+        One with the name of a dimension gets the prefix by which netCDF-4 tells it from a coordinate.
+        """
         dimensions, values, _ = self.variables[name]
         values = np.asarray(values)
         packed = _PACKED if values.size and values.ndim and name not in self.coordinates else {}
@@ -101,7 +105,7 @@ class NetcdfContent:
         return dataset
 
     def _auxiliary(self, name: str) -> dict[str, str]:
-        """Return the attribute that names further coordinates of a variable, not along its dimensions."""
+        """Return the attribute ``coordinates`` of a variable, which names those that are no dimensions."""
         dimensions = set(self.variables[name].dimensions)
         along = [
             coordinate
@@ -115,26 +119,26 @@ class NetcdfContent:
 def _scale(file: Any, name: str, size: int, variable: Variable | None, number: int) -> Any:
     """Add a dimension: the coordinate along it, or a mark that there is none."""
     content: dict[str, Any] = {"dtype": ">f4"}
-    called = f"{_NO_VARIABLE}{size:10}"
+    scale_name = f"{_NO_VARIABLE}{size:10}"
     if variable is not None and variable.dimensions == (name,):
-        content, called = {"data": variable.values}, name
+        content, scale_name = {"data": variable.values}, name
     scale = file.create_dataset(name, (size,), maxshape=_unlimited((size,)), track_order=True, **content)
-    make_dimension(scale, number, called)
+    make_dimension(scale, number, scale_name)
     return scale
 
 
 def _unlimited(shape: tuple[int, ...]) -> tuple[int | None, ...] | None:
-    """Return the largest shape, with None for dimensions without entries; None if there are none such."""
+    """Return the largest shape, with None for each empty dimension; None if no dimension is empty."""
     return None if all(shape) else tuple(size or None for size in shape)
 
 
-def make_dimension(dataset: Any, number: int, called: str) -> None:
-    """Let a dataset of h5py be the `number`-th dimension of its file, called by its name if it has values."""
-    dataset.make_scale(called)
+def make_dimension(dataset: Any, number: int, scale_name: str) -> None:
+    """Make a dataset of h5py the `number`-th dimension of its file."""
+    dataset.make_scale(scale_name)
     dataset.attrs["_Netcdf4Dimid"] = np.int32(number)
 
 
 def describe(target: Any, attributes: Mapping[str, Any]) -> None:
-    """Write attributes of a file or dataset of h5py; numbers are rows in netCDF."""
+    """Write attributes of a file or dataset of h5py; netCDF stores a number as an array of one."""
     for name, value in attributes.items():
         target.attrs[name] = value if isinstance(value, str) else np.atleast_1d(value)

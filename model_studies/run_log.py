@@ -1,8 +1,8 @@
 """The log of predicted and measured cost, which improves the prediction of the next run.
 
 Each line of the file is one stage of one run. The correction of a stage is the median of measured over
-predicted time of its last runs, in logarithms, among which two made-up runs stand that went as predicted: a
-single odd run moves nothing far, and many runs that agree decide.
+predicted time of its last runs, in logarithms. Two made-up runs that went as predicted are added: with them a
+single odd run changes little, while many runs that agree prevail.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from pathlib import Path
 
 FILE = "run-log.jsonl"
 LAST = 40
-"""Runs of a stage that count."""
+"""Number of last runs of a stage that count."""
 _MADE_UP = 2
 _SHORTEST = 0.02
 """Shortest stage whose cost corrects predictions, s. Shorter ones read from the cache, or call libraries."""
-_LARGEST_FILE = 1_000_000
+_LARGEST_FILE = 1_000_000  # bytes, above which the log starts anew
 
 
 def corrections(cache: Path | None) -> dict[str, float]:
-    """Return the factor that earlier runs put on the predicted time, by stage that has been run."""
+    """Return the correction of every stage that has been run: a factor on its predicted time."""
     if cache is None:
         return {}
     try:
@@ -36,7 +36,10 @@ def corrections(cache: Path | None) -> dict[str, float]:
 
 @lru_cache(maxsize=8)
 def _corrections(file: Path, changed: int, size: int) -> tuple[tuple[str, float], ...]:
-    """Return the factors of a file as it was `changed`: a run is predicted once for every effect."""
+    """Return the corrections of a file in its state of this time and size.
+
+    The state is the key of the cache: one plan predicts a run many times, once for every effect.
+    """
     ratios: dict[str, list[float]] = {}
     for stage, ratio in _lines(file):
         ratios.setdefault(stage, []).append(math.log(ratio))
@@ -47,7 +50,7 @@ def _corrections(file: Path, changed: int, size: int) -> tuple[tuple[str, float]
 
 
 def record(cache: Path | None, predicted: Mapping[str, float], measured: Mapping[str, float]) -> None:
-    """Add a run.
+    """Add the stages of a run to the log.
 
     Parameters
     ----------

@@ -1,4 +1,7 @@
-"""Spread of a sample: quantiles with bounds that assume no shape of the distribution, rank correlation."""
+"""Spread of a sample: quantiles with bounds that assume no shape of the distribution, rank correlation.
+
+Axes: N members of the sample, L quantities (one a load, in tables), d deviations.
+"""
 
 from __future__ import annotations
 
@@ -10,16 +13,17 @@ from bounds.types import FloatArray
 
 
 def quantiles(sample: FloatArray, fractions: float | tuple[float, ...]) -> FloatArray:
-    """Return the values that further members are below with given probabilities, by samples (N, ...).
+    """Return the quantiles of a sample (N, ...): further members fall below with these probabilities.
 
     NaN of the sample are left out; NaN where none is left.
 
     Notes
     -----
-    A further member falls below the k-th of N with the probability k / (N + 1), whatever the distribution:
-    between the 5 % and 95 % so estimated lie 90 % of the others, where ranks k / N hold 85 % of them by 32.
+    A further member falls below the k-th of N with the probability k / (N + 1), whatever the distribution. So
+    90 % of further members lie between the estimated 5 % and 95 % quantiles. Ranks k / N would enclose only
+    85 % with a sample of 32.
     """
-    with warnings.catch_warnings(action="ignore", category=RuntimeWarning):  # nothing left
+    with warnings.catch_warnings(action="ignore", category=RuntimeWarning):  # all NaN
         return np.asarray(np.nanquantile(sample, fractions, axis=0, method="weibull"))
 
 
@@ -51,10 +55,10 @@ def quantile_bounds(
 
 
 def rank_correlation(deviation: FloatArray, sample: FloatArray) -> FloatArray:
-    """Return Spearman's rank correlation (d, L) of each deviation or of its size, whichever is more.
+    """Return Spearman's rank correlation (d, L) of the responses with each deviation or with its size.
 
-    `deviation` (N, d) is taken from the design, `sample` (N, L) follows it. A response may grow to both sides
-    of a design, so the size of a deviation counts as well as its value.
+    Of both the stronger is returned: a response may grow to both sides of the design. `deviation` (N, d)
+    counts from the design, `sample` (N, L) is the response.
     """
     from scipy.stats import rankdata  # noqa: PLC0415 (start-up time)
 

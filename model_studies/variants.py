@@ -31,9 +31,9 @@ def run_variants(
     Parameters
     ----------
     compute : callable
-        For workers a function of a module, or a `partial` of one with what all variants share.
+        Computes a variant. Workers need a function of a module, or a `partial` of one.
     seconds : float, optional
-        Predicted CPU seconds of all, as of `divided`.
+        Predicted CPU seconds of all variants, see `divided`.
 
     Returns
     -------
@@ -70,7 +70,7 @@ def reason_of_failure(
 
 
 def _attempted(shared: tuple[Callable[[V], R], tuple[type[Exception], ...]], variant: V) -> Any:
-    """Return the result of a variant and None, or None and the reason why it has none: one task."""
+    """Return the result of a variant and None, or None and the reason why there is no result."""
     compute, failures = shared
     omitted: dict[str, str] = {}
     with reason_of_failure(omitted, "variant", failures):

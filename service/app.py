@@ -55,12 +55,12 @@ from service.worker.process import Registry, default_registry
 def create_app(settings: Settings, registry: Registry | None = None, *, works: bool = True) -> FastAPI:
     """Return the application; it opens its data directory and starts its scheduler when it is started.
 
-    `registry`: the processes it offers; default: analyze and simulate. Raises `BadInput`: another service
-    works in the data directory, or it cannot be written; the files of results are those of another database;
-    the address is not loopback and there are no access keys, or their file cannot be used; the process may
-    open too few files; confinement is required and the system lacks a part of it.
+    `registry`: the processes it offers; default: analyze and simulate. `works`: it runs jobs itself. Raises
+    `BadInput`: another service works in the data directory, or it cannot be written; the files of results are
+    those of another database; the address is not loopback and there are no access keys, or their file cannot
+    be used; the process may open too few files; confinement is required and the system lacks a part of it.
     """
-    warnings.filterwarnings("ignore", message="implausible")  # said in the fields of the caller
+    warnings.filterwarnings("ignore", message="implausible")  # the answer names them by the caller's fields
     if settings.require_confinement:
         require_confinement()
     identities, bearable = open_identities(settings), capacity(settings.workers if works else 0)
@@ -109,7 +109,7 @@ def _route(app: FastAPI, offered: Registry) -> None:
 
 
 def _lifespan(context: Context, lock: DirectoryLock | None) -> Callable[[FastAPI], Any]:
-    """Return the lifespan that runs the scheduler with the application, and locks the directory."""
+    """Return the lifespan: from start to end of the application the directory is locked and jobs run."""
 
     @asynccontextmanager
     async def lifespan(_app: FastAPI) -> AsyncIterator[None]:

@@ -13,7 +13,7 @@ from service.folders import locked
 class DirectoryLock:
     """An advisory lock on a data directory; the system lifts it when the process dies, however it dies.
 
-    A process that runs jobs takes it: workspaces, logs and memory are its own. Others need none.
+    A process that runs jobs takes it, since workspaces, logs and memory must be its own. Others need no lock.
     """
 
     def __init__(self, directory: Path) -> None:

@@ -15,7 +15,7 @@ DEFAULT_BYTES = 2_000_000_000
 
 @dataclass(frozen=True, order=True)
 class UsedFile:
-    """A file by its last use, s since the epoch; reading it sets the time of its last change."""
+    """A file with its last use, s since the epoch: the time of its last change, which readers set."""
 
     used: float
     size: int

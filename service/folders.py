@@ -13,7 +13,7 @@ from host import lock
 
 
 def locked(path: Path, flags: int = os.O_RDWR | os.O_CREAT) -> int | None:
-    """Open a file or folder and lock it as long as it is open; None: another process has."""
+    """Open a file or folder, lock it and return the descriptor; None: another process has the lock."""
     descriptor = os.open(path, flags, 0o600)
     try:
         lock(descriptor)
@@ -38,9 +38,9 @@ def locked_folder(home: Path) -> Iterator[Path]:
 
 
 def remove_left(home: Path) -> None:
-    """Remove folders below another that processes left which the system or somebody killed."""
+    """Remove folders below `home` whose processes were killed and could not remove them."""
     for folder in home.iterdir() if home.is_dir() else ():
         descriptor = locked(folder, os.O_RDONLY)
-        if descriptor is not None:  # of no process that lives: several share a data directory
+        if descriptor is not None:  # no living process has it: several may share a data directory
             shutil.rmtree(folder, ignore_errors=True)
             os.close(descriptor)

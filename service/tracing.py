@@ -1,7 +1,7 @@
 """Traces: where a request came from (W3C Trace Context), and spans by the API of OpenTelemetry.
 
-That API is silent without its SDK, which the extra `telemetry` brings, and without a receiver in the standard
-variables ``OTEL_...``.
+The API records nothing without its SDK, which the extra `telemetry` installs, or without a receiver in the
+standard variables ``OTEL_...``.
 """
 
 from __future__ import annotations
@@ -44,13 +44,13 @@ def valid_traceparent(text: str) -> str:
 
 
 def trace_fields(traceparent: str) -> dict[str, str]:
-    """Return the trace for a line of the log; nothing without one."""
+    """Return the fields of a trace for a line of the log; none without a trace."""
     match = _VALID.fullmatch(traceparent)
     return {} if match is None else {"trace_id": match[1]}
 
 
 def traceparent_of(span: Span) -> str:
-    """Return a span as W3C Trace Context writes it, empty for one of no trace."""
+    """Return the traceparent of a span, W3C Trace Context; empty for a span without trace."""
     carrier: dict[str, str] = {}
     _W3C.inject(carrier, set_span_in_context(span))
     return carrier.get("traceparent", "")
@@ -62,7 +62,7 @@ def current_traceparent(sent: str) -> str:
 
 
 def begun_span(name: str, parent: str, at_s: float, attributes: Mapping[str, Fact] | None = None) -> Span:
-    """Return a span that began at an instant, s since 1970, within a parent or, without one, a trace."""
+    """Return a span that began at an instant, s since 1970; without a parent it begins a trace."""
     tracer = (span_provider() or trace.get_tracer_provider()).get_tracer("lineofaction", solver_version())
     context = _W3C.extract({"traceparent": parent})
     return tracer.start_span(name, context, attributes=dict(attributes or {}), start_time=int(at_s * _NS))
@@ -79,7 +79,7 @@ def end_span(
 
 
 def telemetry_options() -> TelemetryConfig:
-    """Return the options by which the framework makes a span of each request, but of probes."""
+    """Return the options by which the framework makes a span of each request except probes."""
     return {
         "tracer_provider": span_provider(),
         "metrics": False,
@@ -101,9 +101,9 @@ def flush_spans() -> None:
 
 @cache
 def span_provider() -> TracerProvider | None:
-    """Return the provider that sends this process's spans to the receiver of the environment; None: none.
+    """Return the provider that sends this process's spans to the receiver that the environment names.
 
-    Then they go where the provider of the API sends them, by default nowhere.
+    None: it names none. Then spans go where the provider of the API sends them, by default nowhere.
     """
     if not _is_requested():
         return None
@@ -124,7 +124,7 @@ def span_provider() -> TracerProvider | None:
 
 
 def _is_requested() -> bool:
-    """Whether the environment names a receiver, or the usual one by its protocol."""
+    """Whether the environment names a receiver, or the protocol otlp, which has a usual receiver."""
     exporter = os.environ.get("OTEL_TRACES_EXPORTER", "").strip().lower()
     disabled = os.environ.get("OTEL_SDK_DISABLED", "").strip().lower() == "true"
     if disabled or exporter == "none":

@@ -1,4 +1,7 @@
-"""A pair in a report: its name, its warnings, its drawing and its data sheet."""
+"""A pair in a report: its name, its warnings, its drawing and its data sheet.
+
+A gear as made has tooth flanks that deviate from the design; a lead is the trace of a flank along the face.
+"""
 
 from __future__ import annotations
 
@@ -55,7 +58,7 @@ from lineofaction.report.drawing.figure import (
 from lineofaction.report.drawing.page import Section
 from lineofaction.report.teeth_as_made import teeth_as_made
 
-_PARTS: dict[str, Callable[..., object]] = {
+_PARTS: dict[str, Callable[..., object]] = {  # fields of a gear in a request that are objects
     "modification": FlankModification,
     "material": Material,
     "pitch_deviation": PitchDeviation,
@@ -66,7 +69,7 @@ _PARTS: dict[str, Callable[..., object]] = {
     "tooth_flanks": ToothFlank,
     "flank_grid": FlankGrid,
 }
-_POINTS = 201
+_POINTS = 201  # along a drawn profile or lead
 _AXES = (Direction.PROFILE, Direction.FACE)
 _SIDES = dict(zip(("pinion", "wheel"), palette.GEARS, strict=True))
 _HEIGHT = 3.4
@@ -100,9 +103,9 @@ def tolerance_class_of(database: SteDatabase) -> int | None:
 
 
 def iso_mesh_stiffness(database: SteDatabase) -> float | None:
-    """Mean mesh stiffness of ISO 6336-1 in N/m per m of face width, above 100 N/mm; None without a pair.
+    """Return the mean mesh stiffness of ISO 6336-1, N/m per m of face width; None without a pair.
 
-    None for a ring gear too: its approximation by a rack says nothing of the rim.
+    It holds above 100 N/mm of load. None for a ring gear too: its approximation by a rack leaves out the rim.
     """
     pair = pair_of(database)
     return iso6336_stiffness(pair).mesh_stiffness if isinstance(pair, GearPair) else None
@@ -135,12 +138,12 @@ def _parts(kind: Callable[..., object], content: Json | list[Json]) -> object:
 
 def pair_title(geometry: PairGeometry) -> str:
     """Name a pair by its teeth."""
-    one, other = geometry.teeth
-    return f"Gear pair {one}/{other}, internal" if geometry.internal else f"Gear pair {one}/{other}"
+    pinion, wheel = geometry.teeth
+    return f"Gear pair {pinion}/{wheel}, internal" if geometry.internal else f"Gear pair {pinion}/{wheel}"
 
 
 def pair_lead(geometry: PairGeometry) -> str:
-    """Say the dimensions of a pair."""
+    """Return the main dimensions of a pair as text."""
     return (
         f"center distance {1e3 * geometry.center_distance:.6g} mm, "
         f"face width {1e3 * geometry.face_width:.6g} mm, base pitch {1e3 * geometry.base_pitch:.5g} mm"
@@ -163,9 +166,9 @@ def pair_remarks(pair: ParallelAxes) -> list[Json]:
 
 
 def pair_drawing(pair: ParallelAxes, tolerance_class: int | None = None) -> Figure:
-    """Return the section of the mesh; where flanks are modified or as made, also profiles and leads.
+    """Draw the transverse section; where flanks are modified or as made, also profiles and leads.
 
-    About these the tolerances of a class are shaded, if there is one: F_alpha and F_beta of ISO 1328-1.
+    With a tolerance class, its F_alpha and F_beta of ISO 1328-1 are shaded about profiles and leads.
     """
     gears = {"pinion": pair.pinion, "wheel": pair.wheel}
     made = {name: _made(gear) for name, gear in gears.items()}
@@ -218,6 +221,7 @@ def _section(pair: ParallelAxes) -> Panel:
     points = outline["path_of_contact"]["points_mm"]
     path = np.array(sorted(points.values()))
     lines.append(Line("path of contact", path[:, 0], path[:, 1], palette.GREEN, width=2.4, markers=True))
+    # the name of D a row lower, so that it is clear of the name of E
     notes = tuple(Note(x, y, name, -(name == "D"), left=name in "AB") for name, (x, y) in points.items())
     pitch_point = pair.operating_pitch_radii[0] / MM
     x = Axis("mm", limits=(-_WIDTH * half, _WIDTH * half))
@@ -226,33 +230,34 @@ def _section(pair: ParallelAxes) -> Panel:
 
 
 def _gear_line(name: str, gear: Json, across: float) -> Line:
-    """Draw the teeth of a gear near the mesh; `across`, mm, is seen to either side."""
+    """Draw the teeth of a gear near the mesh; the drawing reaches `across`, mm, to either side."""
     tooth = np.array(gear["tooth_mm"])
     pitch = -2.0 * math.pi / gear["teeth"]  # teeth follow each other from left to right
     angles = math.radians(gear["angle_deg"]) + pitch * _near(gear, across)
     x = np.cos(angles)[:, None] * tooth[:, 0] - np.sin(angles)[:, None] * tooth[:, 1]
     y = np.sin(angles)[:, None] * tooth[:, 0] + np.cos(angles)[:, None] * tooth[:, 1]
     is_complete = len(angles) == gear["teeth"]
+    # a complete outline closes at its first point; a part of the teeth closes over the gear's center
     closed = [np.append(part.ravel(), part.ravel()[0] if is_complete else 0.0) for part in (x, y)]
-    center = gear["centre_mm"]  # where the ends of a part of the teeth meet
+    center = gear["centre_mm"]
     outline = Line(name, closed[0] + center[0], closed[1] + center[1], _SIDES[name], width=1.4)
-    return replace(outline, filled=gear["radius_mm"]["tip"] > gear["radius_mm"]["root"])  # no ring gear
+    return replace(outline, filled=gear["radius_mm"]["tip"] > gear["radius_mm"]["root"])  # not a ring gear
 
 
 def _near(gear: Json, across: float) -> IntArray:
-    """Return the numbers of the teeth near the mesh, to either side twice the drawn distance, or all."""
+    """Return the numbers of the teeth within twice the drawn distance of the mesh, or of all teeth."""
     count, reach = gear["teeth"], 2.0 * across / gear["radius_mm"]["root"]
     reach_teeth = math.ceil(reach * count / (2.0 * math.pi)) + 1
     return np.arange(count) if reach >= 1.0 else np.arange(-reach_teeth, reach_teeth + 1)
 
 
-def _half(of_class: Callable[[Toothing, int], float], gear: Toothing, tolerance_class: int | None) -> float:
+def _half(tolerance: Callable[[Toothing, int], float], gear: Toothing, tolerance_class: int | None) -> float:
     """Return half a tolerance in um, 0 without a class."""
-    return 0.0 if tolerance_class is None else 0.5 * of_class(gear, tolerance_class) / UM
+    return 0.0 if tolerance_class is None else 0.5 * tolerance(gear, tolerance_class) / UM
 
 
 def _profile(name: str, pair: ParallelAxes, tolerance_class: int | None) -> Panel:
-    """Draw the K-chart of a gear: removed material over roll angle, at three places of a twisted flank."""
+    """Draw the K-chart of a gear: removed material over roll angle; of a twisted flank at three places."""
     gear: Toothing = getattr(pair, name)
     roll, half = _usable(gear), 0.5 * gear.face_width
     faces: tuple[tuple[str, float, Dash], ...] = (
@@ -283,7 +288,7 @@ def _profile(name: str, pair: ParallelAxes, tolerance_class: int | None) -> Pane
 
 
 def _usable(gear: Toothing) -> FloatArray:
-    """Roll lengths in m over the usable flank."""
+    """Return roll lengths over the usable flank, m."""
     ends = sorted((gear.form_roll_length, gear.tip_form_roll_length))
     return np.linspace(ends[0], ends[1], _POINTS)
 
@@ -303,7 +308,7 @@ def _lead(gears: dict[str, Toothing], tolerance_class: int | None) -> Panel:
 def _teeth_as_made(
     name: str, gear: Toothing, x: FloatArray, roll: FloatArray, face: FloatArray
 ) -> tuple[Line, ...]:
-    """Return the traces of the teeth that deviate as one line with gaps, over `x`; none: no line."""
+    """Return the traces of all teeth that deviate over `x`, as one line with gaps; none: no line."""
     traces = [_removed(gear, roll, face) - flank.excess(gear, roll, face) / UM for flank in _made(gear)]
     if not traces:
         return ()
@@ -312,6 +317,7 @@ def _teeth_as_made(
 
 
 def _removed(gear: Toothing, roll: FloatArray, face: FloatArray | float) -> FloatArray:
+    """Return the material that the design removes along the line of action, um."""
     return gear.modification.material_removed(gear, roll, face) / UM
 
 
@@ -325,9 +331,9 @@ def _finding(name: str, gear: Toothing) -> str:
 
 @dataclass(frozen=True)
 class Entry:
-    """A line of the sheet: words and symbol of ISO 21771-1, the unit of the boundary, and values in SI.
+    """A line of the data sheet: term and symbol of ISO 21771-1, unit, and function of the values.
 
-    `of` returns those of pinion and wheel, or of the pair.
+    `of` returns the values of pinion and wheel, or the one of the pair, in SI.
     """
 
     term: str
@@ -343,7 +349,7 @@ class Entry:
 
     def values(self, pair: ParallelAxes) -> list[float]:
         """Return the values in the unit of the boundary."""
-        return [float(value) / _UNITS[self.unit] + 0.0 for value in self.of(pair)]
+        return [float(value) / _UNITS[self.unit] + 0.0 for value in self.of(pair)]  # + 0.0: no -0.0
 
     def row(self, pair: ParallelAxes) -> tuple[str, ...]:
         """Return the line as words."""
@@ -364,7 +370,7 @@ def _pair(of: Callable[[ParallelAxes], float]) -> Callable[[ParallelAxes], Seque
 
 
 def _start_diameters(pair: ParallelAxes) -> list[float]:
-    """Diameters in m at which the active flanks begin."""
+    """Return the diameters at which the active flanks begin, m."""
     gears = (pair.pinion, pair.wheel)
     path = pair.active_path
     rolls = zip(gears, (path.start, float(pair.mating_roll_length(path.end))), strict=True)
@@ -423,16 +429,17 @@ MESH = (
 
 
 def _path_points(pair: ParallelAxes) -> dict[str, Json]:
-    """Return A to E of the usable flanks; values with two entries are of pinion and wheel."""
+    """Return the points A to E of the path of contact; lists of two values are of pinion and wheel."""
     radii = pair.pinion.base_radius, pair.wheel.base_radius
     points = {}
-    for name, roll in zip("ABCDE", pair.active_path.points, strict=True):
-        rolls = roll, float(pair.mating_roll_length(roll))
+    for name, pinion_roll in zip("ABCDE", pair.active_path.points, strict=True):
+        rolls = pinion_roll, float(pair.mating_roll_length(pinion_roll))
+        gears = list(zip(radii, rolls, strict=True))
         points[name] = {
-            "diameter_mm": [2.0 * math.hypot(*both) / MM for both in zip(radii, rolls, strict=True)],
-            "roll_angle_deg": [way / radius / DEGREE for way, radius in zip(rolls, radii, strict=True)],
-            "sliding_factor": float(sliding_factor(pair, roll)),
-            "specific_sliding": [float(value) for value in specific_sliding(pair, roll)],
+            "diameter_mm": [2.0 * math.hypot(radius, roll) / MM for radius, roll in gears],
+            "roll_angle_deg": [roll / radius / DEGREE for radius, roll in gears],
+            "sliding_factor": float(sliding_factor(pair, pinion_roll)),
+            "specific_sliding": [float(value) for value in specific_sliding(pair, pinion_roll)],
         }
     return points
 

@@ -41,11 +41,11 @@ def plot(result: Any, view: str = "", *, axes: Any = None, interactive: bool = F
     if axes is None:
         return np.array(draw_figure(plt.figure(layout="constrained"), figure), dtype=object)
     panels = rewritten(figure.content, drawable)
-    given = _given(axes, len(panels))
-    handles = draw_panels(panels, given, range(len(panels)))
+    drawn_axes = _axes_of(axes, len(panels))
+    handles = draw_panels(panels, drawn_axes, range(len(panels)))
     if len(handles) > 1:
-        given[-1].legend(handles.values(), handles.keys(), frameon=False, fontsize=9)
-    return np.array(given, dtype=object)
+        drawn_axes[-1].legend(handles.values(), handles.keys(), frameon=False, fontsize=9)
+    return np.array(drawn_axes, dtype=object)
 
 
 def figures_of(result: Any) -> tuple[Figure, ...]:
@@ -77,11 +77,12 @@ def _named(figures: Sequence[Figure], view: str) -> Figure:
     return (exact or alike)[0]
 
 
-def _given(axes: Any, panels: int) -> list[Axes]:
-    given = list(np.atleast_1d(np.asarray(axes, dtype=object)).ravel())
-    if len(given) != panels:
-        raise BadInput.of("axes", len(given), f"exactly {panels}, one for each panel of the figure")
-    return given
+def _axes_of(axes: Any, panels: int) -> list[Axes]:
+    """Return the caller's axes as a list; raises `BadInput` unless there is one for each panel."""
+    listed = list(np.atleast_1d(np.asarray(axes, dtype=object)).ravel())
+    if len(listed) != panels:
+        raise BadInput.of("axes", len(listed), f"exactly {panels}, one for each panel of the figure")
+    return listed
 
 
 def _plotly(figure: Figure) -> Any:
@@ -92,7 +93,7 @@ def _plotly(figure: Figure) -> Any:
 
 def _picture(figure: Figure, axes: Any) -> Any:
     """Show a figure that is a picture as an image."""
-    (ax,) = [plt.figure(layout="constrained").add_subplot()] if axes is None else _given(axes, 1)
+    (ax,) = [plt.figure(layout="constrained").add_subplot()] if axes is None else _axes_of(axes, 1)
     ax.imshow(plt.imread(BytesIO(png(figure)), format="png"))
     ax.set_axis_off()
     ax.set_title(figure.title, loc="left", fontsize=10, fontweight="bold")

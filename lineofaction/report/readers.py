@@ -31,11 +31,11 @@ def read(file: Path | str, overrides: Mapping[str, object] | None = None) -> Any
     Case, SceneInput, OpenedUnit, SteDatabase, RunResult or the result of a study
     """
     path = Path(file)
-    result = path.suffix == ".nc"
-    if overrides and (result or path.name.lower().endswith(UNITS)):
+    is_result = path.suffix == ".nc"
+    if overrides and (is_result or path.name.lower().endswith(UNITS)):
         remedy = "Leave them out; loa.open_unit takes those of the scene of a unit."
         raise BadInput.of("overrides", ", ".join(overrides), "those of a case or a scene", remedy)
-    if result:
+    if is_result:
         from lineofaction.report.document import read_file  # noqa: PLC0415 (start-up time: it draws)
 
         return read_file(path)

@@ -11,9 +11,9 @@ from fe_contact.types import FloatArray
 from lineofaction.gearbox.units import DEGREE, MM, UM
 from lineofaction.report.drawing.figure import Axis, Figure, HeatMap, Panel, number
 
-_ROLLS, _FACES = 41, 41
+_ROLLS, _FACES = 41, 41  # points of a map over roll angle and face
 _LABEL = "material in excess, µm"
-_UNLOADED = np.array([1.0])
+_UNLOADED = np.array([1.0])  # N: a scene needs a load; the gaps of teeth do not depend on it
 
 
 def teeth_as_made(pair: ParallelAxes) -> tuple[Figure, ...]:
@@ -56,20 +56,20 @@ def _figure(pair: ParallelAxes, model: ContactModel, index: int) -> Figure | Non
     worst = int(np.argmax(np.ptp(shape, axis=(1, 2))))
     angle = Axis(f"roll angle of the {name}, °")
     middle, maximum = excess[:, :, _FACES // 2], float(np.abs(excess).max())
-    of_one = float(np.abs(shape[worst]).max())
+    largest_shape = float(np.abs(shape[worst]).max())
     rolled = roll / gear.base_radius / DEGREE
     all_teeth = HeatMap(np.arange(1.0, gear.teeth + 1.0), rolled, middle.T, _LABEL, maximum, -maximum)
     panels = [Panel(Axis("tooth"), angle, title="All teeth at mid-face", shade=all_teeth)]
-    if of_one > 0.0:
-        one = HeatMap(face / MM, rolled, shape[worst], _LABEL, of_one, -of_one)
+    if largest_shape > 0.0:
+        worst_tooth = HeatMap(face / MM, rolled, shape[worst], _LABEL, largest_shape, -largest_shape)
         x = Axis("face position, mm (0 = mid-face)")
-        panels.append(Panel(x, angle, title=f"Tooth {worst + 1} less its mean", shade=one))
+        panels.append(Panel(x, angle, title=f"Tooth {worst + 1} less its mean", shade=worst_tooth))
     return Figure(
         key=f"teeth_of_the_{name}",
         title=f"Flanks of the {name} as made",
         caption="Deviation from the designed flank along the line of action where a tooth touches its mate: "
         "pitch, run-out, waves and flanks of single teeth together. Teeth count in the order of meshing."
-        + (f" Lower: tooth {worst + 1}, whose flank differs most." if of_one > 0.0 else ""),
+        + (f" Lower: tooth {worst + 1}, whose flank differs most." if largest_shape > 0.0 else ""),
         alternative=f"The teeth of the {name} stand between {number(float(middle.min()), 3)} and "
         f"{number(float(middle.max()), 3)} µm out at mid-face; the flank of tooth {worst + 1} differs by "
         f"{number(float(np.ptp(shape[worst])), 3)} µm over itself.",

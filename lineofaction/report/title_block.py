@@ -1,4 +1,7 @@
-"""The title block of a report: its subject, and verdicts on the required figures."""
+"""The title block of a report: its subject, and verdicts on the required figures.
+
+A requirement names a main result of the report, a limit and its unit.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +24,7 @@ _BAND = re.compile(rf"± ({_NUMBER})|({_NUMBER}|none) to ({_NUMBER}|none)")
 
 
 def about_of(file: Path) -> ReportInput:
-    """Return the table ``[report]`` of a file; raises `BadInput`: it has none, or one that is not so."""
+    """Return the table ``[report]`` of a file; raises `BadInput`: it has none, or one of another form."""
     table = read_table(file)
     if "report" not in table:
         raise BadInput.of("--about", str(file), "a TOML file with a table [report]")
@@ -29,9 +32,9 @@ def about_of(file: Path) -> ReportInput:
 
 
 def titled(page: Page, about: ReportInput | None) -> Page:
-    """Return a page under its title block; as it is without one.
+    """Return a page under its title block; without one, the page itself.
 
-    A requirement of no main result is an alarm.
+    A requirement that names no main result of the page becomes an alarm.
     """
     if about is None:
         return page
@@ -41,12 +44,13 @@ def titled(page: Page, about: ReportInput | None) -> Page:
         "date": date.today().isoformat(),
         "made with": f"lineofaction {software_versions()['lineofaction']}",
     }
-    requirements = [one for line in about.requirements if (one := Requirement.of(line)) is not None]
-    verdicts = tuple(line for one in requirements for line in _verdicts(one, page.headlines))
+    read = (Requirement.of(line) for line in about.requirements)
+    requirements = [requirement for requirement in read if requirement is not None]
+    verdicts = tuple(line for required in requirements for line in _verdicts(required, page.headlines))
     unmet = tuple(
-        f"Required, but no main result of this report: {one.text}"
-        for one in requirements
-        if not _meant(one, page.headlines)
+        f"Required, but no main result of this report: {required.text}"
+        for required in requirements
+        if not _meant(required, page.headlines)
     )
     corner = " ".join(text for text in (about.number, about.revision) if text)
     block = TitleBlock(tuple(rows.items()), verdicts, corner)
@@ -54,30 +58,31 @@ def titled(page: Page, about: ReportInput | None) -> Page:
 
 
 def _meant(required: Requirement, headlines: Sequence[Headline]) -> list[tuple[Headline, float]]:
-    """Return the main results that a requirement names, in its unit."""
-    values = ((one, _VALUE.match(one.value)) for one in headlines)
+    """Return the main results that a requirement names and that are in its unit, with their values."""
+    values = ((headline, _VALUE.match(headline.value)) for headline in headlines)
+    figure = required.figure.lower()
     return [
-        (one, float(value[1]))
-        for one, value in values
-        if one.name.lower().startswith(required.figure.lower()) and value and value[2] == required.unit
+        (headline, float(value[1]))
+        for headline, value in values
+        if headline.name.lower().startswith(figure) and value and value[2] == required.unit
     ]
 
 
 def _verdicts(required: Requirement, headlines: Sequence[Headline]) -> list[str]:
-    """Return a sentence for each result: met, not met, or open where its error leaves it so."""
+    """Return a sentence for each result: met, not met, or open where the limit lies within its error."""
     verdicts = []
-    for one, value in _meant(required, headlines):
-        low, high, band = _band(one, value)
+    for headline, value in _meant(required, headlines):
+        low, high, band = _band(headline, value)
         met = value <= required.limit if required.maximum else value >= required.limit
         verdict = "Open within the error" if low < required.limit < high else "Met" if met else "Not met"
         limit = f"{'at most' if required.maximum else 'at least'} {required.limit:g} {required.unit}".rstrip()
-        result = f"{one.value.removesuffix(required.unit).strip()}{band} {required.unit}".rstrip()
-        verdicts.append(f"{verdict}: {one.name} is {result}; required is {limit}.")
+        result = f"{headline.value.removesuffix(required.unit).strip()}{band} {required.unit}".rstrip()
+        verdicts.append(f"{verdict}: {headline.name} is {result}; required is {limit}.")
     return verdicts
 
 
 def _band(headline: Headline, value: float) -> tuple[float, float, str]:
-    """Return the ends of a remark's error or bounds, and its words; infinite: no end."""
+    """Return the ends of the error or bounds in a remark, infinite for no end, and their text."""
     band = _BAND.match(headline.remark)
     if band is None:
         return value, value, ""

@@ -1,4 +1,4 @@
-"""One number of others beside ours."""
+"""A number of another source (theirs) compared with ours."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ AGREES, DIFFERS = "agrees", "differs"
 
 @dataclass(frozen=True)
 class Comparison:
-    """A quantity, their value and ours, each with its error in the same unit."""
+    """A quantity in their value and in ours, each with its error in the same unit."""
 
     quantity: str
     unit: str
@@ -46,7 +46,7 @@ class Comparison:
 
 
 def last_digit(text: str) -> float:
-    """Return half a unit of the last digit of a decimal number, which a printed value is good to."""
+    """Return half a unit of the last digit of a decimal number: the error of a printed value."""
     mantissa, _, exponent = text.lower().partition("e")
     decimals = len(mantissa.partition(".")[2])
     return 0.5 * 10.0 ** (int(exponent or 0) - decimals)

@@ -76,6 +76,7 @@ def _by_verb(case: ValidationCase, verb: Verb) -> Any:
         file = Path(folder) / f"{case.name}.toml"
         file.write_text(case.case, encoding="utf-8")
         words = [str(file) if word == "CASE" else word for word in case.verb.split()]
+        # words that name a file of the tree become its path
         return verb([str(TREE / word) if (TREE / word).is_file() else word for word in words])
 
 

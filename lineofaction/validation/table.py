@@ -11,7 +11,7 @@ from lineofaction.validation.run import Outcome
 
 LINE = 120
 MOST_ROWS = 12
-"""Rows of a case that are written out where all agree; of more the largest difference is."""
+"""Most rows of a case that are all written; of a longer case only the rows that `shown` returns are."""
 
 
 def with_error(value: float, error: float) -> str:
@@ -25,7 +25,7 @@ def difference(row: Comparison) -> str:
 
 
 def headline(outcome: Outcome) -> str:
-    """Say how many rows agree, or why there are none."""
+    """Return how many rows agree as text, or why there are none."""
     if outcome.reason:
         return outcome.reason
     agreeing = sum(row.agrees for row in outcome.comparisons)
@@ -33,7 +33,7 @@ def headline(outcome: Outcome) -> str:
 
 
 def shown(rows: Sequence[Comparison]) -> Sequence[Comparison]:
-    """Return all rows of a short case; of a long one those that differ and the nearest to it."""
+    """Return all rows of a short case; of a long one those that differ, or else the one that nearly does."""
     if len(rows) <= MOST_ROWS:
         return rows
     differing = [row for row in rows if not row.agrees]

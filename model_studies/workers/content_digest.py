@@ -16,7 +16,7 @@ HOW_IT_CAME = ("from_cache", "seconds")
 def content_digest(content: object) -> str:
     """Return the SHA-256 of frozen data: dataclasses by their fields, arrays by type, shape and values.
 
-    Raises `TypeError`: something else is in it, of which nobody knows what makes two of it equal.
+    Raises `TypeError`: it contains an object of another kind, which has no rule of equality here.
     """
     digest = hashlib.sha256()
     for part in _parts(content):
@@ -29,6 +29,7 @@ def _parts(content: object) -> list[bytes]:
     if content is None or isinstance(content, bool | int | float | str | bytes | np.generic):
         return [type(content).__name__.encode(), repr(content).encode()]
     if isinstance(content, np.ndarray):
+        # the order counts: sums of equal arrays in other orders may round differently
         order = "C" if content.flags.c_contiguous else "F"
         kind = f"array {content.dtype.str} {content.shape} {order}"
         return [kind.encode(), np.ascontiguousarray(content).tobytes()]

@@ -16,8 +16,8 @@ START_SECONDS = 10.0
 compiled code. Less work stays in this process.
 """
 AWAKE = 0.1
-"""Part of `START_SECONDS` from which workers that have done tasks get further ones: they may have to load the
-inputs of other tasks.
+"""Share of `START_SECONDS` that work must cost to go to workers that already run; they may have to load its
+inputs.
 """
 
 
@@ -30,10 +30,10 @@ def divided(
 ) -> Iterator[R]:
     """Yield ``function(shared, item)`` of every item, in their order, by the workers if that pays.
 
-    `seconds`: CPU seconds that all items are predicted to take; above `START_SECONDS`, or the part of it for
-    workers that are awake, they do all of them. Else items are done here until those left would take more,
-    each as long as the last. The first one tells nothing, it loads code. Raises `WorkersLost` as
-    `Workers.run`, and what the function raises.
+    `seconds`: CPU seconds that all items are predicted to take. Above `START_SECONDS`, or its share for
+    workers that already run, the workers do all items. Below it items are done in this process until those
+    left would take more, if each took as long as the last. The first item is no measure, since it loads code.
+    Raises `WorkersLost` as `Workers.run`, and what the function raises.
     """
     done, expected = 0, seconds or 0.0
     while len(items) - done > 1 and expected <= _minimum(workers):

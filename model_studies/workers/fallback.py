@@ -16,9 +16,9 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class OrHere:
-    """Workers that may be lost; tasks that they leave are done in this process.
+    """Workers that may be lost; this process does the tasks that they leave.
 
-    `on_loss` is called once, with the reason, when they are lost; nobody looks for them again.
+    `on_loss` is called once, with the reason, when they are lost. After that they get no tasks any more.
     """
 
     others: Workers

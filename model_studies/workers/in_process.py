@@ -26,20 +26,20 @@ class Workers(Protocol):
         """Cost of remote tasks, without the CPU time of this process."""
 
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
-        """Yield ``function(shared, item)`` of every item, in their order; `WorkersLost`: nobody is left.
+        """Yield ``function(shared, item)`` of every item, in their order.
 
-        The function is one of a module; `shared`, items and results can be pickled. The same object shared by
-        several runs is sent once.
+        The function is one of a module; `shared`, items and results can be pickled. An object that several
+        runs share is sent once. Raises `WorkersLost`: no worker is left.
         """
 
 
 @dataclass(frozen=True)
 class InProcess:
-    """One task after the other, here."""
+    """Workers that are this process: one task after the other."""
 
     @property
     def cost(self) -> RunCost:
-        """Nothing: all is done here."""
+        """No cost of remote tasks."""
         return RunCost()
 
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:

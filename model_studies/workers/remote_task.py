@@ -25,7 +25,7 @@ _local = threading.local()
 
 @dataclass(frozen=True)
 class Packed:
-    """Something pickled, with its digest; in a file if that is given."""
+    """The input that tasks share, pickled, with its digest; its bytes are in `file` if there is one."""
 
     content: bytes
     digest: str
@@ -33,7 +33,7 @@ class Packed:
 
     @classmethod
     def of(cls, shared: object) -> Packed:
-        """Pickle it."""
+        """Pickle a shared input."""
         content = pickle.dumps(shared, protocol=pickle.HIGHEST_PROTOCOL)
         return cls(content, hashlib.sha256(content).hexdigest())
 
@@ -65,7 +65,7 @@ def do_task(function: Callable[[Any, Any], R], item: Any, packed: Packed) -> Tas
 
 
 def task_cpu_seconds() -> float:
-    """Return the CPU seconds of a task's process, or of its thread beside others, and of children."""
-    alone = threading.current_thread() is threading.main_thread()
-    seconds = time.process_time() if alone else time.thread_time()
+    """Return the CPU seconds of this process with its children; of its thread if it is not the main one."""
+    is_main = threading.current_thread() is threading.main_thread()  # else other threads do other tasks
+    seconds = time.process_time() if is_main else time.thread_time()
     return seconds + children_cpu_seconds()

@@ -53,7 +53,10 @@ class AccessKey(Holder):
 
 
 def _record_of(entry: dict[str, Any]) -> AccessKey:
-    """Return one entry; raise ValueError or TypeError if it is none, fields of other versions ignored."""
+    """Return the key of an entry of the file, without fields of other versions.
+
+    Raises `ValueError` or `TypeError`: the entry is not that of a key.
+    """
     known = {field.name: entry[field.name] for field in fields(AccessKey) if field.name in entry}
     if "scopes" in known:
         known["scopes"] = tuple(Scope(name) for name in known["scopes"])
@@ -92,14 +95,14 @@ class KeyFile:
             raise self._unusable("Write it with: loa keys add NAME") from None
 
     def add(self, name: str, *, expires: str | None = None, **rights: Any) -> str:
-        """Enter a new key and return it: the only time that it is seen.
+        """Enter a new key and return it, which the file never shows again.
 
-        Raises `BadInput`: the name is taken or no name, or a right is none.
+        Raises `BadInput`: the name is taken or not of the form of names, or a right is invalid.
 
         Parameters
         ----------
         expires : str, optional
-            Duration for which it is good, such as ``90d``.
+            Duration for which the key is good, such as ``90d``.
         **rights
             Other fields of `Holder`.
         """
@@ -118,14 +121,14 @@ class KeyFile:
     def rotate(self, name: str, *, overlap: str = "0h", expires: str | None = None) -> str:
         """Enter another key of this name and return it; the present keys end after `overlap`.
 
-        Raises `BadInput`: there is no key of this name, or a duration is none.
+        Raises `BadInput`: there is no key of this name, or a duration is invalid.
 
         Parameters
         ----------
         overlap : str
             Duration for which the old key is good beside the new one; ``0h``: not at all.
         expires : str, optional
-            Duration for which the new key is good; default: that for which the old one was made.
+            Duration for which the new key is good; default: the duration of the old one.
         """
         known = self.read()
         old = [key for key in known if key.name == name]
@@ -137,19 +140,19 @@ class KeyFile:
             life = instant_of(last.expires) - instant_of(last.created)
         holder = Holder(**{field.name: getattr(last, field.name) for field in fields(Holder)})
         secret, key = _made(holder, life)
-        rest = timedelta(0) if overlap == "0h" else _duration("overlap", overlap)
-        end, left = _written(instant + rest), [entry for entry in old if rest and not entry.expired]
-        ending = [
-            access_key if access_key.ends_within(rest, instant) else replace(access_key, expires=end)
-            for access_key in left
+        common = timedelta(0) if overlap == "0h" else _duration("overlap", overlap)
+        end, valid = _written(instant + common), [entry for entry in old if common and not entry.expired]
+        ending = [  # old keys that end later now end with the overlap
+            access_key if access_key.ends_within(common, instant) else replace(access_key, expires=end)
+            for access_key in valid
         ]
         self._write((*(entry for entry in known if entry.name != name), *ending, key))
         return secret
 
     def remove(self, name: str) -> None:
-        """Take a key back, and any that it took the place of.
+        """Remove all keys of a name: the last one, and those that it replaced.
 
-        Raises `BadInput`: there is none of this name.
+        Raises `BadInput`: there is no key of this name.
         """
         known = self.read()
         left = tuple(key for key in known if key.name != name)
@@ -160,7 +163,7 @@ class KeyFile:
     def _write(self, keys: tuple[AccessKey, ...]) -> None:
         """Put a whole new file in the place of the old one."""
         self.path.parent.mkdir(parents=True, exist_ok=True)
-        # such a file is readable by its owner only
+        # mkstemp makes a file that only its owner reads
         descriptor, name = tempfile.mkstemp(dir=self.path.parent, prefix=".keys-")
         try:
             with os.fdopen(descriptor, "w", encoding="utf-8") as stream:
@@ -173,11 +176,12 @@ class KeyFile:
             raise
 
     def _unusable(self, suggestion: str) -> BadInput:
-        """Return the error of a file that gives no keys: never to be taken for one without keys."""
+        """Return the error of a file whose keys cannot be read, which is no file without keys."""
         return BadInput.of("keys_file", str(self.path), "a readable file of access keys", suggestion)
 
 
 def _made(holder: Holder, life: timedelta | None) -> tuple[str, AccessKey]:
+    """Return a new secret and its record, good for `life`; None: for ever."""
     secret, instant = PREFIX + secrets.token_urlsafe(32), datetime.now(UTC)
     expires = None if life is None else _written(instant + life)
     fields = vars(holder) | {"expires": expires}

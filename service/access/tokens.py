@@ -99,15 +99,15 @@ class Tokens:
         self._settings, self._issuer = settings, issuer
 
     async def holder(self, token: str) -> Holder:
-        """Return who presents a token; names begin with ``oidc:``, which no key's name does.
+        """Return the holder of a token; its name begins with ``oidc:``, as no name of a key does.
 
         Raises
         ------
         Unauthorised
-            The token is none, not signed by its issuer, for another service, or lacks a claim; `KeyExpired`:
-            its time is over.
+            The text is no token, or the token is not signed by its issuer, is for another service, or lacks a
+            claim; `KeyExpired`: it has expired.
         IssuerUnavailable
-            The issuer's keys cannot be had.
+            The issuer does not give its keys.
         """
         import jwt  # noqa: PLC0415 (an extra)
 
@@ -146,12 +146,12 @@ class Tokens:
         # our scopes among those of the token, written as a list or with spaces between
         listed = _claim(claims, settings.scopes_claim) or ()
         names = listed.split() if isinstance(listed, str) else listed
-        several, prefix = isinstance(names, list | tuple), settings.scope_prefix
-        scopes = tuple(scope for scope in Scope if several and prefix + scope in names)
+        is_list, prefix = isinstance(names, list | tuple), settings.scope_prefix
+        scopes = tuple(scope for scope in Scope if is_list and prefix + scope in names)
         return Holder(name=f"oidc:{name}", project=self._project(claims), scopes=scopes)
 
     def _project(self, claims: Json) -> str:
-        """Return the project; a token that should name one and does not is not of the common one."""
+        """Return the project; where a claim names projects, a token without it is refused."""
         named = self._settings.project_claim
         if not named:
             return COMMON

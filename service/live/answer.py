@@ -1,8 +1,8 @@
 """The answer to a question, made in one process and passed on by another, which does not read it.
 
-It is a frame of one of these kinds. "answer": the body is the JSON for the caller; "problem": the body is
-problem details. Others have no body. "defect": the log says more; "memory": none was left, and the process
-ends; "stopped": whoever asked wants it no more.
+An answer is a frame of one of five kinds. "answer": the body is the JSON for the caller; "problem": the body
+is problem details. The others have no body. "defect": the log has the traceback; "memory": no memory was
+left, and the process ends; "stopped": the caller does not want the answer any more.
 """
 
 from __future__ import annotations
@@ -28,23 +28,23 @@ translated = on_demand("lineofaction.gearbox.convert.errors:translated")
 def json_body(content: Json) -> bytes:
     """Return an answer as JSON, every number by the shortest decimals that give it.
 
-    Raises `ValueError`: a number is not finite. Without memory for it the process ends: of small answers.
+    It is for small answers: a lack of memory ends the process. Raises `ValueError`: a number is not finite.
     """
     body: bytes = to_json(content, inf_nan_mode="constants")
     if any(word in body for word in (b"NaN", b"Infinity")):
-        json.dumps(content, allow_nan=False)  # a text may have the word
+        json.dumps(content, allow_nan=False)  # raises for a number, not for a text with the word
     return body
 
 
 def json_body_or_memory_error(content: Json) -> bytes:
-    """Return the JSON body as `json_body`, with a `MemoryError` if the memory is too small for it."""
+    """Return an answer as JSON, as `json_body` does, but raise `MemoryError` where memory is too small."""
     return json.dumps(content, allow_nan=False, separators=(",", ":")).encode()
 
 
 def answer_of(
     order: LiveOrder, *further: object, note: Note = traceback.print_exc, write: Write = json_body
 ) -> Frame:
-    """Do the work; the text of an exception leaves only if it was raised on purpose.
+    """Do the work of an order and return its answer; only errors meant for callers show their text.
 
     Parameters
     ----------

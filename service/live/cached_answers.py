@@ -25,7 +25,7 @@ class KeptAnswers:
     ----------
     folder : Path
         Made with the first answer. Several processes may use it at once.
-    most_bytes : int
+    max_bytes : int
         Largest size of the folder in bytes.
     """
 
@@ -33,7 +33,7 @@ class KeptAnswers:
         self._folder, self._max_bytes = folder, max_bytes
 
     def find(self, tag: str) -> bytes | None:
-        """Return the body of a tag, None if it is not kept."""
+        """Return the body of a tag, None if the folder has none."""
         path = self._path(tag)
         try:
             body = path.read_bytes()
@@ -43,7 +43,7 @@ class KeptAnswers:
         return body
 
     def keep(self, tag: str, body: bytes) -> None:
-        """Keep a body; where that is impossible it is computed again."""
+        """Store a body under a tag; a failure is logged only, since the answer can be computed again."""
         path = self._path(tag)
         draft = path.with_name(f"{path.name}.{uuid.uuid4().hex[:8]}{PARTIAL}")
         try:

@@ -36,11 +36,12 @@ LIMITS = Limits(outstanding=64, in_all=512)
 
 @dataclass(frozen=True)
 class AnswerTimes:
-    """Longest time for one answer, with the start of the worker, s, and when an obsolete one is stopped."""
+    """Times after which an answer is given up, s."""
 
     longest_s: float = 60.0
+    """Longest time for one answer, with the start of the worker."""
     obsolete_s: float = 1.0
-    """Time after which it is stopped: a slider that never rests has an answer now and then."""
+    """Least time of an answer that became obsolete: a slider in motion still gets an answer now and then."""
     to_stop_s: float = 5.0
     """Time after which a worker that does not heed the stop is killed."""
 
@@ -66,7 +67,8 @@ class _LiveProcess:
         except OSError:
             self._folder.close()
             raise
-        self._child.send(Share(memory_limit_mb, str(drafts)).frame())  # one that has died shows when asked
+        # a child that has died already is noticed at the first question
+        self._child.send(Share(memory_limit_mb, str(drafts)).frame())
 
     @property
     def pid(self) -> int:
@@ -79,7 +81,7 @@ class _LiveProcess:
     def ask(self, question: Question, times: AnswerTimes) -> Frame:
         """Return the answer; stop the work on it where the question becomes obsolete.
 
-        Raises `_WorkerGone`: the process ended or took too long; it is of no more use.
+        Raises `_WorkerGone`: the process ended or took too long, and must be replaced.
         """
         self._orders += 1
         self._send(question.order.frame())
@@ -92,7 +94,7 @@ class _LiveProcess:
             if question.obsolete and not stopped and instant >= begin + times.obsolete_s:
                 self._send(Frame.of_json("stop", self._orders))
                 end, stopped = min(end, instant + times.to_stop_s), True
-            for answer in self._child.receive(min(end - instant, _LOOK_S)):
+            for answer in self._child.receive(min(end - instant, _LOOK_S)):  # none or one
                 self.has_answered = True
                 return answer
             if self._child.closed:
@@ -103,11 +105,11 @@ class _LiveProcess:
             raise _WorkerGone
 
     def end_group(self) -> None:
-        """Kill the process and its children; its caller gets an error of that. Any thread may."""
+        """Kill the process and its children; `ask` then raises. Any thread may call this."""
         self._child.end_group()
 
     def close(self) -> None:
-        """Kill, reap, close the pipes; by the thread that asks. Idempotent."""
+        """Kill and reap the process, close its pipes; called by the thread that asks, even twice."""
         self._child.end()
         self._folder.close()
 
@@ -179,7 +181,7 @@ class LiveWorker:
         return LiveUnavailable("The live worker ended. Repeat the request.")
 
     def _exchange(self, question: Question) -> Frame:
-        """Return the answer; a process that ended after its last one is replaced once."""
+        """Return the answer; a process that has died since its last answer is replaced once."""
         process = self._ready()
         try:
             return process.ask(question, self._times)

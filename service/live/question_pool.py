@@ -1,7 +1,7 @@
 """The pool that answers questions while their callers wait: some workers, and whose turn it is.
 
-A worker begins with the first question that no other is free for, and ends when nothing was asked for a
-while. A question goes to the worker that has its subject in memory, if that is free.
+A worker starts when a question comes and no other worker is free, and ends after a while without questions. A
+question goes to the worker that has its subject in memory, if that worker is free.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ class QuestionWorker(Protocol):
     """Answers one question after the other, in a process other than the service's."""
 
     def answer(self, question: Question) -> bytes:
-        """Return the JSON answer; raises `ServiceError`, `Superseded` if the question became obsolete."""
+        """Return the JSON answer; raises `ServiceError`, or `Superseded` if the question became obsolete."""
 
     def rest(self) -> None:
-        """Give back the memory held while nobody asks; the next question begins anew."""
+        """Free the memory while no questions come; the next question starts the process again."""
 
     def stop(self) -> None:
-        """End the question in progress, whose caller gets the error of a stop. Any thread may."""
+        """End the question in progress, whose caller gets the error of a stop. Any thread may call this."""
 
     def close(self) -> None:
-        """End all processes, once nothing is answered; the next question begins anew."""
+        """End all processes once no question is in progress; the next question starts them again."""
 
 
 class QuestionPool:
@@ -102,7 +102,7 @@ class QuestionPool:
         self._stopping = False
 
     def _begin_worker(self, question: Question) -> None:
-        """Begin a worker, where none is free for a question."""
+        """Start a worker if no idle worker serves the question."""
         fitting = [i for i in range(len(self._workers)) if self._serves(i, question)]
         if self._idle.isdisjoint(fitting):
             for number in fitting:
@@ -120,16 +120,17 @@ class QuestionPool:
             try:
                 if question.answer.set_running_or_notify_cancel():
                     question.answer.set_result(self._workers[number].answer(question))
-            except Exception as error:  # noqa: BLE001 (whoever asked is told)
+            except Exception as error:  # noqa: BLE001 (the caller gets it)
                 question.answer.set_exception(error)
             with self._changed:
                 self._turns.ended(question)
                 self._changed.notify_all()
 
     def _next(self, number: int) -> Question | None:
-        """Return the question that a worker answers next; None, the worker at rest, when stopped or idle."""
+        """Wait for a worker's next question; None, with the worker at rest: a stop, or idle too long."""
         with self._changed:
             self._idle.add(number)
+            # a question, True at a stop, or None when the time is over
             question = self._changed.wait_for(lambda: self._turn(number) or self._stopping, self._idle_s)
             self._idle.discard(number)
             if isinstance(question, Question):
@@ -140,6 +141,8 @@ class QuestionPool:
             return None
 
     def _turn(self, number: int) -> Question | None:
+        """Return the next question for a worker, none whose subject another idle worker has in memory."""
+
         def fits(question: Question) -> bool:
             home = self._worker_of.get(question.subject, number)
             return self._serves(number, question) and (home == number or home not in self._idle)

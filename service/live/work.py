@@ -28,7 +28,7 @@ def live_ste(inputs: Json) -> Json:
     question = LiveInput.model_validate_json(json.dumps(inputs["question"]))
     paths = Path(inputs["file"]), Path(inputs["cache"])
     condensed = _condensed(inputs["key"], *paths, compute=question.condense)
-    read = cpu_seconds() - begin
+    read = cpu_seconds() - begin  # to read or compute the compliance, and to check the question
     answer = live_curves(condensed, question)
     answer["cost"]["compliance_cpu_seconds"] += read
     return answer | {"cpu_seconds": cpu_seconds() - begin}

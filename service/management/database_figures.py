@@ -16,7 +16,7 @@ _ENDED = ["process", "outcome"]
 
 
 def database_figures(workload: WorkloadReader) -> Iterable[Metric]:
-    """Yield figures of the database; without one, that it is gone."""
+    """Yield figures of the database; where it does not answer, only that."""
     up = GaugeMetricFamily("loa_database_up", "Whether the database answers this process")
     try:
         load = workload.read()
@@ -36,6 +36,7 @@ def writing_figures(writes: WriteCheck) -> Iterable[Metric]:
     outcome = writes.outcome()
     text = "Whether this process can write to the database, and to the place of results"
     writable = GaugeMetricFamily("loa_writable", text, labels=["part"])
+    # both parts of the outcome are reasons of a failure, empty where a write succeeds
     writable.add_metric(["database"], float(not outcome.database))
     writable.add_metric(["results"], float(not outcome.results))
     yield writable

@@ -15,10 +15,9 @@ _METHODS = frozenset(("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"
 
 
 class Metrics:
-    """Metrics of one app.
+    """Metrics of requests, printed with those of the `process`.
 
-    `process`: with the metrics of its process. Those of requests are of the process, or, where several serve
-    on one socket, the sums over all of them.
+    Where several processes serve on one socket, the metrics of requests are sums over all of them.
     """
 
     def __init__(self, process: CollectorRegistry) -> None:
@@ -45,7 +44,7 @@ class Metrics:
         )
 
     def observe(self, method: str, route: str, status: int, seconds: float | None) -> None:
-        """Note one answered request; None: it was a stream, which lasts as long as its reader likes."""
+        """Note one answered request; `seconds` is None for a stream, which lasts as long as its reader."""
         labels = (method if method in _METHODS else "other", route, str(status))
         self._requests.labels(*labels).inc()
         if seconds is not None:

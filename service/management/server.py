@@ -1,7 +1,7 @@
 """The management port: health, readiness and metrics of a process, without a key.
 
 The port answers from threads of its own. So it is the same for a program with an event loop and one without,
-and it still answers when the loop of requests is stuck, which is what health is to tell.
+and it can report that the loop of requests is stuck.
 """
 
 from __future__ import annotations
@@ -36,9 +36,9 @@ class _Answer(NamedTuple):
 
 
 class ManagementServer:
-    """Answers on the port while the context lasts.
+    """Server of the port, a context manager: it answers until the context ends.
 
-    Raises `BadInput`: the port is taken, or the address is none of this machine's.
+    Raises `BadInput`: the port is taken, or the address does not belong to this machine.
 
     Parameters
     ----------

@@ -19,15 +19,12 @@ _ANSWER_WITHIN_S = 0.8
 
 @dataclass
 class EventLoop:
-    """The loop that answers requests, seen from another thread.
-
-    `loop`: none before the program serves.
-    """
+    """The loop that answers requests, seen from another thread; `loop` is None until the program serves."""
 
     loop: asyncio.AbstractEventLoop | None = None
 
     def fault(self) -> str:
-        """Return the fault of the loop, empty: it turns, or has not begun."""
+        """Return the fault of the loop; empty where it turns, or has not begun."""
         turned = threading.Event()
         if self.loop is not None:
             self.loop.call_soon_threadsafe(turned.set)
@@ -40,7 +37,7 @@ class EventLoop:
 class Vitals:
     """The signs of life of one process. A fault is a sentence; empty: no fault.
 
-    `serving`: returns the fault of what else it does: of the loop that answers requests.
+    `serving` returns the fault of the loop that answers requests, in a process that has one.
     """
 
     scheduler: Scheduler | None

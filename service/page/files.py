@@ -25,7 +25,7 @@ _FROM_PACKAGES = {
     "player.js": ("lineofaction", "report/drawing"),
     "player.css": ("lineofaction", "report/drawing"),
 }
-"""Package and folder in it."""
+"""Package of a file, and its folder in that package."""
 
 
 @dataclass(frozen=True)
@@ -46,11 +46,11 @@ class PageFile:
         return gzip.compress(self.content, mtime=0)
 
 
-@lru_cache(maxsize=256)  # more than there are, which a page requests one after the other
+@lru_cache(maxsize=256)  # more than there are files
 def page_file(name: str) -> PageFile | None:
     """Return the file of this name, None if the page has none."""
     path = _packaged().get(name)
-    if name in _FROM_PACKAGES:  # of a package that need not be imported for it
+    if name in _FROM_PACKAGES:  # found without an import of the package
         package, folder = _FROM_PACKAGES[name]
         spec = importlib.util.find_spec(package)
         assert spec is not None and spec.origin is not None

@@ -1,4 +1,4 @@
-"""Batches: how far one is follows from the jobs in it."""
+"""Progress of batches, which follows from their jobs, and the end of computations."""
 
 from __future__ import annotations
 
@@ -47,10 +47,11 @@ class Family:
 
 
 NOBODY = Family({}, 1.0)
+"""The jobs of a batch without jobs."""
 
 
 def batch_steps(connection: Connection) -> list[Update]:
-    """Return the changes of running batches whose jobs have moved."""
+    """Return the updates of running batches whose jobs changed their states or made progress."""
     columns = (computations.c.id.label("row"), computations.c.message, computations.c.fraction)
     running = (computations.c.state == "running") & of_batch
     rows = connection.execute(
@@ -70,25 +71,30 @@ def batch_steps(connection: Connection) -> list[Update]:
 def _families(connection: Connection, parents: list[str]) -> dict[str, Family]:
     """Count the jobs of batches by state, and add up their costs."""
     state = job_state()
-    done = case((state.in_(ENDED), 1.0), else_=computations.c.fraction)
-    sums = (func.count(), func.sum(jobs.c.weight), func.sum(jobs.c.weight * done))
-    statement = select(jobs.c.parent, state, *sums).select_from(jobs.join(computations))
+    share = case((state.in_(ENDED), 1.0), else_=computations.c.fraction)
+    sums = (
+        func.count().label("number"),
+        func.sum(jobs.c.weight).label("cost"),
+        func.sum(jobs.c.weight * share).label("done"),
+    )
+    columns = (jobs.c.parent.label("batch"), state.label("job_state"))
+    statement = select(*columns, *sums).select_from(jobs.join(computations))
     by_parent: dict[str, list[Any]] = {}
     grouped = statement.where(jobs.c.parent.in_(parents)).group_by(jobs.c.parent, state)
     for row in connection.execute(grouped).all():
-        by_parent.setdefault(row[0], []).append(row)
+        by_parent.setdefault(row.batch, []).append(row)
     families = {}
     for parent, rows in by_parent.items():
-        weight = sum(row[3] for row in rows)
-        fraction = sum(row[4] for row in rows) / weight if weight else 1.0
-        families[parent] = Family({row[1]: row[2] for row in rows}, fraction)
+        cost = sum(row.cost for row in rows)
+        fraction = sum(row.done for row in rows) / cost if cost else 1.0
+        families[parent] = Family({row.job_state: row.number for row in rows}, fraction)
     return families
 
 
 def end_computations(connection: Connection, which: ColumnElement[bool], values: dict[str, Any]) -> None:
-    """End computations with the state in `values`, and count the begun ones.
+    """End the computations that meet `which`, with the state in `values`, and count those that were started.
 
-    A step that is repeated after its transaction was committed must find none of them with `which`.
+    `which` must exclude ended computations: a step that is repeated after its commit must not count twice.
     """
     instant = now()
     ended = update(computations).where(which).values(finished=instant, updated=instant, **values)
@@ -100,7 +106,7 @@ def end_computations(connection: Connection, which: ColumnElement[bool], values:
 
 def _count(connection: Connection, row: Row[Any]) -> None:
     span = datetime.fromisoformat(row.finished) - datetime.fromisoformat(row.started)
-    seconds = max(span.total_seconds(), 0.0)  # a clock was set
+    seconds = max(span.total_seconds(), 0.0)  # below zero where a clock was set back
     key = {"process": row.process, "outcome": row.state, "le": bound_of(seconds)}
     added = {"number": 1, "seconds": seconds, "attempts": row.attempts}
     statement = dialect_of(connection).insert(durations).values(**key, **added)

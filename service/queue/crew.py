@@ -24,7 +24,7 @@ Run: TypeAlias = Worker | Task
 class Children:
     """Child processes of this one, `settings.workers` at a time."""
 
-    keeps = False
+    keeps = False  # work ends with the server
 
     def __init__(self, settings: Settings, modules: Iterable[str]) -> None:
         self.maximum = settings.workers
@@ -36,7 +36,7 @@ class Children:
         """Do nothing: the first child starts the warm process."""
 
     def begin(self, order: WorkOrder, _name: str, log: Path) -> Worker:
-        """Start a child, or fork one; raises OSError: the system does neither."""
+        """Start or fork a child; raises `OSError`: the system can do neither."""
         memory_mb = order.memory_limit_mb or self._memory_mb
         return Worker(replace(order, memory_limit_mb=memory_mb), log, self._launcher.launch)
 
@@ -50,4 +50,4 @@ class Children:
 
 
 Crew: TypeAlias = Children | Cluster
-"""Starters of work on orders. Work whose crew `keeps` it outlives the server and is found again by name."""
+"""Starters of work on orders. If `keeps` is true, work outlives the server, and its name finds it again."""

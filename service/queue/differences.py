@@ -15,13 +15,14 @@ NOT_COMPARED = Differences(since=None, first=[], number=0)
 
 
 def differences_between(reference: Json, inputs: Json, since: str | None = None) -> Differences:
-    """Return the differences of `inputs` from `reference`, inputs of the job `since`; None: the defaults.
+    """Return the differences of `inputs` from `reference`, which are the inputs of the job `since`.
 
-    Lists of tables are compared by place. The first ones are in the order of the inputs; of long lists and
-    texts they have the length in words. True is not 1.
+    Without `since` the reference is the defaults. Lists of tables are compared by index. The answer lists the
+    first differences in the order of the inputs, with the length in place of a long list or text.
     """
     before, now = dict(_leaves(reference)), dict(_leaves(inputs))
     pairs = {path: (before.get(path), now.get(path)) for path in now | before}
+    # types count: True differs from 1
     differing = [path for path, (old, new) in pairs.items() if type(old) is not type(new) or old != new]
     first = [
         Difference(field=path, before=_short(pairs[path][0]), value=_short(pairs[path][1]))

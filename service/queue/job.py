@@ -1,4 +1,4 @@
-"""A job as its caller sees it, words for its subject, and the filter of a list of jobs."""
+"""A job as its caller sees it, the text of its subject, and the filter of a list of jobs."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ from service.store.results import results
 Json = dict[str, Any]
 ENDED = ("successful", "failed", "dismissed")
 """States in which nothing more happens."""
-_PACE_KNOWN = 0.02
+_PACE_KNOWN = 0.02  # share of the work after which the pace is known
 _AS_STORED = (
     *("process", "stage", "stage_fraction", "fraction", "attempts", "started", "reference", "inputs"),
     *("priority", "max_cost_s", "caller", "parent", "place", "children"),
 )
 """Fields of a job that are columns of its row."""
-_OF_JOB = (
+_JOB_COLUMNS = (  # of the table of jobs; the others are those of computations
     *("dismissed", "asked", "delivery", "title", "tags", "differences", "stated"),
     *("caller", "parent", "place", "children"),
 )
@@ -35,7 +35,7 @@ _OF_JOB = (
 
 @lru_cache(maxsize=1024)
 def subject_of(inputs: str) -> str:
-    """Return words for normalized inputs, JSON: the pair with its highest load, the scene, or nothing."""
+    """Return a short text on normalized inputs, JSON: the pair with its highest load, the scene, or none."""
     document = json.loads(inputs)
     if document.get("scene") is not None:
         meshes = len(document["scene"]["meshes"])
@@ -55,9 +55,9 @@ def _pair(case: Json) -> str:
 class Job:
     """A job with the state of its computation; times are RFC 3339 in UTC, inputs JSON.
 
-    `inputs` are normalized, as they are computed, `stated` are the caller's, where they were kept. A batch
-    has so many `children`; each of these has it as `parent` and a `place` in it, from 0. `headline` is what a
-    list shows of the result, None if there is none or it is older.
+    `inputs` are normalized, as they are computed; `stated` are the caller's, or the normalized ones where
+    those were not kept. A batch has so many `children`: each has the batch as `parent`, and its index from 0
+    as `place`. `headline` is what a list shows of the result; None: no result, or one of an older version.
     """
 
     id: str
@@ -91,7 +91,7 @@ class Job:
 
     @property
     def ended(self) -> bool:
-        """Whether nothing more will happen to it."""
+        """Whether the job has ended."""
         return self.status in ENDED
 
     def remaining_s(self, instant: datetime) -> float | None:
@@ -120,20 +120,20 @@ def jobs_of_all_projects() -> Any:
     return select(
         jobs.c.id.label("job_id"),
         jobs.c.created.label("job_created"),
-        *(jobs.c[name] for name in _OF_JOB),
+        *(jobs.c[name] for name in _JOB_COLUMNS),
         computations,
         results.c.headline,
     ).select_from(jobs.join(computations).outerjoin(results, of_computation))
 
 
 def job_of(row: Any) -> Job:
-    """Return a row as a job: a caller who dismissed sees "dismissed", also if the shared work goes on."""
+    """Return a row as a job; its state is that of `job_state`."""
     dismissed = row.dismissed is not None
     return Job(
         **{name: getattr(row, name) for name in _AS_STORED},
         id=row.job_id,
         computation=row.id,
-        key=at_address(row.key)[1],
+        key=at_address(row.key)[1],  # the row has project and key in one text
         status="dismissed" if dismissed else row.state,
         message="Cancelled." if dismissed else row.message,
         created=row.job_created,
@@ -152,22 +152,24 @@ def job_of(row: Any) -> Job:
 class JobFilter:
     """Conditions that a job has to meet.
 
-    One of the processes and statuses (none: any), all tags, all words in its title in any case; created from
-    earliest to latest (RFC 3339 in UTC with microseconds), run for a time within bounds, which a job that has
-    not begun has not; of the batch `parent`, or None: batches, and jobs of none; with `once` the
-    newest of those of one result, which is none that failed or was dismissed unless all did.
+    `earliest` and `latest` are instants of creation, RFC 3339 in UTC with microseconds.
     """
 
     processes: tuple[str, ...] = ()
     statuses: tuple[str, ...] = ()
+    """`processes`, `statuses`: The job has one of them; empty: any."""
     earliest: str | None = None
     latest: str | None = None
     shortest_s: float | None = None
     longest_s: float | None = None
+    """`shortest_s`, `longest_s`: Bounds of the run time; jobs that have not begun are left out."""
     tags: tuple[str, ...] = ()
     words: tuple[str, ...] = ()
+    """`tags`, `words`: The job has all of these tags, and all words in its title, in any case."""
     parent: str | None = None
+    """Batch of the job; None: batches, and jobs outside batches."""
     once: bool = False
+    """Of jobs with one result list the newest alone; failed and dismissed ones only if all are so."""
 
     @property
     def asks_duration(self) -> bool:

@@ -25,7 +25,7 @@ from service.worker.process import Registry
 
 @dataclass(frozen=True)
 class Machinery:
-    """The parts that work on one database and one store; without a scheduler this process does no work."""
+    """The parts that use one database and one store; a process without scheduler computes nothing."""
 
     engine: Engine
     store: ResultStore
@@ -43,8 +43,8 @@ class Machinery:
 def job_machinery(settings: Settings, registry: Registry, *, works: bool = True) -> Machinery:
     """Open the database and put the parts together; a process that `works` has locked its data directory.
 
-    Raises `BadInput`: database or results are none, do not belong together, have another schema, or another
-    server owns the job table; `DatabaseUnavailable`, `StoreUnavailable`: one does not answer;
+    Raises `BadInput`: database or results cannot be opened, do not belong together, have another schema, or
+    another server owns the job table; `DatabaseUnavailable`, `StoreUnavailable`: one does not answer;
     `DatabaseDamaged`; and `Unavailable`: the system has no sessions of processes.
     """
     if works:
@@ -74,7 +74,7 @@ def _scheduler(settings: Settings, registry: Registry, engine: Engine, store: Re
 
 
 def crew_of(settings: Settings, registry: Registry, deployment: Deployment) -> Crew:
-    """Return who works; a Dask scheduler that cannot is refused by name."""
+    """Return the crew of the settings; raises an error that names a Dask scheduler of no use."""
     if settings.scheduler is None:
         return Children(settings, registry.modules)
     cluster = Cluster(settings.scheduler, deployment.identifier() or "")

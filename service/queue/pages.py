@@ -1,8 +1,9 @@
 """Pages of lists of jobs, whose work does not grow with the number of jobs.
 
-A page is chosen by narrow lines (`service.store.listing`), each branch of it in the order of time by an
-index: one branch for each state that is wanted, as no index has the order of several. The rows of jobs are
-read for the page alone. Titles and tags have no index: lines are looked at one by one until the page is full.
+A line is a narrow row on one job (`service.store.listing`). A page is chosen among the lines, and only its
+jobs are read in full. For every wanted state a separate query, a branch, reads the newest lines by an index,
+since no index has the time order of several states. Titles and tags have no index: lines are read one by one
+until the page is full.
 """
 
 from __future__ import annotations
@@ -78,7 +79,7 @@ class PageQuery:
         return lines.c.project == self.project, lines.c.parent == (self.job_filter.parent or "")
 
     def _wanted(self, lines: FromClause) -> Iterator[ColumnElement[bool]]:
-        """Yield the conditions of lines but for state and time run."""
+        """Yield the conditions of lines except those on state and run time."""
         job_filter = self.job_filter
         for tag in job_filter.tags:
             yield lines.c.tags.contains(f"\n{tag.lower()}\n", autoescape=True)
@@ -94,7 +95,7 @@ class PageQuery:
             yield lines.c.created <= job_filter.latest
 
     def _once(self, lines: FromClause) -> ColumnElement[bool]:
-        """Return the condition of lines without a better wanted line of their result."""
+        """Return the condition that no other wanted line of the same result is better."""
         if self._wants_all:
             return lines.c.rank == NEWEST
         others = listings.alias()
@@ -106,13 +107,13 @@ class PageQuery:
 
     @property
     def _wants_all(self) -> bool:
-        """Whether nothing but the batch, or none, is asked for."""
+        """Whether the filter has no conditions other than the batch."""
         return self.job_filter == JobFilter(parent=self.job_filter.parent, once=True)
 
     def _lines(self, connection: Connection) -> Iterator[FromClause]:
         """Yield the candidate lines: all, or the ended and running ones within bounds of the run time.
 
-        Where these are few an index of durations gives them all; else they are met in the order of time.
+        A few are all read by the index of durations and then sorted. Many are searched in the order of time.
         """
         if not self.job_filter.asks_duration:
             yield listings
@@ -122,9 +123,9 @@ class PageQuery:
             counted = select(func.count()).select_from(within.limit(FEW + 1).subquery())
             number = connection.execute(counted).scalar_one()
             if 0 < number <= FEW:
-                yield within.limit(FEW).subquery()  # a limit lets no planner take it apart
+                yield within.limit(FEW).subquery()  # with a limit, planners do not merge it into the query
             elif number:
-                unindexed = func.coalesce(column, null())
+                unindexed = func.coalesce(column, null())  # equal values, but no index on durations
                 yield select(listings).where(*_between(unindexed, low, high)).subquery()
 
     def _bounds(self) -> Iterator[tuple[ColumnElement[Any], Any, Any]]:
@@ -135,25 +136,23 @@ class PageQuery:
         yield listings.c.running_since, None if longest is None else _ago(longest), latest
 
     def _ran(self, lines: FromClause) -> Iterator[ColumnElement[bool]]:
-        """Yield the condition of the time run, if it is bounded."""
+        """Yield the condition of the run time, if it is bounded."""
         if self.job_filter.asks_duration:
-            ended, goes_on = (
+            ended, running = (
                 _between(lines.c[column.name], low, high) for column, low, high in self._bounds()
             )
-            yield and_(*ended) | and_(*goes_on)
+            yield and_(*ended) | and_(*running)
 
 
 def _is_better(other: FromClause, line: FromClause) -> ColumnElement[bool]:
-    """Condition of lines that come before one of the same result, in the order of `listing_by_result`.
-
-    In the middle of an index SQLite begins at a text only if that is computed, not if it is a column.
-    """
+    """Return the condition that a line comes before another of the same result, in the index by result."""
+    # the texts are computed, by + "": from a plain column SQLite would not start within the index
     last = tuple_(line.c.rank, line.c.created + "", line.c.job + "")
     return tuple_(other.c.rank, other.c.created, other.c.job) > last
 
 
 def _between(column: ColumnElement[Any], low: Any, high: Any) -> list[ColumnElement[bool]]:
-    """Return the conditions of a column with a value within bounds, None: there is no bound."""
+    """Return the conditions of a column with a value between two bounds; None is no bound."""
     lowest = column.is_not(None) if low is None else column >= low
     return [lowest] if high is None else [lowest, column <= high]
 

@@ -1,7 +1,7 @@
 """Waiting work of another version of the program: validated again, renamed, or ended with field and reason.
 
-The name of a result holds the version that makes it. So work that waits over an upgrade gets the name that
-this version has for it; its job keeps its identifier.
+The key of a result contains the version of the program. So work that waits over an upgrade gets the key of
+this version; its job keeps its identifier.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class Renewal:
         self._registry, self._store, self._work = registry, store, work
 
     def renew(self, claim: Claim) -> None:
-        """Let waiting work be this version's, or end it: its inputs are refused, or its process is gone."""
+        """Give waiting work the key of this version; end it if its inputs are refused or no process fits."""
         former = f"Version {claim.program or '0.2.0 or older'} entered the job"
         shutil.rmtree(self._work / claim.id, ignore_errors=True)  # blocks of another solver
         try:
@@ -60,10 +60,10 @@ class Renewal:
             self._take(claim, replace(claim, key=key, inputs=inputs), stored=stored)
 
     def _inputs(self, process: Process, claim: Claim) -> Json:
-        """Return the normalized inputs of this version.
+        """Return the inputs as this version normalizes them.
 
-        Where the former ones name a field that is gone, those that the caller stated are taken, which name
-        fewer. Raises what keeps both from being used, as the caller stated them.
+        If the former normalized inputs are refused, for example for a field that is gone, the caller's are
+        used, which name fewer fields. Raises the refusal of the last that was tried.
         """
         refusal: ServiceError | None = None
         for inputs in (claim.inputs, *self._specified_inputs(claim)):
@@ -91,7 +91,7 @@ class Renewal:
 
     @retried
     def _take(self, former: Claim, claim: Claim, *, stored: bool) -> None:
-        """Give waiting work its name; equal work that goes on, or a stored result, answers for it."""
+        """Give waiting work its new key; a stored result ends it, and equal live work takes over its jobs."""
         address = address_of(claim.project, claim.key)
         waits = (computations.c.id == claim.id) & (computations.c.state == "accepted")
         values: Json = {"key": address, "inputs": json.dumps(claim.inputs), "program": self._claims.program}
@@ -122,7 +122,7 @@ class Renewal:
 
 
 def _join(connection: Connection, computation: str, other: str) -> None:
-    """Let the jobs of a computation be of another, which does the same work."""
+    """Move the jobs of a computation to another, which does the same work, and delete it."""
     conditions = jobs.c.computation_id == computation
     connection.execute(update(jobs).where(conditions).values(computation_id=other))
     connection.execute(delete(computations).where(computations.c.id == computation))

@@ -25,10 +25,10 @@ from service.store.results import USE_NOTED_EVERY_S, Mark
 from service.store.retries import optional, retried
 
 _FORMER = 200
-"""Number of a caller's newest jobs among which the job before of the same process is sought."""
+"""Number of a caller's newest jobs among which the previous job of a process is sought."""
 
 
-# made once: composing them takes longer than running them
+# composed once: composing the statements takes longer than running them
 _RECENT = (
     select(jobs.c.id, jobs.c.created, jobs.c.computation_id)
     .where(jobs.c.caller == bindparam("caller"), jobs.c.project == bindparam("project"))
@@ -70,7 +70,10 @@ class Submissions:
         terms: Terms = USUAL,
         name: str | None = None,
     ) -> Job:
-        """Enter a job; equal work that waits, runs or is `stored` already is shared. As `Entry.batch`."""
+        """Enter a job; equal work that waits, runs or is `stored` already is shared.
+
+        `looked` is the instant at which the store was searched. Parameters and errors as of `Entry.batch`.
+        """
         work = BatchCase(key, inputs, stored)
         return self.find(self.entry(caller, terms).job(process, work, looked or now(), name))
 
@@ -107,7 +110,7 @@ class Submissions:
 
     @optional
     def _note_use(self, row: Any) -> None:
-        """Note, once an hour, that an ended job, and its batch, was requested; nobody waits for that."""
+        """Note the time of use of an ended job and its batch, at most once an hour; a failure is ignored."""
         before = instant(datetime.now(UTC) - timedelta(seconds=USE_NOTED_EVERY_S))
         if row.state in ENDED and (row.asked or row.job_created) < before:
             with writing(self._engine, patience_ms=BRIEF_MS) as connection:
@@ -122,7 +125,7 @@ class Submissions:
             return [job_of(row) for row in query.rows(connection)]
 
     def relabel(self, identifier: str, title: str | None, tags: Sequence[str] | None) -> Job:
-        """Change title and tags of a job, ended or not; None: they stay. Raises `NoSuchJob`."""
+        """Change title and tags of a job, ended or not; None leaves them. Raises `NoSuchJob`."""
         label = self.find(identifier).label
         changed = Label.of(label.title if title is None else title, label.tags if tags is None else tags)
         self._relabel(identifier, changed)
@@ -142,7 +145,7 @@ class Submissions:
 
     @retried
     def _dismiss(self, identifier: str) -> None:
-        """Dismiss a job with the unended ones of its batch, and the computations that no other wants."""
+        """Dismiss a job, and of a batch its live jobs; end the computations that no other job needs."""
         with writing(self._engine, in_turn=True) as connection:
             condition = (jobs.c.id == identifier) | (jobs.c.parent == identifier)
             undismissed = jobs.c.dismissed.is_(None)
@@ -167,7 +170,7 @@ class Submissions:
 
 
 def _is_identifier(text: str) -> bool:
-    """Whether `text` can be the identifier of a job; a database need not take all others."""
+    """Whether `text` can be the identifier of a job: a database may refuse other texts, as with a zero."""
     try:
         return str(uuid.UUID(text)) == text
     except ValueError:

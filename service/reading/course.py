@@ -45,16 +45,16 @@ class Course:
                 self.answer = frame
 
     def end(self, *, partial: bool, overrun: str = "") -> None:
-        """Take that no more comes; there is no answer if its end is missing or the reading was stopped."""
+        """Note the end of the messages; an answer that is partial or was stopped is dropped."""
         self.overrun = overrun
         if partial or overrun:
             self.answer = None
 
     def bound_of_end(self, ended: Ended) -> str:
-        """Return the bound of the file over which a child ended; "": no file ended it.
+        """Return the bound of the file that ended the child; "": no file ended it.
 
-        A kill comes from outside, by the system that lacks memory or by its operator; but for that of whoever
-        follows the child, and that of a process at the end of its CPU time.
+        A kill counts as one from outside, by an operator or by a system without memory. Exceptions are the
+        kill by the follower of the child, at an overrun, and the kill of a process whose CPU time is used up.
         """
         signal = ending_signal(ended.code)
         if self.overrun or self.field is None:

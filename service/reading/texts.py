@@ -24,8 +24,8 @@ Announce = Callable[[str], None]
 def _sent_files(files: Sequence[FileContentInput], folder: Path, announce: Announce) -> Find:
     """Write files into a folder; return the function that finds these files by their own names.
 
-    Raises `BadInput`: two files have one name, a name is none, a content is damaged, or together they are too
-    large.
+    Raises `BadInput`: two files have one name, a name is not that of a file, a content is damaged, or all
+    together are too large.
     """
     places: dict[str, Path] = {}
     fields: dict[str, str] = {}
@@ -95,7 +95,7 @@ def _written_out(table: Json, find: Find) -> Json:
 
 
 def _with_cases(table: Json, find: Find, names: set[str]) -> Json:
-    """Return the table of a scene with named files written out, of cases only those in `names`."""
+    """Return the table of a scene with the content of named files; of case files only those in `names`."""
     table, meshes = _written_out(table, find), table.get("meshes")
     if not isinstance(meshes, list):
         return table

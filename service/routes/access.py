@@ -49,7 +49,7 @@ class _Visit:
         self._status, self._problem = error.status, error.kind
 
     def note(self) -> None:
-        """Write the line; the key is in none of its fields, not even of who has it in the path."""
+        """Write the line, without the key, even for a caller who wrote the key into the path."""
         problem = self._problem or self._scope["state"].get("problem")
         logger.info(
             "access",
@@ -116,7 +116,8 @@ class Access:
 
     async def _serve(self, scope: Scope, receive: Receive, visit: _Visit) -> None:
         """Find out who calls, and serve the request within the limits of that caller."""
-        visit.holder = key = await self._identities.holder(_presented(scope))
+        key = await self._identities.holder(_presented(scope))
+        visit.holder = key
         bind_contextvars(caller=key.name)
         if key.expired:
             raise KeyExpired.of(f"Key {key.name!r} has expired ({key.expires}). Ask for a new one.")

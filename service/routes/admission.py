@@ -14,9 +14,9 @@ from service.access.quotas import Quota
 class Admission:
     """The requests of all callers of one server process.
 
-    A body that is under way holds none of the places of requests that are answered: whoever sends bodies
-    slowly takes room from slow bodies alone, and from those of others no more than a share. `share`: requests
-    of one caller, and bodies, where nothing else is said.
+    A request has a place among the bodies until its body has arrived, then one among the answered requests.
+    So a caller that sends bodies slowly takes places from bodies alone, and no more than its share. `share`
+    is the number of answered requests, and of bodies, that one caller may have by default.
     """
 
     def __init__(self, capacity: Capacity) -> None:
@@ -42,12 +42,12 @@ class Admission:
         name : str
             Name of the caller.
         maximum : int or None
-            Requests of this caller, and bodies; None: as many as of all.
+            Most requests, and most bodies, of this caller; None: no limit but that of all callers.
 
         Yields
         ------
         Receive
-            What the request is to be read with.
+            Channel from which the request must be read.
         """
         self._answered.refuse_beyond(name, maximum)
         headers = dict(scope["headers"])  # whether a body follows the head: RFC 9112, section 6.3
@@ -66,7 +66,7 @@ class Admission:
                 message = await receive()
                 if not is_complete and not message.get("more_body", False):
                     is_complete = True
-                    stack.close()
+                    stack.close()  # gives back the place of the body
                     stack.enter_context(self._answered.one(name))
                 return message
 

@@ -25,7 +25,7 @@ def checked_uris(settings: Settings, subscriber: Subscriber | None) -> dict[str,
         bound = "left out: this service sends no requests to addresses that its callers name"
         raise BadInput.of("subscriber", None, bound, "Follow /v1/jobs/{id}/events.")
     for event, uri in subscriber.uris.items():
-        with suppress(ValueError):
+        with suppress(ValueError):  # a text that is no address is refused below, too
             if Origin.of(uri) in listed:
                 continue
         bound = f"an address at {' or '.join(map(str, sorted(listed, key=str)))}"

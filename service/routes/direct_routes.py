@@ -12,7 +12,10 @@ from service.routes.scopes import Handler, ScopedRoute
 
 
 def answered_by(handler: Handler) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Let a coroutine of the request answer for an endpoint, whose signature OpenAPI documents."""
+    """Return a decorator: the handler, a coroutine of the request, answers in place of the endpoint.
+
+    The endpoint has the signature that OpenAPI documents, and is never called.
+    """
 
     def attach(endpoint: Callable[..., None]) -> Callable[..., None]:
         endpoint.direct = handler  # type: ignore[attr-defined]
@@ -24,7 +27,7 @@ def answered_by(handler: Handler) -> Callable[[Callable[..., None]], Callable[..
 class DirectRoute(ScopedRoute):
     """A route whose endpoint is `answered_by` a coroutine.
 
-    For queries that come thousands of times a second: solving dependencies costs more there than the answer.
+    It is for queries that come thousands of times a second: dependencies would cost more than the answer.
     """
 
     def answering(self) -> Callable[[Request], Any]:

@@ -1,4 +1,4 @@
-"""The same for every caller: landing page, conformance, effects, the pages, the description of the API."""
+"""Documents that are the same for every caller: landing page, conformance, effects, pages, description."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Headlines of results that an older version stored without: they get one when a job of theirs is shown."""
+"""Headlines of results that an older version stored without headlines, computed when their jobs are shown."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ LARGEST_BYTES = 8_000_000
 
 
 def with_headlines(jobs: Sequence[Job], context: Context) -> list[Job]:
-    """Return jobs with the headlines of their tables; of a few that have none it is computed and kept."""
+    """Return jobs with the headlines of their tables; a few missing ones are computed and stored."""
     lacking = {job.key for job in jobs if job.process == ANALYZE.id and _ended_without(job)}
     lines = context.store.without_headline(lacking, ANALYZE.kind, MAX_AT_ONCE) if lacking else []
     made = {line.key: _headline_of(line.key, line.size, context) for line in lines}
@@ -36,7 +36,7 @@ def _ended_without(job: Job) -> bool:
 
 
 def _headline_of(key: str, size: int, context: Context) -> dict[str, Any]:
-    """Compute and keep the headline of a table; that there is none is kept, too: it is read once."""
+    """Compute and store the headline of a table; an empty one, too, so that no table is read twice."""
     made: dict[str, Any] = {}
     try:
         if size <= LARGEST_BYTES:

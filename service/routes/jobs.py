@@ -191,7 +191,7 @@ def dismiss_job(job_id: str, request: Request, context: Ctx) -> StatusInfo:
 
 
 def _require_owner(job_id: str, request: Request, context: Context) -> None:
-    """Raise unless a job is the caller's own, or the caller may do that with others'."""
+    """Raise unless the caller submitted the job, or may operate on jobs of others."""
     if context.submissions.find(job_id).caller != caller_of(request).name:
         require(request, Scope.OPERATE)
 
@@ -210,15 +210,15 @@ def status_info(job: Job, registry: Registry) -> StatusInfo:
     if job.status == "successful" or (job.children and job.ended):
         relation = "http://www.opengis.net/def/rel/ogc/1.0/results"
         links.append(Link(href=f"{path}/results", rel=relation, title="Results"))
-    alike = {name: getattr(job, name) for name in StatusInfo.model_fields.keys() & vars(job)}
+    common = {name: getattr(job, name) for name in StatusInfo.model_fields.keys() & vars(job)}
     return StatusInfo(
-        **alike,
+        **common,
         processID=job.process,
         jobID=job.id,
         title=job.label.title,
         tags=list(job.label.tags),
         subject=subject_of(job.inputs),
-        progress=min(int(100 * job.fraction), 100 if job.status == "successful" else 99),
+        progress=min(int(100 * job.fraction), 100 if job.status == "successful" else 99),  # 100: successful
         remaining_s=job.remaining_s(datetime.now(UTC)),
         stage_progress=int(100 * job.stage_fraction),
         parentID=job.parent,

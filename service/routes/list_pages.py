@@ -45,7 +45,7 @@ def mark_of(cursor: str | None) -> Mark | None:
     """
     if cursor is None:
         return None
-    try:
+    try:  # padding was cut off the cursor
         text = base64.b64decode(cursor + "=" * (-len(cursor) % 4), altchars=b"-_", validate=True).decode()
     except (binascii.Error, ValueError):
         text = ""

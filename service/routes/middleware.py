@@ -38,11 +38,11 @@ logger = structlog.get_logger(__name__)
 PATIENCE_S, MIN_BYTES_PER_S = 30.0, 10_000.0
 """Seconds within which a body must arrive, and bytes per second of the body that extend this time."""
 _IDENTIFIER = re.compile(rb"[A-Za-z0-9._-]{1,64}")
-_AS_SAID = (b"x-content-type-options", b"nosniff")  # a browser takes no answer for what it is not
+_NO_SNIFF = (b"x-content-type-options", b"nosniff")  # browsers take the media type as it is stated
 
 
 class _StreamFigures:
-    """Watches the answer to one request; anything but an event stream leaves no trace and no `route`."""
+    """Counts of one answer if it is an event stream; `route` is empty for any other answer."""
 
     def __init__(self, metrics: Metrics, route: Callable[[], str]) -> None:
         self._metrics, self._template = metrics, route
@@ -65,7 +65,7 @@ class _StreamFigures:
 
 
 class _Extent:
-    """The parts of one body, counted as its pieces come; of binary bodies nothing is counted."""
+    """Counts of the tables, lists and fields in one body, piece by piece; binary bodies are not counted."""
 
     def __init__(self, content_type: str) -> None:
         self._counts = {} if media_type(content_type) in (CBOR, RAW) else dict.fromkeys(_MAX, 0)
@@ -120,7 +120,7 @@ class Guard:
             await problem_of(error)(scope, exchange.receive, exchange.send)
 
     def _note(self, scope: Scope, exchange: _Exchange, seconds: float) -> None:
-        """Count and log; a route is named by its template, so that figures stay few."""
+        """Count and log; a route is named by its template, so that the number of metrics is bounded."""
         route = _template(scope)
         status = exchange.status or 0
         self._metrics.observe(scope["method"], route, status, None if exchange.stream.route else seconds)
@@ -133,7 +133,7 @@ class Guard:
 
 
 def _template(scope: Scope) -> str:
-    """Return the template of the path, with the prefix that routes may have been included under."""
+    """Return the template of the path; the prefix of included routes is added where it lacks."""
     template = getattr(scope.get("route"), "path", None)
     if template is None:
         return "unknown"
@@ -154,13 +154,14 @@ class _Exchange:
         self._extent = _Extent(self._headers.get(b"content-type", b"").decode("latin-1"))
         self.refusal: ServiceError | None = None
         self.status: int | None = None
-        named = self._headers.get(b"x-request-id", b"")  # another for none, or one that a log should not hold
+        named = self._headers.get(b"x-request-id", b"")
+        # a new identifier where the caller sends none, or one that is unfit for the log
         self.identifier = named.decode() if _IDENTIFIER.fullmatch(named) else uuid.uuid4().hex[:12]
         sent = self._headers.get(b"traceparent", b"").decode("latin-1")
         self.traceparent = current_traceparent(valid_traceparent(sent))
 
     def refuse_announced(self) -> None:
-        """Refuse a body that says itself that it is too long, or packed."""
+        """Refuse a body whose headers say that it is too long, or compressed."""
         announced = self._headers.get(b"content-length", b"0")
         if announced.isdigit() and int(announced) > self._body_limit:
             raise self._too_large()
@@ -171,7 +172,7 @@ class _Exchange:
         return TooLarge(f"The body has more than {self._body_limit} bytes, the limit of this service.")
 
     async def receive(self) -> Message:
-        """Pass on a piece of the body, counting; once it is whole wait as long as it takes."""
+        """Count and pass on a piece of the body; after the last one, wait without limit for the caller."""
         if self._is_complete:
             return await self._receive()
         left = PATIENCE_S + self._received / MIN_BYTES_PER_S - (time.perf_counter() - self._begin)
@@ -193,14 +194,14 @@ class _Exchange:
         return message
 
     def _refuse(self, error: ServiceError) -> NoReturn:
-        """Raise why the body is not read on, and keep it: the framework takes it for an unreadable body."""
+        """Raise the refusal of the body, and keep it for `send`."""
         self.refusal = error
         raise error from None
 
     async def send(self, message: Message) -> None:
         """Pass on a piece of the answer.
 
-        The framework takes our refusal of a long or slow body for an unreadable one: what it answers to that
+        The framework answers our refusal of a long or slow body as it answers an unreadable body. That answer
         is replaced by the refusal.
         """
         if self.refusal is None:
@@ -213,10 +214,10 @@ class _Exchange:
         """Pass on a piece of the answer, with the request's identifier in its headers."""
         if message["type"] == "http.response.start":
             self.status = message["status"]
-            headers = [*message.get("headers", []), (b"x-request-id", self.identifier.encode()), _AS_SAID]
+            headers = [*message.get("headers", []), (b"x-request-id", self.identifier.encode()), _NO_SNIFF]
             if self.traceparent:
                 headers.append((b"traceparent", self.traceparent.encode()))
-            quotas = self._scope.get("state", {}).get("quotas", tuple)  # of who has shares
+            quotas = self._scope.get("state", {}).get("quotas", tuple)  # empty for a caller without a key
             fields = quota_fields(quotas()).items()
             headers += [(name.lower().encode(), value.encode()) for name, value in fields]
             message = {**message, "headers": headers}

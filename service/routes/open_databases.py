@@ -65,7 +65,7 @@ class OpenDatabases:
             return self.at_hand(store, key) or self._read(store, key)
 
     def _read(self, store: ResultStore, key: str) -> _OpenDatabase:
-        """Read and verify a database; the one not requested longest is closed."""
+        """Read and verify a database; beyond `_MAX_OPEN` the least recently queried one is closed."""
         with LOADING:
             from fe_contact.ste import SteDatabase  # noqa: PLC0415 (start-up time)
 

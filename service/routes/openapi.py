@@ -67,6 +67,7 @@ _OF_ALL: tuple[type[ServiceError], ...] = (
     TooManyRequests,
     Unexpected,
 )
+"""Problems of all requests; below, those of requests with keys, of routes on stores, and of bodies."""
 _WITH_KEYS = (Unauthorised, KeyExpired, MissingScope, RateExceeded, TooManyHeld, IssuerUnavailable)
 _OF_STORES = (Busy, DatabaseUnavailable, DatabaseDamaged, NoSpace, OutOfFiles, StoreUnavailable)
 _OF_BODIES = (TooLarge, UnsupportedMediaType, BadInput)
@@ -126,7 +127,10 @@ def documented(*problems: type[ServiceError]) -> dict[int | str, Json]:
 
 
 def _describe_refusals(document: Json) -> None:
-    """Give every operation all its refusals, its route's included, by reference: one for each status."""
+    """Give every operation a reference for each status that refuses it, of its route and of the middleware.
+
+    A reference leads to a response that is common to all operations and lists the problems of the status.
+    """
     all_kinds: Kinds = {}
     for path, operation in _operations(document):
         responses = operation["responses"]
@@ -180,13 +184,13 @@ def _response(status: int, kinds: Mapping[str, str]) -> Json:
 
 
 def install_description(app: FastAPI) -> None:
-    """Let `app` describe itself."""
-    written = app.openapi
+    """Complete the description that `app` makes of itself."""
+    framework_description = app.openapi
 
     def described() -> Json:
-        fresh = app.openapi_schema is None
-        document = written()
-        if fresh:
+        is_new = app.openapi_schema is None  # the framework keeps the document of the first call
+        document = framework_description()
+        if is_new:
             _complete(document)
         return document
 
@@ -194,7 +198,7 @@ def install_description(app: FastAPI) -> None:
 
 
 def _complete(document: Json) -> None:
-    """Add common parts of all operations: refusals, headers, links, keys; and an example of every body."""
+    """Add the common parts of all operations, refusals, headers, links and keys, and examples of bodies."""
     components = document["components"]
     schemas = components["schemas"] = with_named(components["schemas"])
     further: Any = [(model, "validation") for model in _FURTHER_MODELS]

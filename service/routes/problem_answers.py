@@ -1,4 +1,4 @@
-"""Errors leave as problem+json, in one shape (RFC 9457)."""
+"""Answers to errors: problem+json, in one shape (RFC 9457)."""
 
 from __future__ import annotations
 
@@ -66,12 +66,13 @@ def refusal_of(request: Request, error: RequestValidationError) -> ServiceError:
 
 
 def _request_fault(item: Mapping[str, Any], model: type[BaseModel] | None) -> Fault:
-    """One fault, named as in the case or scene file where it lies inside one."""
+    """Return a fault; one inside a case or scene is named by its field there, as in a file."""
     part, *loc = item["loc"]
     if part != "body":
         return fault_of(item, None, loc)
     if item["type"] == "json_invalid":
         return Fault("body", None, "valid JSON", f"{item.get('ctx', {}).get('error', '')}.")
+    # inside, not about the case or scene as a whole, except for a rule on all of it
     inside = len(loc) > 2 or (len(loc) == 2 and item["type"] == "refused")
     if loc[:1] == ["inputs"] and loc[1:2] in (["case"], ["scene"]) and inside and model is not None:
         inner = model_in(model.model_fields["inputs"].annotation)
@@ -95,7 +96,7 @@ def _refused_by_framework(request: Request, error: Exception) -> Response:
     }
     headers = dict(error.headers or {})
     if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
-        # whichever routes hold them: the framework names those of one route only
+        # methods of all routes at this path: the framework names those of one route only
         paths = request.app.openapi()["paths"]
         matching = [path for path in paths if compile_path(path)[0].match(request.url.path)]
         headers["Allow"] = ", ".join(sorted({name.upper() for path in matching for name in paths[path]}))

@@ -53,7 +53,7 @@ async def _cached_answer(
     media_type: str,
     body_of: Callable[[bytes], bytes] = lambda answer: answer,
 ) -> Response:
-    """Return the answer to an order by its tag, in quotes; 304 to a caller that has it."""
+    """Return the answer to an order, cached under its tag (in quotes), or 304 to a caller that has it."""
     headers = {"ETag": tag, "Cache-Control": "no-cache"}
     if tag in request.headers.get("if-none-match", ""):
         return Response(status_code=304, headers=headers)
@@ -145,7 +145,7 @@ async def result_motion(
 
 
 def _named(description: str) -> object:
-    """Return a parameter that names a part of the run; empty: it is chosen as `loa listen` does."""
+    """Return a parameter that names a part of the run; if it is empty, `loa listen`'s choice is taken."""
     return Query(max_length=_NAME, description=description)
 
 
@@ -183,11 +183,12 @@ async def result_sound(
     kind = (await run_in_threadpool(known_result, context, key)).kind
     if kind not in SOUND_KINDS:
         raise NotFound(f"Result {key!r} is no run and no recording, but of the kind {kind}.")
-    stored = [await run_in_threadpool(known_result, context, one, kind) for one in (key, against) if one]
+    keys = [result for result in (key, against) if result]
+    stored = [await run_in_threadpool(known_result, context, result, kind) for result in keys]
     view = {"quantity": quantity, "bearing": bearing, "mesh": mesh, "direction": direction}
-    named = json.dumps([*(one.sha256 for one in stored), view, program_tag()])
+    named = json.dumps([*(result.sha256 for result in stored), view, program_tag()])
     tag = f'"{hashlib.sha256(named.encode()).hexdigest()}-sound"'
-    order = LiveOrder(SOUND, {"kind": kind, "files": [str(one.path) for one in stored], "view": view})
+    order = LiveOrder(SOUND, {"kind": kind, "files": [str(result.path) for result in stored], "view": view})
     return await _cached_answer(
         request, context, tag, order, WAV, lambda made: base64.b64decode(json.loads(made)["wav"])
     )

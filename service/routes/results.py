@@ -29,10 +29,10 @@ from service.store.files import WrongContent
 from service.store.results import IndexLine, Mark, ResultStore, StoredResult
 
 VERSION = ("ETag", "Cache-Control")
-"""Headers of such an answer."""
+"""Headers that state the version of an answer."""
 
 _FIGURES = "-json-2"
-"""Ends the tag of figures: another one where their keys are others, as `version` of studies."""
+"""End of the tag of figures. It changes when the keys of figures change, as the `version` of a study does."""
 _IMMUTABLE = "public, max-age=31536000, immutable"
 Key = Annotated[str, Path(pattern=HASH, description="Content hash of the input")]
 Accept = Annotated[str, Header(description=f"{NETCDF} for the file, application/json for its figures")]
@@ -72,7 +72,10 @@ async def list_databases(
 
 
 def _entry(store: ResultStore, mark: Mark, line: IndexLine) -> DatabaseEntry:
-    """Return the list's entry of a database, which does not count as a use; for a damaged file its name."""
+    """Return the list's entry of a database, without its case where the file is damaged.
+
+    The look into the file does not count as a use.
+    """
     try:
         case = case_of_file(store.files.local(line.file, line.sha256))
     except (FileNotFoundError, WrongContent):
@@ -112,7 +115,7 @@ def result_file(key: Key, request: Request, context: Ctx) -> Response:
 
 
 def known_result(context: Context, key: str, kind: str | None = None) -> StoredResult:
-    """Return a stored result of a kind, or of whichever it is.
+    """Return a stored result of a kind; None: of any kind.
 
     Raises `NotFound`: there is none, or another version of this program made it.
     """
@@ -155,7 +158,7 @@ def _digest(sha256: bytes) -> dict[str, str]:
 
 
 def _headers(stored: StoredResult, form: str = "") -> dict[str, str]:
-    """Headers of something that never changes, in a form that is not its file."""
+    """Return the headers of an answer that never changes; `form` tells it from the file itself."""
     tag = f'"{stored.sha256}{form}"'
     return {"ETag": tag, "Cache-Control": _IMMUTABLE, "Vary": "Accept", "Result-Kind": stored.kind}
 

@@ -63,7 +63,7 @@ DRAFTS = {
     "/v1/drafts/scene-text": "/v1/scenes/from-toml",
     "/v1/drafts/housing-surface": "/v1/scenes/housing-surface",
 }
-"""Questions about drafts, and whose bodies and answers they have."""
+"""Paths of questions about drafts, by the paths whose examples of bodies and answers they share."""
 
 
 def _bushing(shaft: str, position_mm: float) -> Json:

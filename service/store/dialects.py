@@ -1,4 +1,7 @@
-"""All that differs between SQLite and PostgreSQL."""
+"""All that differs between SQLite and PostgreSQL.
+
+A turn is the right to write, in an order that all writers keep. Patience is the time that a writer waits.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +32,7 @@ _SLICE_S = 0.25
 PATIENCE_MS = 10_000
 """Milliseconds for which a transaction waits for others that write, unless it states another patience."""
 _PRAGMAS = (
-    f"PRAGMA busy_timeout={PATIENCE_MS}",  # first: the others may have to wait too
+    f"PRAGMA busy_timeout={PATIENCE_MS}",  # first, since the other pragmas may wait for a lock, too
     "PRAGMA journal_mode=WAL",
     "PRAGMA synchronous=FULL",
     "PRAGMA foreign_keys=ON",
@@ -88,7 +91,7 @@ _LOCKED = "55P03"  # state of PostgreSQL: others held the lock for longer than l
 
 
 class _Commits(Protocol):
-    """A connection that hears of commits, for the thread that made it."""
+    """A connection that notices commits, for the thread that made it."""
 
     def received(self) -> bool:
         """Wait for a moment; return whether something was committed since the last call."""
@@ -153,37 +156,38 @@ class _Dialect(Protocol):
     def turn(
         self, engine: Engine, patience_ms: int | None, *, ahead: bool
     ) -> AbstractContextManager[int | None]:
-        """Wait until this process may begin to write; enters with the rest of the patience, ms.
+        """Return a context that waits until this writer may begin, and gives the rest of its patience, ms.
 
-        With `ahead` it is the next one of this process. Raises `TurnTimeout`: the patience has ended.
+        With `ahead` it goes before the waiting writers of this process. Raises `TurnTimeout`: the patience
+        has ended.
         """
 
     def take_turn(self, connection: Connection) -> None:
-        """Let this transaction be the only one that takes a turn, until it ends."""
+        """Exclude all other transactions that take a turn, until this one ends."""
 
     def clock(self, connection: Connection) -> float:
         """Return the seconds since 1970 on the one clock that all users of the database read."""
 
     def commits(self, engine: Engine) -> _Commits:
-        """Return a connection that hears of commits."""
+        """Return a connection that notices commits."""
 
     def busy(self, error: DBAPIError) -> bool:
         """Whether others held a needed lock for too long."""
 
     def lost(self, error: DBAPIError) -> bool:
-        """Whether the database, not the statement, is why it failed: another attempt may succeed."""
+        """Whether a statement failed by a fault of the database, so that another attempt may succeed."""
 
     def late(self, error: DBAPIError) -> bool:
         """Whether the statement was ended by its deadline."""
 
     def remedy(self, error: DBAPIError, url: URL) -> str | None:
-        """Return the action of a person without which no attempt can succeed; None: none is needed."""
+        """Return what a person must do before an attempt can succeed; None: nothing."""
 
     def folder(self, url: URL) -> Path | None:
-        """Return the folder of this machine that it writes to; None: it is elsewhere."""
+        """Return the folder of this machine that the database writes to; None: it is on a server."""
 
     def check(self, connection: Connection) -> str | None:
-        """Check the whole database if that is cheap; return the damage, None: none."""
+        """Check the whole database if that is cheap; return the damage, or None."""
 
 
 class _SQLite:
@@ -192,12 +196,12 @@ class _SQLite:
     upgrades_itself = True
 
     def engine(self, url: URL, *, pooled: bool) -> Engine:
-        if url.database:  # an empty file of its owner's alone; SQLite gives its log the same rights
+        if url.database:  # an empty file that only its owner reads; SQLite gives its log the same rights
             file = Path(url.database)
             file.parent.mkdir(parents=True, exist_ok=True)
-            with suppress(OSError):  # SQLite tells why it cannot be opened
+            with suppress(OSError):  # SQLite's own error says why the file cannot be opened
                 os.close(os.open(file, os.O_WRONLY | os.O_CREAT, 0o600))
-        # no pool: a connection kept for a thread that has ended is closed by nobody, and opening one is cheap
+        # no pool: nothing closes a pooled connection of a thread that has ended, and opening one is cheap
         engine = create_engine(url, poolclass=NullPool)
         event.listen(engine, "connect", _prepare)
         event.listen(engine, "begin", _begin)
@@ -214,10 +218,10 @@ class _SQLite:
             yield round(1e3 * left_s)
 
     def take_turn(self, connection: Connection) -> None:
-        """Do nothing: who writes is alone from the start (see `_begin`)."""
+        """Do nothing: a writer has the whole file from its begin on (see `_begin`)."""
 
     def clock(self, connection: Connection) -> float:
-        """Return the machine's time: all users are on it."""
+        """Return the time of this machine, on which all users of the file run."""
         return time.time()
 
     def commits(self, engine: Engine) -> _Commits:
@@ -227,18 +231,18 @@ class _SQLite:
         return any(word in str(error.orig) for word in ("locked", "busy"))
 
     def lost(self, _error: DBAPIError) -> bool:
-        """Deny it: a file is not reached through a network."""
+        """Return False: a file is not reached through a network."""
         return False
 
     def late(self, error: DBAPIError) -> bool:
         return getattr(error.orig, "sqlite_errorcode", 0) == sqlite3.SQLITE_INTERRUPT
 
     def remedy(self, error: DBAPIError, url: URL) -> str | None:
-        """Tell by the primary result code; a file that was replaced by an empty one has no tables."""
+        """Return the action by the primary result code, the low byte; an empty new file has no tables."""
         if "no such table" in str(error.orig):
             return RESTORE
         code = getattr(error.orig, "sqlite_errorcode", 0) & 0xFF
-        if code in (sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_IOERR):  # of files beside its own, too
+        if code in (sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_IOERR):  # its log and temporary files, too
             if out_of_files():
                 return FILES
             if shortage(self.folder(url)):
@@ -256,32 +260,33 @@ class _SQLite:
 
 @dataclass
 class _Deadline:
-    """When the statement of a connection has to have ended, on the monotonic clock."""
+    """The deadline of a connection's statement, on the monotonic clock."""
 
     at: float = math.inf
 
     def passed(self) -> bool:
-        """Whether it is too late; SQLite then ends the statement."""
+        """Whether the deadline has passed; SQLite then ends the statement."""
         return time.monotonic() > self.at
 
 
 def _set_deadline(connection: Connection, *_statement: object) -> None:
-    """Let a statement that begins have ended in time."""
+    """Set the deadline of a statement that begins."""
     deadline_s = connection.get_execution_options().get("deadline_s", DEADLINE_S)
     connection.info["deadline"].at = time.monotonic() + deadline_s
 
 
 def _prepare(connection: Any, record: Any) -> None:
-    """Set a new connection up: we begin transactions ourselves (see `_begin`)."""
-    deadline = record.info["deadline"] = _Deadline()
+    """Prepare a new connection."""
+    deadline = _Deadline()
+    record.info["deadline"] = deadline
     connection.set_progress_handler(deadline.passed, _LOOK_EVERY)
-    connection.isolation_level = None
+    connection.isolation_level = None  # the driver begins no transactions: `_begin` does
     for pragma in _PRAGMAS:
         connection.execute(pragma)
 
 
 def _begin(connection: Connection) -> None:
-    """Begin; a writer takes the lock at once, since a lock upgrade in mid-transaction can only fail."""
+    """Begin a transaction; a writer locks at once, since to change from reading to writing may fail."""
     options = connection.get_execution_options()
     if (patience_ms := options.get("patience_ms")) is not None:  # the connection is not used again
         connection.exec_driver_sql(f"PRAGMA busy_timeout={patience_ms:d}")
@@ -294,7 +299,7 @@ class _PostgreSQL:
     upgrades_itself = False
 
     def engine(self, url: URL, *, pooled: bool) -> Engine:
-        """Return an engine on the server; it is not spoken to yet.
+        """Return an engine on the server, without a connection yet.
 
         Raises `BadInput`: the driver is not installed.
         """
@@ -320,11 +325,11 @@ class _PostgreSQL:
     def turn(
         self, _engine: Engine, patience_ms: int | None, *, ahead: bool
     ) -> AbstractContextManager[int | None]:
-        """Wait for nobody: many write at a time."""
+        """Return without waiting: a server takes many writers at a time."""
         return nullcontext(patience_ms)
 
     def take_turn(self, connection: Connection) -> None:
-        """Wait for the lock that all who take turns need; the transaction's end gives it back."""
+        """Wait for the lock of turns; the end of the transaction releases it."""
         connection.execute(select(func.pg_advisory_xact_lock(_TURN)))
 
     def clock(self, connection: Connection) -> float:
@@ -337,7 +342,7 @@ class _PostgreSQL:
         return getattr(error.orig, "sqlstate", None) == _LOCKED
 
     def lost(self, error: DBAPIError) -> bool:
-        """Whether the connection broke or never was, or the server asks to try again.
+        """Whether the connection broke or was never made, or the server asks to try again.
 
         Classes of SQLSTATE: 08 connection, 40 rolled back (deadlock), 53 out of resources, 57P server ends.
         """
@@ -353,21 +358,21 @@ class _PostgreSQL:
         return _POSTGRESQL_REMEDIES.get(getattr(error.orig, "sqlstate", None) or "")
 
     def folder(self, url: URL) -> Path | None:
-        """Return none: a server has its own."""
+        """Return None: the folder is the server's."""
         return None
 
     def check(self, _connection: Connection) -> str | None:
-        """Find nothing: a server has tools and an administrator of its own (pg_amcheck)."""
+        """Return None: a server has tools and an administrator of its own (pg_amcheck)."""
         return None
 
 
 def _begin_on_server(connection: Connection) -> None:
-    """Wait for locks but briefly, or work for longer, if requested; the transaction's end undoes it."""
+    """Set the patience and the deadline of a transaction, if they are requested, until it ends."""
     options = connection.get_execution_options()
     if (patience_ms := options.get("patience_ms")) is not None:
         connection.exec_driver_sql(f"SET LOCAL lock_timeout = {patience_ms:d}")
     if (deadline_s := options.get("deadline_s")) is not None:
-        timeout_ms = 0 if math.isinf(deadline_s) else round(1e3 * deadline_s)  # 0: none
+        timeout_ms = 0 if math.isinf(deadline_s) else round(1e3 * deadline_s)  # 0: no deadline
         connection.exec_driver_sql(f"SET LOCAL statement_timeout = {timeout_ms:d}")
 
 

@@ -29,7 +29,7 @@ class IntegrityCheck:
         self._thread = threading.Thread(target=self._look, name="integrity", daemon=True)
 
     def start(self) -> None:
-        """Begin; raises the fault that is found within `PATIENCE_S`, as `Schema.check`."""
+        """Start the check; raises a fault that is found within `PATIENCE_S`, as `Schema.check`."""
         self._thread.start()
         self._thread.join(PATIENCE_S)
         self.confirm()

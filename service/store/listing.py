@@ -1,11 +1,11 @@
 """The table by which lists of jobs are filtered and sorted, and the triggers that maintain it.
 
-Jobs and computations are wide rows with their inputs; a list looks at narrow ones, by an index that has its
-order. The database itself keeps them, so that they are right whichever program writes, a former one too.
+Jobs and computations are wide rows with their inputs. A list reads narrow rows, its lines, by an index in the
+order of the list. Triggers of the database maintain them, so that they are right for any program that writes,
+also a former version.
 
-A job has the rank 2 if it is the newest of its result among the jobs of its batch, or of those of no batch;
-1 if it has or may have a result; 0 if it failed or was dismissed. The newest of a result is one of the rank 0
-only where all are.
+A job has the rank 1 if it has or may have a result, 0 if it failed or was dismissed. Among the jobs of one
+result in one batch, or outside batches, the newest of the highest rank then gets the rank 2.
 """
 
 from __future__ import annotations
@@ -56,8 +56,8 @@ _JOINED = "FROM job AS j JOIN computation AS c ON c.id = j.computation_id"
 def columns() -> tuple[sa.Column[object], ...]:
     """Return new columns of the table.
 
-    `parent` is empty where there is no batch. `seconds` are those between start and end, None before the end
-    and of what was never started; `running_since` is the start of what has not ended.
+    `parent` is empty for a job outside batches. `seconds` is the time between start and end, None before the
+    end and for a job that was never started. `running_since` is the start of a job that has not ended.
     """
     texts = (sa.Column(name, sa.String, primary_key=name == "job", nullable=False) for name in _TEXTS)
     return (
@@ -73,8 +73,8 @@ def add_listing(op: Operations) -> None:
     dialect = op.get_bind().dialect.name
     op.create_table("listing", *columns())
     op.execute(f"INSERT INTO listing {_line(dialect)}")
-    for name, of in INDEXES.items():
-        op.create_index(name, "listing", of)
+    for name, index_columns in INDEXES.items():
+        op.create_index(name, "listing", index_columns)
     op.execute(f"UPDATE listing SET rank = {NEWEST} WHERE job IN ({_NEWEST_OF_ALL})")
     for trigger in _triggers(dialect):
         for statement in trigger.statements(dialect):
@@ -114,7 +114,7 @@ def _renewed(dialect: str, which: str) -> str:
 
 
 def _election(row: str) -> tuple[str, str]:
-    """Return the statements that give the rank of the newest to a job of the result of `row`."""
+    """Return the statements that elect the newest job of the result of `row`, and give it its rank."""
     same = f"key = {row}.key AND parent = {row}.parent"
     ordered = "ORDER BY rank DESC, created DESC, job DESC LIMIT 1"
     return (
@@ -149,7 +149,11 @@ class _Trigger(NamedTuple):
 
 
 def _triggers(dialect: str) -> tuple[_Trigger, ...]:
-    """Return the triggers; an update of lines always names their state, an election only their rank."""
+    """Return the triggers.
+
+    An update of a line always sets its state, so it calls an election. An election sets the rank alone, and
+    so calls no other.
+    """
     of_job = "dismissed, created, parent, project, computation_id, title_folded, tags"
     of_computation = "state, started, finished, key, process"
     entered = f"INSERT INTO listing {_line(dialect, 'WHERE j.id = NEW.id')}"

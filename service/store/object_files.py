@@ -30,7 +30,7 @@ _ENDPOINTS = ("AWS_ENDPOINT_URL", "AWS_ENDPOINT_URL_S3", "AWS_ENDPOINT")
 class ObjectFiles:
     """Objects below a prefix of a bucket.
 
-    An object appears when all its bytes are there (S3), and a file of the cache when its digest was compared.
+    An object becomes visible with all its bytes (S3), a file of the cache once its digest has been compared.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ class ObjectFiles:
         return None
 
     def put_note(self, name: str, text: str, *, replace: bool = False) -> None:
-        """Send the text; the store itself refuses a second one (``If-None-Match: *``)."""
+        """Send the text; without `replace` the store keeps one that it has (``If-None-Match: *``)."""
         import obstore  # noqa: PLC0415 (an extra)
         from obstore.exceptions import AlreadyExistsError  # noqa: PLC0415 (an extra)
 
@@ -130,7 +130,7 @@ class ObjectFiles:
         return self._cache / sha256[:2] / f"{sha256}{PurePosixPath(name).suffix}"
 
     def move(self, name: str, target: str) -> None:
-        """Copy, then remove."""
+        """Move an object: copy, then delete."""
         import obstore  # noqa: PLC0415 (an extra)
 
         with _answering(), contextlib.suppress(FileNotFoundError):
@@ -138,7 +138,7 @@ class ObjectFiles:
             obstore.delete(self._store, name)
 
     def delete(self, name: str) -> None:
-        """Remove."""
+        """Delete an object."""
         import obstore  # noqa: PLC0415 (an extra)
 
         with _answering(), contextlib.suppress(FileNotFoundError):
@@ -156,7 +156,7 @@ class ObjectFiles:
 
 @contextmanager
 def _answering() -> Iterator[None]:
-    """Let a store that does not answer, or refuses us, be one to try later; FileNotFoundError passes."""
+    """Raise `StoreUnavailable` where the store does not answer or refuses us; FileNotFoundError passes."""
     from obstore.exceptions import BaseError  # noqa: PLC0415 (an extra)
 
     try:
@@ -166,11 +166,10 @@ def _answering() -> Iterator[None]:
 
 
 def object_files(url: str, cache: Path, cache_bytes: int, keys: Keys | None = None) -> ObjectFiles:
-    """Return the place ``s3://bucket/prefix``; endpoint and region are read from the AWS_ variables.
+    """Return the place ``s3://bucket/prefix``.
 
-    So are keys, where none are passed.
-
-    Raises `BadInput`: the library is not installed, or the URL or a variable is none that it knows.
+    Endpoint and region are read from the AWS_ variables, and keys, too, unless they are passed. Raises
+    `BadInput`: the library is not installed, or does not accept the URL or a variable.
     """
     try:
         from obstore.exceptions import BaseError  # noqa: PLC0415 (an extra)

@@ -21,11 +21,11 @@ _OURS = {"ours": 0x6C6F61}
 
 
 class Ownership:
-    """The lock on the job table of a database. For one thread at a time.
+    """The lock on the job table of a database, used by one thread at a time.
 
-    Of a SQLite file it is a lock on a file beside it, which lasts as long as the process. Of a PostgreSQL
-    server it is an advisory lock of a session of its own: it ends with that session, which a restart of the
-    database or a broken network ends too. Then `lost` is true, and the lock may be acquired again.
+    For SQLite it is a lock on a file beside the database, which lasts as long as the process. For PostgreSQL
+    it is an advisory lock of a separate session. It ends with the session, also by a restart of the database
+    or a broken network. Then `lost` is true, and the lock may be acquired again.
     """
 
     def __init__(self, engine: Engine) -> None:
@@ -35,7 +35,7 @@ class Ownership:
 
     @retried
     def acquire(self) -> None:
-        """Take the lock, unless it is ours.
+        """Take the lock, unless this process has it already.
 
         Raises `BadInput`: another server has it; `DatabaseUnavailable`: the database does not answer.
         """
@@ -46,7 +46,7 @@ class Ownership:
         raise BadInput.of("database_url", redacted_url(self._engine), bound, tip)
 
     def lost(self) -> bool:
-        """Whether the lock is not ours, or its session does not answer any more."""
+        """Whether this process does not have the lock, or its session does not answer any more."""
         if self._is_file:
             return self._file is None
         if self._session is not None:
@@ -75,9 +75,11 @@ class Ownership:
     def _lock_session(self) -> bool:
         """Open a session that is in no pool, and request the lock in it."""
         unpooled = dialect_of(self._engine).engine(self._engine.url, pooled=False)
-        with ExitStack() as broken:
-            session = broken.enter_context(unpooled.connect().execution_options(isolation_level="AUTOCOMMIT"))
+        with ExitStack() as closing:  # closes the session, unless it has the lock
+            session = closing.enter_context(
+                unpooled.connect().execution_options(isolation_level="AUTOCOMMIT")
+            )
             if session.execute(_LOCK, _OURS).scalar_one():
                 self._session = session
-                broken.pop_all()
+                closing.pop_all()
         return self._session is not None

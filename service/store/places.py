@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 from urllib.parse import unquote, urlsplit
 
 from sqlalchemy import Engine
@@ -17,9 +16,6 @@ from service.store.files import (
 )
 from service.store.object_files import Keys, object_files
 from service.store.results import ResultStore
-
-if TYPE_CHECKING:
-    pass
 
 DATABASE_FILE = "service.sqlite3"
 RESULTS_DIRECTORY = "results"
@@ -37,7 +33,7 @@ def result_files(
 
     `keys` are the credentials of the bucket; None: those of the AWS_ variables.
 
-    Raises `BadInput`: the URL is none of these.
+    Raises `BadInput`: the URL has none of these forms.
     """
     if results_url is None:
         return DirectoryFiles(data_directory / RESULTS_DIRECTORY)

@@ -1,4 +1,4 @@
-"""The index of results made anew from the files, after its database was lost or restored from before."""
+"""Rebuilding the index of results from their files, after its database was lost or restored from a backup."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ class _Reindexed:
     """`known`, `entered`: Files that the index named already; files that it names now."""
     damaged: tuple[str, ...]
     doubled: tuple[str, ...]
-    """`damaged`, `doubled`: Files whose bytes do not agree with their names; files of results that another
-    file holds. Both are left where they are.
+    """`damaged`, `doubled`: Files whose bytes do not agree with their names; second files of one result.
+    Both are left where they are.
     """
     struck: tuple[str, ...]
     """Files that lines named and that are gone."""
 
 
 def reindex(store: ResultStore, deployment: Deployment) -> _Reindexed:
-    """Make the place this deployment's, enter the files that no line names, strike lines whose file is gone.
+    """Claim the files for this deployment, enter those that no line names, strike lines without a file.
 
-    A result is dated by its file for lists, and for retention by this instant: the former may be that of a
-    copy.
+    Lists date a result by the time of its file. Retention counts from now on, since the time of a file may be
+    that of a copy.
 
-    Raises `BadInput`: the files are another deployment's, and the index has results of its own.
+    Raises `BadInput`: the files belong to another deployment, and the index has results of its own.
     """
     deployment.take_over()
     missing_lines = (line for line in store.lines() if not store.files.has(line.file))
@@ -63,7 +63,7 @@ def reindex(store: ResultStore, deployment: Deployment) -> _Reindexed:
 
 
 def _opens(path: Path) -> bool:
-    """Whether a file is a whole one of its format: names of older versions say nothing of the bytes."""
+    """Whether a file is complete in its format; names by older versions do not contain the digest."""
     try:
         if path.suffix == ".json":
             json.loads(path.read_bytes())

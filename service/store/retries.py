@@ -27,7 +27,7 @@ _KINDS: Mapping[str, tuple[str, type[DatabaseUnavailable]]] = {
     ROOM: ("no space", NoSpace),
     FILES: ("out of files", OutOfFiles),
 }
-"""Event of the log and error, by the resource that lacks, if the database itself is sound."""
+"""Event of the log and error, by the remedy, where a resource is short and the database itself is sound."""
 P = ParamSpec("P")
 R = TypeVar("R")
 
@@ -61,10 +61,9 @@ S = TypeVar("S", bound=_OnDatabase)
 
 
 def retried(step: Callable[Concatenate[S, P], R]) -> Callable[Concatenate[S, P], R]:
-    """Let a method outlast a lost connection.
+    """Return a method that is tried again after a lost connection.
 
-    The method may be run again after its transaction was committed, when the answer to that was lost: a
-    second run must change nothing.
+    A second run must change nothing: the first may have been committed, with only the reply to it lost.
 
     Raises
     ------
@@ -73,7 +72,7 @@ def retried(step: Callable[Concatenate[S, P], R]) -> Callable[Concatenate[S, P],
     Busy
         Others hold what is needed for too long.
     DatabaseDamaged
-        It has to be mended first: damaged, read-only. Not tried again.
+        The database is damaged or read-only and must be repaired. Not tried again.
     NoSpace, OutOfFiles
         Its disk is full, or this process may open no more files. Not tried again.
     """
@@ -100,7 +99,7 @@ def retried(step: Callable[Concatenate[S, P], R]) -> Callable[Concatenate[S, P],
 
 
 def outage_of(error: SQLAlchemyError, engine: Engine) -> DatabaseUnavailable | None:
-    """Return the message about an error of the database itself; None: it is the statement's."""
+    """Return the outage that an error means; None: the statement is at fault, not the database."""
     if _is_busy(error, engine):
         return Busy("Others write, and have not ended in time. Nothing was changed. Try again later.")
     if _is_lost(error, engine):
@@ -113,7 +112,7 @@ def outage_of(error: SQLAlchemyError, engine: Engine) -> DatabaseUnavailable | N
 
 
 def unusable(engine: Engine, fault: str, remedy: str) -> DatabaseUnavailable:
-    """Return the error of a database that somebody has to see to; the log alone says where it is."""
+    """Return the error of a database that needs a person; its address is for the log alone."""
     where = engine.url.render_as_string(hide_password=True)
     event, kind = _KINDS.get(remedy, ("database damaged", DatabaseDamaged))
     logger.error(event, database=where, error=fault, remedy=remedy)
@@ -123,7 +122,7 @@ def unusable(engine: Engine, fault: str, remedy: str) -> DatabaseUnavailable:
 
 
 def optional(step: Callable[Concatenate[S, P], None]) -> Callable[Concatenate[S, P], None]:
-    """Let a method pass without effect when the database is lost or busy: its caller goes on without."""
+    """Return a method that does nothing, without an error, where the database is lost, busy or unusable."""
 
     @functools.wraps(step)
     def run(self: S, *args: P.args, **kwargs: P.kwargs) -> None:

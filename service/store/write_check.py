@@ -30,7 +30,7 @@ submission waits as long for its turn."""
 class _Writable:
     """Faults of writing by part, empty if there is none.
 
-    `late`: the database did not answer in time, or others held it; nothing is known to be broken.
+    `late`: the database did not answer in time, or others held it. That is no proof of a fault.
     """
 
     database: str = ""
@@ -46,7 +46,7 @@ class _Writable:
 class WriteCheck:
     """Trial writes to the database and the place of results, at most once in `VALID_S`.
 
-    What a look through the database finds damaged counts as not written.
+    A database that the integrity check finds damaged counts as not writable.
     """
 
     def __init__(self, deployment: Deployment, integrity: IntegrityCheck | None = None) -> None:
@@ -88,7 +88,7 @@ class WriteCheck:
 
     @staticmethod
     def _fault(part: str, step: Callable[[], None]) -> tuple[str, bool]:
-        """Return the fault of a step, and whether it may only be late; names of files are for the log."""
+        """Return the fault of a step, without names of files, and whether the step may only be late."""
         try:
             step()
         except BadInput as error:

@@ -1,8 +1,8 @@
 """The writers of one SQLite file in this process, which take turns in the order of their arrival.
 
-SQLite lets one write at a time and lets the others try again and again, each for itself: which of many gets
-in next is chance, and some never do. In a queue each waits for those before it alone. Writers of other
-processes still meet SQLite's lock, at most one of each process at a time.
+SQLite lets one writer in at a time, and every other tries again after a pause: which of many is next is
+chance, and some never are. In a queue a writer waits only for those before it. Between processes SQLite's
+lock still decides, but at most one writer of each process tries.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class WriterQueue:
     def turn(self, patience_s: float, *, ahead: bool = False) -> Iterator[float]:
         """Wait for the turn, and hold it in the context; yield the rest of the patience, s.
 
-        With `ahead` it is the next one. Raises `TurnTimeout`: it has not come within `patience_s`.
+        With `ahead` this writer is the next one. Raises `TurnTimeout`: no turn within `patience_s`.
         """
         end = time.monotonic() + patience_s
         self._enter(patience_s, ahead)
@@ -48,7 +48,7 @@ class WriterQueue:
             if not self._occupied:
                 self._occupied = True
                 return
-            signal = Lock()
+            signal = Lock()  # taken until `_leave` frees it
             signal.acquire()
             (self._waiting.appendleft if ahead else self._waiting.append)(signal)
         if not signal.acquire(timeout=patience_s):

@@ -43,12 +43,12 @@ def work(descriptor: int) -> None:
     orders = os.fdopen(0, "rb", closefd=False)
     order = _order(orders)
     threading.Thread(target=_end_with, args=(orders,), daemon=True).start()
-    lock(os.open(order.workspace, os.O_RDONLY), wait=True)  # open, and so locked, until we end
+    lock(os.open(order.workspace, os.O_RDONLY), wait=True)  # never closed: locked until the process ends
     # temporary files are below the workspace, which the service removes however this process ends
     drafts = order.workspace / "drafts"
     shutil.rmtree(drafts, ignore_errors=True)  # of an attempt that was killed
     drafts.mkdir()
-    _part_from_stored(order.workspace)
+    _unlink_stored(order.workspace)
     os.environ["TMPDIR"] = tempfile.tempdir = str(drafts)
     lower_priority(_NICENESS)
     if order.memory_limit_mb is not None:
@@ -56,8 +56,8 @@ def work(descriptor: int) -> None:
     with os.fdopen(descriptor, "wb") as stream:
         channel = _Channel(stream)
         logging.getLogger("service").addHandler(_WarningHandler(channel))
-        channel.send("begun", True)  # from now on its end is that of the work
-        reads_before = replace(COMPLIANCE_READS)  # a forked child has those of its parent
+        channel.send("begun", True)  # from now on the work is to blame if the process dies
+        reads_before = replace(COMPLIANCE_READS)  # a forked child begins with the counts of its parent
         outcome = _outcome(order, _Reporter(channel))
         reads = {
             "hits": COMPLIANCE_READS.hits - reads_before.hits,
@@ -67,11 +67,11 @@ def work(descriptor: int) -> None:
         channel.send("outcome", outcome | {"peak_mb": peak_mb, "compliance_reads": reads})
 
 
-def _part_from_stored(workspace: Path) -> None:
-    """Remove second names of stored results.
+def _unlink_stored(workspace: Path) -> None:
+    """Remove files of the workspace that are second names (hard links) of stored results.
 
-    A service that is killed between storing a result and noting so leaves its file in the workspace, where
-    the next attempt would write into what is stored.
+    A service that is killed between storing a result and noting it leaves such a name. The next attempt would
+    write through it into the stored file.
     """
     for file in workspace.rglob("*"):
         if file.is_file() and file.stat().st_nlink > 1:
@@ -87,13 +87,13 @@ def _order(orders: BinaryIO) -> WorkOrder:
 
 
 def _end_with(orders: BinaryIO) -> None:
-    """Kill the process group when the service is gone, and so no order can come any more."""
-    orders.read(1)
+    """Kill the process group when the service is gone."""
+    orders.read(1)  # returns when the service closes its end, since no further order comes
     kill_process_group()
 
 
 class _Channel:
-    """Sends messages to the service, one at a time, whichever threads have them."""
+    """Sends messages to the service, one at a time, for all threads of the process."""
 
     def __init__(self, stream: BinaryIO) -> None:
         self._stream, self._sending = stream, threading.Lock()
@@ -133,7 +133,7 @@ class _Reporter:
 
 
 def _outcome(order: WorkOrder, progress: _Reporter) -> dict[str, Any]:
-    """Do the work; every exception becomes an outcome, its text withheld unless it was raised on purpose."""
+    """Do the work; an exception becomes an outcome, whose text shows only errors meant for callers."""
     try:
         module, _, name = order.entry.partition(":")
         products: tuple[Product, ...] = getattr(importlib.import_module(module), name)(order, progress)
@@ -155,7 +155,7 @@ def _outcome(order: WorkOrder, progress: _Reporter) -> dict[str, Any]:
 
 
 def stamp_products(order: WorkOrder, products: Sequence[Product]) -> None:
-    """Write the warnings of its inputs into each file; a database has them already."""
+    """Write the warnings of the inputs into the file of each product; a database has them already."""
     others = any(product.kind != "database" for product in products)
     case = list(warnings_of_case(order.inputs["case"])) if others and "case" in order.inputs else None
     for product in products:

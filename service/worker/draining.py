@@ -1,8 +1,9 @@
 """Draining of a Dask worker on SIGTERM: it finishes its job and hands its result over.
 
-Dask itself ends a worker at once. As ``dask worker --no-nanny --preload service.worker.draining`` it begins
-no further task, waits for those that it does until their results are elsewhere, and leaves; a second SIGTERM
-ends it at once. Who supervises it waits for as long as a job may take (`terminationGracePeriodSeconds`).
+Dask itself ends a worker at once. Started as ``dask worker --no-nanny --preload service.worker.draining``, a
+worker begins no further task, finishes those in progress, waits until their results have been moved, and
+ends. A second SIGTERM ends it at once. Its supervisor must wait as long as a job may take
+(`terminationGracePeriodSeconds`).
 """
 
 from __future__ import annotations

@@ -24,9 +24,9 @@ Json = dict[str, Any]
 
 @lru_cache(maxsize=256)
 def input_warnings(inputs: str) -> tuple[Json, ...]:
-    """Return the warnings of normalized inputs, given as JSON.
+    """Return the warnings of normalized inputs, JSON.
 
-    There are none of what has neither case nor scene, and of an older job whose inputs are refused today.
+    Inputs without case and scene have none, nor have inputs of an older job that are refused today.
     """
     document = json.loads(inputs)
     try:
@@ -38,12 +38,12 @@ def input_warnings(inputs: str) -> tuple[Json, ...]:
 
 
 def warnings_of_case(case: Json) -> list[Json]:
-    """Assess a normalized case."""
+    """Return the warnings of a normalized case."""
     return case_warnings(CASES.of_json(case))
 
 
 def _of_scene(scene: SceneInput) -> list[Json]:
-    """Assess the cases of all meshes, and the scene itself where no mesh takes a stored table."""
+    """Return the warnings of the cases of all meshes, and of the scene if no mesh takes a stored table."""
     cases = {mesh.name: mesh.case for mesh in scene.meshes if mesh.case is not None}
     warnings = omission_warnings(scene.left_out) + [
         within(warning, f"meshes[{index}]")
@@ -51,16 +51,16 @@ def _of_scene(scene: SceneInput) -> list[Json]:
         if mesh.case is not None
         for warning in case_warnings(CASES.of(mesh.case))
     ]
-    if len(cases) < len(scene.with_database):
+    if len(cases) < len(scene.with_database):  # a mesh takes a stored table, whose pair is not read here
         return warnings
     moving = check_scene(scene, {name: PairGeometry.of(CASES.of(case).pair) for name, case in cases.items()})
     return unique([*warnings, *scene_warnings(scene, moving)])
 
 
 def predicted_seconds(inputs: Json) -> float | None:
-    """Return the CPU seconds of the table of a case, its studies in proportion; None: no case.
+    """Return the predicted CPU seconds of the table of a case; None: no case, or the prediction fails.
 
-    The progress of a batch is weighted by them.
+    They weight the jobs in the progress of a batch; the cost of a study is taken as proportional to them.
     """
     if inputs.get("case") is None:
         return None
@@ -69,5 +69,5 @@ def predicted_seconds(inputs: Json) -> float | None:
         checked = case.checked
         with boundary_errors():
             return decide(checked).predicted(None).cpu_seconds
-    except BadInput:  # of a wish that no mesh meets: the job will say so
+    except BadInput:  # no mesh meets the requested accuracy: the job itself will say so
         return None

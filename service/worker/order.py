@@ -15,16 +15,17 @@ class Progress(Protocol):
     """Reports the fraction done of a stage, and of the whole work where its cost was predicted."""
 
     def __call__(self, stage: str, fraction: float, total: float | None = None, /) -> None:
-        """Report both, from 0 to 1; without `total` it follows from the shares that the process declares."""
+        """Report both, from 0 to 1; without `total` the declared shares of the stages give the whole."""
 
 
 @dataclass(frozen=True)
 class WorkOrder:
     """One computation for one child process: ``"module:function"`` to call with normalized inputs.
 
-    The workspace is of this computation alone: another attempt after a worker died finds what that one left.
-    The compliance cache is in the data directory. `stored` are the files of the stored results that the work
-    reads, by their hashes, `scheduler` the address of the Dask scheduler whose workers may do its tasks.
+    The workspace belongs to this computation alone: an attempt after the death of a worker finds the files of
+    the attempt before. The compliance cache is in the data directory. `stored` maps the hashes of stored
+    results that the work reads to their files. `scheduler` is the address of the Dask scheduler whose workers
+    may do its tasks.
     """
 
     entry: str
@@ -44,20 +45,18 @@ class WorkOrder:
     def from_line(cls, line: bytes) -> WorkOrder:
         """Read the line of an order."""
         fields = json.loads(line)
-        fields["workspace"], fields["data_directory"] = (
-            Path(fields["workspace"]),
-            Path(fields["data_directory"]),
-        )
+        for name in ("workspace", "data_directory"):
+            fields[name] = Path(fields[name])
         fields["stored"] = {key: Path(file) for key, file in fields["stored"].items()}
         return cls(**fields)
 
 
 @dataclass(frozen=True)
 class Product:
-    """A file the work made, to be moved into the store under `key`.
+    """A file that the work made, to be moved into the store under `key`.
 
-    `warnings` are those of what it was made from; None: those of the order's case, or in the file already.
-    `headline` is what a list of jobs shows of it.
+    `warnings` are those of its inputs; None: the order's case has them, or the file itself. `headline` is
+    what a list of jobs shows of it.
     """
 
     key: str
@@ -71,8 +70,9 @@ class Product:
 class Outcome:
     """The end of a worker: its products, or the failure in words for the user and the faults of the input.
 
-    `unexpected`: a defect, the text of the exception is in the log only. `died`: the child ended after it had
-    begun, which is worth another attempt. `lost`: what ran it ended, or it never began: no fault of the work.
+    `unexpected`: a defect, the text of the exception is in the log only. `died`: the child ended after its
+    work had begun; another attempt is made. `lost`: the work never began, or its executor ended, which is not
+    counted as an attempt.
     """
 
     products: tuple[Product, ...] = ()

@@ -20,8 +20,8 @@ from service.schemas.execute import AnalyzeInputs, SimulateInputs
 from service.store.results import ResultStore
 
 CASES = CheckedCases()
-"""The last cases of this process, a service or a worker: a submission, its predicted cost and its warnings
-are of one check, and so are a result and the warnings in its file."""
+"""The last checked cases of this process, a service or a worker. So one check serves a submission, its
+predicted cost and its warnings, or a result and the warnings in its file."""
 
 Json = dict[str, Any]
 
@@ -47,7 +47,7 @@ def _pair_data(field: str, mesh: MeshInput, store: ResultStore) -> PairGeometry:
 
 
 def _check_source(field: str, mesh: MeshInput, store: ResultStore) -> None:
-    """Refuse files of the callers, which a service does not read, and hashes it does not hold."""
+    """Refuse files of the callers, which a service does not read, and hashes of results that it lacks."""
     for name, path in (("case_file", mesh.case_file), ("database_file", mesh.database_file)):
         if path is not None:
             _refuse_file(f"{field}.{name}", path, "Write the case out, or submit it and give database_hash")
@@ -70,16 +70,16 @@ def _refuse_file(field: str, path: str, instead: str) -> NoReturn:
 
 
 def prepare_analyze(inputs: BoundaryModel, store: ResultStore) -> Json:
-    """Return the case with all defaults; check that it can be computed, unless that was done."""
+    """Return the case with all defaults; check that it can be computed, unless its result is stored."""
     assert isinstance(inputs, AnalyzeInputs)
     normalized: Json = inputs.model_dump(mode="json")
     if store.find(name_database(normalized), "database") is None:
-        _ = CASES.of(inputs.case).feasible
+        _ = CASES.of(inputs.case).feasible  # raises unless it can be computed
     return normalized
 
 
 def name_database(inputs: Json) -> str:
-    """Return the content hash that the database of a case will carry itself."""
+    """Return the content hash of the database of a case, which its file will state."""
     return content_hash(inputs["case"], SOLVER_VERSION, SCHEMA_VERSION)
 
 
@@ -91,9 +91,9 @@ def name_of_table(mesh: MeshInput) -> str:
 
 
 def files_read(inputs: Json, store: ResultStore) -> dict[str, Path]:
-    """Return the files of the stored results that normalized inputs name, or that stand for their cases.
+    """Return the files of stored results that normalized inputs name, and of stored tables of their cases.
 
-    Raises `NotFound`, `DamagedFile`: one that they name is not there any more; and as `ResultStore.verified`.
+    Raises `NotFound`, `DamagedFile`: a named result is gone; and as `ResultStore.verified`.
     """
     names = [] if inputs.get("run") is None else [(inputs["run"], "run")]
     if inputs.get("scene") is not None:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 Json = dict[str, Any]
 Prepare = Callable[[BoundaryModel, "ResultStore"], Json]
 _HOUSING = Stage("housing", 0.3)
-"""Mesh and modes of solids; a stage that a scene does without has no share."""
+"""Stage of the mesh and modes of solids; it gets no share in a scene without solids."""
 
 
 def content_key(process: str, process_version: str, inputs: dict[str, Any]) -> str:
@@ -42,16 +42,7 @@ def content_key(process: str, process_version: str, inputs: dict[str, Any]) -> s
 
 @dataclass(frozen=True)
 class Process:
-    """A kind of job; `id` to `inputs` are as in OGC API - Processes.
-
-    Its one output has the name of the kind of its result in the store. ``prepare(inputs, store)`` checks what
-    a schema cannot (raises `BadInput`) and returns the normalized inputs, which are hashed, stored and worked
-    on; cheap: it runs in the request. `entry` is the ``"module:function"`` of the work, called as
-    ``function(order, progress)`` in a process of its own, `plan` that of the live worker that predicts the
-    cost (empty: none does). `stages` are what the work reports, in order, where it does not predict their
-    cost; `action` is what a button says (empty: it is no study); `name_result` makes of normalized inputs the
-    content hash of the result where the work itself defines one.
-    """
+    """A kind of job; `id` to `inputs` are as in OGC API - Processes."""
 
     id: str
     title: str
@@ -59,13 +50,22 @@ class Process:
     version: str
     inputs: type[BoundaryModel]
     output: str
+    """Name of the one output, which is the kind of its result."""
     kind: str
+    """Kind of the result in the store."""
     prepare: Prepare
+    """Checks what a schema cannot (raises `BadInput`), and returns the normalized inputs, which are hashed,
+    stored and worked on. It runs in the request, so it is cheap."""
     entry: str
+    """Work as ``"module:function"``, called as ``function(order, progress)`` in a process of its own."""
     stages: tuple[Stage, ...]
+    """Stages that the work reports, in order; empty where the work predicts their cost itself."""
     action: str = ""
+    """Label of a button; empty: the process is no study."""
     plan: str = ""
+    """Function of the live worker that predicts the cost, as `entry`; empty: none does."""
     name_result: Callable[[Json], str] | None = None
+    """Returns the content hash of the result of normalized inputs; None: `content_key` does."""
 
     def key(self, inputs: Json) -> str:
         """Return the content hash of the result of normalized inputs."""
@@ -75,7 +75,7 @@ class Process:
 
 
 class Registry(dict[str, Process]):
-    """The processes of a service, by id; raises `NoSuchProcess` of another name."""
+    """The processes of a service, by id; a lookup of another name raises `NoSuchProcess`."""
 
     def __init__(self, *processes: Process) -> None:
         super().__init__({process.id: process for process in processes})

@@ -24,7 +24,7 @@ Work = Callable[[WorkOrder, Progress], tuple[Product, ...]]
 
 
 def __getattr__(name: str) -> Work:
-    """Return the work of a study by its name: so does the entry of its process."""
+    """Return the work of a study as an attribute of its name: the entry of its process is this module's."""
     if name in STUDIES:
         return partial(_work, STUDIES[name])
     raise AttributeError(name)
@@ -49,7 +49,8 @@ def _work(study: Study, order: WorkOrder, progress: Progress) -> tuple[Product, 
     subject, products, warnings = _subject(study, order, progress)
     varied = {name: value for name, value in order.inputs.items() if name not in ("case", "scene")}
     inputs = study.inputs.model_validate_json(json.dumps(varied))
-    with (table_workers if study.run.resumed else cluster_of)(order) as workers:
+    executor = table_workers if study.run.resumed else cluster_of
+    with executor(order) as workers:
         key = getattr(inputs, "run", None)
         run = None if key is None else RunResult.from_netcdf(order.stored[key])
         means = Means(order.data_directory, progress, workers, folder=order.workspace / "runs", run=run)

@@ -14,7 +14,7 @@ BYTES_PER_MB = float(1 << 20)
 _MB = 1 << 20
 _GROUP_LIMIT = Path("/sys/fs/cgroup/memory.max")
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
-"""Errors of a full disk: no space, none left of a quota, none within the largest file of a process."""
+"""Errors of a full disk: no space, quota used up, or largest size of a file reached."""
 
 
 def begin_work() -> None:
@@ -27,8 +27,8 @@ def begin_work() -> None:
 class Usage:
     """Resources of a worker: elapsed s, CPU s including ended children, largest resident memory in MB.
 
-    The memory is what the process reported with its outcome; of one that did not, at least that of the
-    process that started it, whose memory the system counts until the program is loaded.
+    The process reports its memory with its outcome. Without a report it is the system's figure, which is at
+    least the memory of the parent: until the program is loaded, the system counts that.
     """
 
     seconds: float
@@ -55,7 +55,7 @@ def machine_memory_mb(group_limit: Path = _GROUP_LIMIT) -> int:
 
 
 def hold_to(limit_mb: int) -> None:
-    """Let allocations of this process fail beyond so many MB; a stricter limit of the system stays."""
+    """Limit the memory of this process: further allocations fail; a stricter limit of the system stays."""
     limit_memory(limit_mb * _MB)
 
 

@@ -1,4 +1,7 @@
-"""Harris maps before and after, ripple over torque with its scatter, and the gain."""
+"""Harris maps before and after, ripple over torque with its scatter, and the gain.
+
+A node is one set of deviations of the flanks with its weight: expectations are weighted sums over the nodes.
+"""
 
 from __future__ import annotations
 
@@ -52,7 +55,7 @@ def _harris(result: Optimization) -> Figure:
 
 
 def _chosen(result: Optimization) -> list[int]:
-    """Return the torques whose curves are drawn: counted ones, ones that get worse, and some between."""
+    """Return the indices of drawn torques: those of the objective, those that get worse, some between."""
     torque = result.start.harris_map.torque
     drawn = {*np.flatnonzero(np.isin(torque, result.torque)).tolist(), *result.rising.tolist()}
     even = np.linspace(torque[0], torque[-1], max(2, MAX_CURVES - len(drawn)))
@@ -60,7 +63,7 @@ def _chosen(result: Optimization) -> list[int]:
 
 
 def _zero_mean_curves(result: Optimization, design: ConfirmedDesign) -> FloatArray:
-    """Curves (P, K) of the chosen torques less their means, um."""
+    """Return the curves of the chosen torques less their means, um. Shape (positions, torques)."""
     values = design.harris_map.ste[:, _chosen(result)] / UM
     return np.asarray(values - values.mean(axis=0))
 
@@ -70,7 +73,7 @@ def _map(
 ) -> Panel:
     harris = design.harris_map
     names = [f"{text} N m" for text in thousands([float(harris.torque[k]) for k in _chosen(result)])]
-    end = float(np.ceil(harris.position[-1] + 1e-12))
+    end = float(np.ceil(harris.position[-1] + 1e-12))  # the next whole pitch, also of a position on one
     position, closed = np.append(harris.position, end), np.vstack([values, values[:1]])
     return harris_panel(
         f"Harris map {name}", Axis(_POSITION, limits=(0.0, end)), position, closed, names, scale
@@ -134,11 +137,11 @@ def _optimum_table(result: Optimization) -> Table:
         name = boundary_name(var.name)
         unit = factor(name)
         values = result.start.values[var.name], result.optimum.values[var.name], var.low, var.high
-        aside = (
+        changes = (
             f"{engineering(change / UM, 2, '+')} at {number(end / unit, 3)}"
             for change, end in ((step.change_low, step.low), (step.change_high, step.high))
         )
-        rows.append((name, *(number(value / unit, 4) for value in values), *aside))
+        rows.append((name, *(number(value / unit, 4) for value in values), *changes))
     head = ("variable", "start", "optimum", "least", "most", "lower, µm", "higher, µm")
     return Table("Design, and the change of the objective by a perturbation", head, tuple(rows))
 

@@ -18,6 +18,7 @@ from model_studies.spread import quantiles
 
 MAX_RESPONSES, MAX_CURVES, MAX_FACTORS = 4, 6, 12
 BAR = 9.0
+"""Width of the bars of a tornado, pixels."""
 MAX_ROWS = 12
 """Lines of the tables of worst and failed runs."""
 
@@ -55,20 +56,20 @@ def _over(study: Study, axes: list[int]) -> str:
 
 def _map(study: Study, across: int, up: int, response: int) -> Panel:
     x, y = (np.unique(study.value[:, axis]) for axis in (across, up))
-    one = in_boundary_units(study, response)[1]
+    scale = in_boundary_units(study, response)[1]
     z = np.full((y.size, x.size), np.nan)
     for row, column in np.ndindex(z.shape):
         cell_runs = (study.value[:, across] == x[column]) & (study.value[:, up] == y[row])
         values = study.figure[cell_runs, response]
         if np.isfinite(values).any():
-            z[row, column] = np.nanmean(values) / one
+            z[row, column] = np.nanmean(values) / scale
     shade = HeatMap.spanning(x, y, z, _unit(study, response))
     axes = Axis(study.factor[across]), Axis(study.factor[up])
     return Panel(*axes, title=study.response[response], shade=shade)
 
 
 def _curves(study: Study, axis: int, responses: range) -> Figure:
-    """Means, and of samples quantiles, over one factor."""
+    """Draw the means over one factor, and the 5 % and 95 % quantiles of sampled runs."""
     panels = tuple(
         Panel(
             Axis(study.factor[axis]),
@@ -85,15 +86,15 @@ def _curves(study: Study, axis: int, responses: range) -> Figure:
 
 
 def _lines(study: Study, axis: int, response: int) -> tuple[Line, ...]:
-    one = in_boundary_units(study, response)[1]
+    scale = in_boundary_units(study, response)[1]
     levels, mean = study.level_means(axis, response)
-    lines = [Line("mean", levels, mean / one, palette.BLUE, markers=True)]
+    lines = [Line("mean", levels, mean / scale, palette.BLUE, markers=True)]
     if study.samples > 1:
         for fraction in (0.05, 0.95):
             rows = [study.figure[study.value[:, axis] == level, response] for level in levels]
             ends = np.array([quantiles(row[np.isfinite(row)], fraction) for row in rows])
             name = f"{100 * fraction:g} %"
-            lines.append(Line(name, levels, ends / one, palette.VERMILLION, "dot", 1.2))
+            lines.append(Line(name, levels, ends / scale, palette.VERMILLION, "dot", 1.2))
     return tuple(lines)
 
 
@@ -106,25 +107,26 @@ def _distribution_figure(study: Study) -> Figure:
         )
         for response in range(min(len(study.response), MAX_RESPONSES))
     )
-    of = "the samples of a combination" if study.samples > 1 else "all points"
+    population = "the samples of a combination" if study.samples > 1 else "all points"
     return Figure(
         "study_distribution",
         "Distribution of the responses",
-        f"Share of {of} that lies below a value.",
+        f"Share of {population} that lies below a value.",
         _extreme(study),
         panels,
     )
 
 
 def _cumulative(study: Study, response: int) -> list[Line]:
-    """One step curve for each of some combinations; without samples one over all points."""
-    one = in_boundary_units(study, response)[1]
+    """Draw step curves of a few combinations; without samples one curve of all points."""
+    scale = in_boundary_units(study, response)[1]
     rows = study.column(response) if study.samples > 1 else study.figure[:, response][None]
     chosen = np.unique(np.linspace(0, len(rows) - 1, min(len(rows), MAX_CURVES)).round().astype(int))
     curves = {}
     for row in chosen:
-        values = np.sort(rows[row][np.isfinite(rows[row])]) / one
+        values = np.sort(rows[row][np.isfinite(rows[row])]) / scale
         share = 100.0 * np.arange(values.size + 1) / max(values.size, 1)
+        # at each value the curve steps from one share up to the next
         curves[int(row)] = np.repeat(values, 2), np.repeat(share, 2)[1:-1]
     return [
         Line(_combination(study, row), *curve, palette.ordered(count, len(chosen)))
@@ -146,7 +148,7 @@ def _varied(study: Study) -> list[int]:
 
 
 def _short(study: Study, factor: int) -> str:
-    """Return the last name of a factor's path, all of it where another one ends alike."""
+    """Return the last name of a factor's path, or the whole path where another ends with the same name."""
     ends = [path.rpartition(".")[2] for path in study.factor]
     return ends[factor] if ends.count(ends[factor]) == 1 else study.factor[factor]
 
@@ -166,11 +168,11 @@ def _tornado_figure(study: Study) -> Figure:
 
 def _by_levels(study: Study) -> list[Panel]:
     """Draw a bar between the means of the levels of each factor; none where none is known."""
-    one = in_boundary_units(study, 0)[1]
+    scale = in_boundary_units(study, 0)[1]
     bars = []
     for factor in _varied(study):
         if study.kind[factor] in ("grid", "list") and np.isfinite(study.swing(factor, 0)):
-            means = study.level_means(factor, 0)[1] / one
+            means = study.level_means(factor, 0)[1] / scale
             bars.append((float(np.nanmin(means)), float(np.nanmax(means)), study.factor[factor]))
     return [_bars(bars, f"means of the levels: {_label(study, 0)}")] if bars else []
 
@@ -194,6 +196,7 @@ def _bars(
         for (low, high, name), height in zip(ordered, heights, strict=True)
     )
     names = tuple((height, name) for (_, _, name), height in zip(ordered, heights, strict=True))
+    # bars stand at heights 1, 2 ...: a margin of 0.6 below the lowest and above the highest
     return Panel(Axis(text, limits=limits), Axis("", limits=(0.4, len(ordered) + 0.6), names=names), lines)
 
 
@@ -203,11 +206,12 @@ def _extreme(study: Study) -> str:
     if not np.isfinite(first).any():
         return "No run has figures."
     point = int(np.nanargmax(first))
-    one = in_boundary_units(study, 0)[1]
-    at = ", ".join(
+    scale = in_boundary_units(study, 0)[1]
+    levels = ", ".join(
         f"{name} = {value:.6g}" for name, value in zip(study.factor, study.value[point], strict=True)
     )
-    return f"Largest {study.response[0]}: {number(float(first[point]) / one, 4)} {_unit(study, 0)} at {at}."
+    largest = f"{number(float(first[point]) / scale, 4)} {_unit(study, 0)}"
+    return f"Largest {study.response[0]}: {largest} at {levels}."
 
 
 def _study_figures(study: Study) -> tuple[Figure, ...]:
@@ -220,9 +224,9 @@ def _study_figures(study: Study) -> tuple[Figure, ...]:
 def _summary_table(study: Study) -> Table:
     rows = []
     for k in range(len(study.response)):
-        one = in_boundary_units(study, k)[1]
-        values = study.figure[:, k][np.isfinite(study.figure[:, k])] / one
-        errors = study.error[:, k][np.isfinite(study.error[:, k])] / one
+        scale = in_boundary_units(study, k)[1]
+        values = study.figure[:, k][np.isfinite(study.figure[:, k])] / scale
+        errors = study.error[:, k][np.isfinite(study.error[:, k])] / scale
         texts = [
             number(float(take(values)), 4) if values.size else "none" for take in (np.min, np.mean, np.max)
         ]
@@ -263,8 +267,8 @@ def _failed_table(study: Study) -> Table:
 def _page(study: Study) -> Page:
     failed = len(study.reason) - study.usable
     usable = f"{failed} without figures" if failed else "all with figures"
-    unit, one = in_boundary_units(study, 0)
-    first = study.figure[:, 0][np.isfinite(study.figure[:, 0])] / one
+    unit, scale = in_boundary_units(study, 0)
+    first = study.figure[:, 0][np.isfinite(study.figure[:, 0])] / scale
     largest = f"{number(first.max(), 4)} {unit}".strip() if first.size else "none"
     heads = (
         Headline("runs", str(len(study.reason)), usable),

@@ -9,7 +9,7 @@ import zlib
 def attached(pdf: bytes, name: str, content: bytes) -> bytes:
     """Return a PDF file with one more file in it.
 
-    Raises `ValueError`: the PDF file is built otherwise.
+    Raises `ValueError`: the PDF file does not have the form that `pdf` states.
 
     Parameters
     ----------
@@ -41,10 +41,10 @@ def attached(pdf: bytes, name: str, content: bytes) -> bytes:
 
 
 def _end(pdf: bytes) -> tuple[int, int, int]:
-    """Return the offset of the last table of references, the number of objects, and that of the catalog."""
+    """Return the offset of the last table of references, the count of objects, the catalog's number."""
     trailer = pdf[pdf.rfind(b"trailer") :]
     matches = [re.search(rb"%b\s+(\d+)" % name, trailer) for name in (b"startxref", b"/Size", b"/Root")]
     if not all(matches):
         raise ValueError("the PDF file has no trailer")
-    last, size, root = (int(one[1]) for one in matches if one)
+    last, size, root = (int(match[1]) for match in matches if match)
     return last, size, root

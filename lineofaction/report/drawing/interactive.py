@@ -38,9 +38,9 @@ _PANEL_HEIGHT, _BELOW, _BETWEEN = 280, 60, 62  # pixels
 _LABEL = 26  # pixels of an axis label between panels
 _LEGEND_ROW = 22  # pixels
 _NOTE_ROW = 15  # pixels
-_LABEL_ROW, _LEADER, _LABEL_CHARACTER = 15, 18, 6.6  # pixels of a label at a line: row, way to it, character
+_LABEL_ROW, _LEADER, _LABEL_CHARACTER = 15, 18, 6.6  # label at a line: row, leader, character, pixels
 _BAND_ALPHA = "33"  # opacity of an error band, after the six digits of its color
-_ROW_CHARACTERS, _HANDLE_CHARACTERS = 120, 7  # of the legend's type: across the page, beside a name
+_ROW_CHARACTERS, _HANDLE_CHARACTERS = 120, 7  # width in characters: row of the legend, line before a name
 _TINT = "22"  # opacity of the area in an outline
 _BOX = "rgba(255,255,255,0.8)"  # under a text on colors
 _FONT = {"family": "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', sans-serif", "size": 14}
@@ -90,7 +90,7 @@ def _isolines(shade: HeatMap) -> Json:
     step = shade.isolines[-1] / len(shade.isolines)
     ends = {"start": shade.isolines[0], "end": shade.isolines[-1], "size": step}
     look = {"coloring": "heatmap", "showlabels": True, "labelfont": {"size": 11, "color": "#FFFFFF"}}
-    clear = "rgba(255,255,255,0)"
+    clear = "rgba(255,255,255,0)"  # values below the share BLANK of the largest stay blank
     scale = [[0.0, clear], [BLANK, clear], *([BLANK + (1.0 - BLANK) * at, c] for at, c in _color_scale())]
     line = {"color": "#FFFFFF", "width": 1}
     return {"type": "contour", "contours": ends | look, "line": line, "colorscale": scale}
@@ -121,6 +121,7 @@ def _strokes(shade: Strokes, domain: list[float]) -> list[Json]:
 def _step(shade: Strokes, chosen: Any, k: int, unit: str) -> Json:
     """Draw the strokes of one step, with breaks between them; step 0 carries nothing."""
     gap = np.full((int(chosen.sum()), 1), np.nan)
+    # a text for both ends of a stroke, none for the break
     labels = [[f"{number(v, 4)} {unit}"] * 2 + [""] for v in shade.value[chosen]]
     fraction = (k - 0.5) / STEPS
     return {
@@ -142,6 +143,7 @@ def plotly_figure(figure: Figure) -> Json:
     panels = rewritten(figure.content, _plain)
     names = legend_names(figure.content)
     rows = math.ceil(sum(len(name) + _HANDLE_CHARACTERS for name in names) / _ROW_CHARACTERS)
+    # pixels above the panels: one row of the legend, and a title
     above = (62 if panels[0].title else 44) + _LEGEND_ROW * max(rows - 1, 0)
     gaps = [_BETWEEN if repeats_below(panels, i) else _BETWEEN + _LABEL for i in range(len(panels) - 1)]
     heights = [round(_PANEL_HEIGHT * panel_height(panel)) for panel in panels]
@@ -151,7 +153,7 @@ def plotly_figure(figure: Figure) -> Json:
     layout["margin"] = layout["margin"] | {"t": above, "r": _margin(figure.content)}
     layout["barmode"] = "overlay"
     data: list[Json] = []
-    unnamed = set(map(_plain, names))
+    unnamed = set(map(_plain, names))  # names without an entry in the legend yet: the first curve makes it
     for index, panel in enumerate(panels):
         suffix = str(index + 1) if index else ""
         top = inner - (sum(heights[:index]) + sum(gaps[:index]))
@@ -188,6 +190,7 @@ def _plain(text: str) -> str:
 
 
 def _margin(panels: tuple[Panel, ...]) -> int:
+    """Return the pixels on the right that the longest label of a line needs."""
     rows = [row for panel in panels for line in panel.lines for row in line.label.split("\n")]
     return 24 + math.ceil(_LABEL_CHARACTER * max(map(len, rows), default=0))
 
@@ -259,14 +262,14 @@ def _integer_ticks(panel: Panel, name: Literal["x", "y"]) -> Json:
         return {}
     parts: list[Any] = [*panel.lines, *([] if panel.shade is None else [panel.shade])]
     parts += panel.bars if name == "x" else ()
-    values = [np.asarray(getattr(panel, name).limits or ())] + [getattr(one, name) for one in parts]
-    ends = np.concatenate([*(value.ravel() for value in values), np.zeros(1)])  # of an empty plot too
+    values = [np.asarray(getattr(panel, name).limits or ())] + [getattr(part, name) for part in parts]
+    ends = np.concatenate([*(value.ravel() for value in values), np.zeros(1)])  # never empty
     span = float(np.ptp(ends[np.isfinite(ends)]))
     return {"tick0": 0, "dtick": max(math.ceil(span / _MAX_TICKS), 1)}
 
 
 def _line(line: Line, suffix: str, show: bool) -> Json:
-    """One curve; curves of one name share a legend entry."""
+    """Draw a curve; curves with the same name share a legend entry."""
     filled = {"fill": "toself", "fillcolor": line.color + _TINT, "hoveron": "points"} if line.filled else {}
     return filled | {
         "type": "scatter",

@@ -21,7 +21,7 @@ _FLAGS = (
 def pdf(page: str, named: Path) -> bytes:
     """Return a page of HTML as PDF, A4 with page numbers.
 
-    `named`: the file that is written, for the refusal. Raises `BadInput`: there is no browser (the variable
+    `named` is the requested file, which a refusal names. Raises `BadInput`: there is no browser (the variable
     ``CHROMIUM`` names one), it fails, or it takes over two minutes.
     """
     paths = (shutil.which(name) for name in (os.environ.get("CHROMIUM", ""), *_BROWSERS))

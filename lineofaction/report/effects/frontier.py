@@ -1,4 +1,7 @@
-"""Page of an accuracy study: the choice, the knee, the plot, every fidelity, and fidelities not run."""
+"""Page of an accuracy study: the choice, the knee, the plot, every fidelity, and fidelities not run.
+
+A peer is another program whose cost and error are drawn beside the fidelities, here of full contact.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +27,7 @@ Study = Frontier | SceneFrontier
 
 @dataclass(frozen=True)
 class _Peer:
-    """Points in the plot of a program that is no fidelity of the study."""
+    """Points of a peer in the plot."""
 
     name: str
     """Name in the legend."""
@@ -66,7 +69,7 @@ class _Family(NamedTuple):
 
 
 def _peers(study: Frontier) -> list[_Peer]:
-    """Return the known errors of this very pair, and of full contact as recorded."""
+    """Return full contact by its known errors for this pair, and by its recorded curves."""
     peers, measured = [], study.full_contact
     if levels := study.known_full_contact:
         titles = tuple(f"full contact, {level.unknowns // 1000} k unknowns" for level in levels)
@@ -322,7 +325,7 @@ def _per_cent(value: float) -> str:
 def _quickest(study: Study) -> str:
     parts = []
     for limit, text in ((0.01, "1 %"), (0.001, "0.1 %")):
-        good = [result for result in study.results[:-1] if result.error <= limit]
+        good = [result for result in study.results[:-1] if result.error <= limit]  # without the finest
         if good:
             best = min(good, key=lambda result: result.cpu_seconds)
             parts.append(f"within {text}: {best.title}, {number(best.cpu_seconds, 2)} CPU s")

@@ -107,9 +107,13 @@ def _marks(flanks: LoadDistribution) -> tuple[Reference, ...]:
 
 
 def _strokes(flanks: LoadDistribution, chosen: IntArray, values: FloatArray, label: str) -> Strokes:
-    """One stroke per slice that can touch, as long as the slice is wide and as oblique as the helix."""
+    """Draw one stroke per slice that can touch, as long as the slice is wide and as oblique as the helix.
+
+    Axes of the arrays: position, tooth pair, slice.
+    """
     present = (flanks.on_path | (flanks.force > 0.0))[chosen]
     roll, face = 1e3 * flanks.roll_length_1[chosen], 1e3 * flanks.face_position
+    # the contact line's rise over half a slice, mm; zero at tip edges, which are no part of the line
     rise = -0.5e3 * flanks.slice_width * math.tan(flanks.base_helix_angle) * flanks.on_path[chosen]
     half = 0.5e3 * flanks.slice_width
     x = np.stack(np.broadcast_arrays(face - half, face + half), axis=-1)
@@ -149,7 +153,7 @@ def contact_pattern_figure(flanks: LoadDistribution) -> Figure:
         "singular, and this a measure only. Roll length: distance to the base circle along the "
         "involute's normal. Seen from the +z end, the driving gear turns clockwise.",
         alternative=_alternative(flanks),
-        content=tuple(drawn(flanks, gear, one) for gear, one in zip(GEARS, maps, strict=True)),
+        content=tuple(drawn(flanks, gear, pattern) for gear, pattern in zip(GEARS, maps, strict=True)),
         table=_pattern_table(flanks, maps),
     )
 
@@ -170,8 +174,8 @@ def _roll_marks(
     )
 
 
-def _shaded(flanks: LoadDistribution, gear: Gear, one: _Map) -> Panel:
-    roll, pressure = one
+def _shaded(flanks: LoadDistribution, gear: Gear, pattern: _Map) -> Panel:
+    roll, pressure = pattern
     largest = 1e-6 * float(flanks.pressure.max())
     face = 1e3 * flanks.face_position
     return Panel(
@@ -184,6 +188,7 @@ def _shaded(flanks: LoadDistribution, gear: Gear, one: _Map) -> Panel:
 
 
 def _isolines(largest: float) -> tuple[float, ...]:
+    """Return round levels below the largest pressure: multiples of 0.2, 0.5, 1, 2 or 5 powers of ten."""
     step = 10.0 ** np.floor(np.log10(largest)) if largest > 0.0 else 1.0
     wide = next(w for w in (0.2, 0.5, 1.0, 2.0, 5.0) if largest / (w * step) <= _MAX_ISOLINES + 1)
     count = int(_HIGHEST_ISOLINE * largest / (wide * step))
@@ -197,14 +202,14 @@ def _title(flanks: LoadDistribution, gear: Gear) -> str:
     return "ring gear: tip below, root above" if ring else "wheel: root below, tip above"
 
 
-def _curve(flanks: LoadDistribution, gear: Gear, one: _Map) -> Panel:
+def _curve(flanks: LoadDistribution, gear: Gear, pattern: _Map) -> Panel:
     """Draw the pressure along the profile: in the plane it is the same over the face."""
-    roll, pressure = one
+    roll, pressure = pattern
     line = Line("pressure", roll, pressure[:, 0], palette.BLUE)
     title = _title(flanks, gear).replace("below", "left").replace("above", "right")
     return Panel(
         Axis("roll length, mm", limits=_extent(flanks, gear, roll)),
-        Axis(PRESSURE, limits=(0.0, 1.15e-6 * float(flanks.pressure.max()))),
+        Axis(PRESSURE, limits=(0.0, 1.15e-6 * float(flanks.pressure.max()))),  # MPa, with 15 % of room
         (line,),
         _roll_marks(flanks, gear, "vertical"),
         title,
@@ -218,13 +223,14 @@ def _extent(flanks: LoadDistribution, gear: Gear, roll: FloatArray) -> tuple[flo
     marks = [*(1e3 * end for end in ends), float(roll[0]), float(roll[-1])]
     low, high = min(marks), max(marks)  # the tip of a ring is the lower one
     room = 0.06 * (high - low)
-    return low - room, high + room * (1.5 if flanks.face_position.size > 1 else 3.0)
+    return low - room, high + room * (1.5 if flanks.face_position.size > 1 else 3.0)  # for texts of marks
 
 
 def _alternative(flanks: LoadDistribution) -> str:
-    at = np.unravel_index(int(flanks.clear_pressure.argmax()), flanks.pressure.shape)
-    roll, face = (1e3 * float(v) for v in (flanks.roll_length_1[at], flanks.face_position[at[2]]))
-    largest = number(1e-6 * float(flanks.pressure[at]), 4)
+    worst = np.unravel_index(int(flanks.clear_pressure.argmax()), flanks.pressure.shape)
+    _, _, width_slice = worst
+    roll, face = (1e3 * float(v) for v in (flanks.roll_length_1[worst], flanks.face_position[width_slice]))
+    largest = number(1e-6 * float(flanks.pressure[worst]), 4)
     where = f"at roll length {number(roll, 3)} mm of the pinion"
     if flanks.face_position.size == 1:
         return f"The largest pressure is {largest} MPa, {where}."
@@ -232,7 +238,7 @@ def _alternative(flanks: LoadDistribution) -> str:
 
 
 def _pattern_table(flanks: LoadDistribution, maps: list[_Map]) -> Table:
-    """Largest pressure of each stretch of the face, or of each part of the pinion's profile."""
+    """List the largest pressure of each stretch of the face, or of each part of the pinion's profile."""
     if flanks.face_position.size > 1:
         caption, over = "Largest pressure over the face", "face position, mm"
         at, largest = 1e3 * flanks.face_position, 1e-6 * flanks.pressure.max(axis=(0, 1))
@@ -321,7 +327,7 @@ def load_centroid_figure(flanks: LoadDistribution) -> Figure:
 
 
 def _over_position(flanks: LoadDistribution, y: str, values: FloatArray, mark: str, at: float) -> Panel:
-    """Draw a curve over one cycle, closed where the positions make one, and a marked value."""
+    """Draw a curve over position and a marked value; a curve over a full cycle is closed."""
     step = np.diff(flanks.position)
     is_full_cycle = step.size > 0 and np.allclose(step, 1.0 / flanks.position.size)
     position = np.append(flanks.position, 1.0 + flanks.position[0]) if is_full_cycle else flanks.position
@@ -331,7 +337,7 @@ def _over_position(flanks: LoadDistribution, y: str, values: FloatArray, mark: s
 
 
 def _gap(flanks: LoadDistribution, position: int) -> FloatArray:
-    """Gap in um of the pair that carries most; NaN where the flanks cannot meet."""
+    """Return the gap of the pair that carries most, um; NaN where the flanks cannot meet."""
     pair = int(flanks.force[position].sum(axis=-1).argmax())
     gap = 1e6 * flanks.gap[position, pair]
     return np.where(np.isfinite(gap) & flanks.on_path[position, pair], gap, np.nan)
@@ -359,7 +365,7 @@ def _to_error(estimate: Estimate, scale: float = 1.0) -> str:
 
 
 def _page(flanks: LoadDistribution, database: SteDatabase | None = None) -> Page:
-    """Return the page of flank results, with their database if known, which has effects and case."""
+    """Return the page of flank results; effects and case are left out where their database shows them."""
     pair = flanks.scene.geometry
     sections = (*_results(flanks), *_making(flanks, alone=database is None))
     return Page(
@@ -410,7 +416,7 @@ def _length_text(flanks: LoadDistribution) -> str:
 
 
 def _results(flanks: LoadDistribution) -> tuple[Section, ...]:
-    """Show the flanks; one slice has nothing to show over the face."""
+    """Return the section of the flanks; a plane model, of one slice, has no plots over the face."""
     figures: tuple[Figure, ...] = (contact_pattern_figure(flanks),)
     text = f"At {_operating_point(flanks)}, {flanks.position.size} positions of the mesh cycle."
     if flanks.face_position.size > 1:
@@ -421,7 +427,7 @@ def _results(flanks: LoadDistribution) -> tuple[Section, ...]:
 
 
 def _making(flanks: LoadDistribution, *, alone: bool) -> tuple[Section, ...]:
-    """Show the cost of the flank results; `alone`, without their database, also effects and case."""
+    """Return the sections on how the results were made; `alone`: without a database, add effects and case."""
     metadata = flanks.metadata
     if not metadata.receipt:
         return ()

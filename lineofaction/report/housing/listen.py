@@ -51,7 +51,7 @@ def _level_figure(audio: HeardRun) -> Figure:
 
 
 def _block_levels(audio: HeardRun) -> tuple[FloatArray, FloatArray]:
-    """Return the middles of blocks, s, and the level of each: dB(A), of a velocity dB re 1 nm/s."""
+    """Return the middles of blocks, s, and their levels: dB(A) of a pressure, dB re 1 nm/s of a velocity."""
     recording = audio.recording
     duration = recording.samples.size / recording.sample_rate
     blocks = np.array_split(recording.samples, max(1, int(duration / BLOCK)))

@@ -1,4 +1,7 @@
-"""Page of the vibration of a measured housing: velocities, shares of bearings, missing functions."""
+"""Page of the vibration of a measured housing: velocities, shares of bearings, missing functions.
+
+Axes of arrays: S speeds, H orders.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +36,7 @@ def measured_figure(result: MeasuredHousingVibration) -> Figure:
     """Draw the velocities of the points by their largest orders; nothing outside the measured band."""
     vibration = result.vibration
     largest = np.nanmax(vibration.rms, axis=(1, 2))
-    maximum = np.argsort(-largest, kind="stable")[:MAX_POINTS]
+    fastest = np.argsort(-largest, kind="stable")[:MAX_POINTS]
     band = f"{number(result.lowest_frequency, 4)} to {number(result.highest_frequency, 4)} Hz"
     return Figure(
         key="housing_velocity",
@@ -41,7 +44,7 @@ def measured_figure(result: MeasuredHousingVibration) -> Figure:
         caption="Root mean square velocity of points under the forces of the bearings, the measured "
         f"directions together. Nothing is drawn outside the measured band, {band}.",
         alternative=f"Shown in detail: {_where(result)}.",
-        content=tuple(_panel(result, vibration.point[k], vibration.rms[k] / MM_PER_S) for k in maximum),
+        content=tuple(_panel(result, vibration.point[k], vibration.rms[k] / MM_PER_S) for k in fastest),
         table=_largest_table(result),
     )
 

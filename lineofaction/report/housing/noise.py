@@ -1,4 +1,7 @@
-"""The sound of a scene: map over speed and frequency, orders, third octaves, bearings, the loudest points."""
+"""The sound of a scene: map over speed and frequency, orders, third octaves, bearings, the loudest points.
+
+Axes of arrays: S speeds, H orders.
+"""
 
 from __future__ import annotations
 
@@ -70,7 +73,7 @@ def _sound_map(sound: RadiatedSound) -> Figure:
 def _cells(orders: OrderPower, speed: FloatArray) -> HeatMap:
     """Add up the orders in cells of speed and frequency, up to the highest that is shown.
 
-    They are tall enough that lines of orders are not broken.
+    A cell is at least as tall as an order's rise from one speed to the next, so that no order's line breaks.
     """
     top, steps = float(orders.frequency.max()), np.abs(np.diff(orders.frequency, axis=1))
     height = max(top / LINES, float(steps.max(initial=0.0)))
@@ -114,7 +117,7 @@ def _third_octaves(sound: RadiatedSound) -> Figure:
     level = sound_power_level(power) + weighting
     at = int(sound.orders.total_weighted_level.argmax())
     floor = float(level.max()) - DEPTH
-    edges = np.append(center, center[-1] * 10.0**0.1) * 10.0**-0.05
+    edges = np.append(center, center[-1] * 10.0**0.1) * 10.0**-0.05  # a band spans a tenth of a decade
     speed = number(float(sound.speed[at]) / RPM, 4)
     lines = tuple(
         step_line(name, edges, np.maximum(values, floor), color)
@@ -146,10 +149,10 @@ def _bearing_levels(sound: RadiatedSound) -> Figure:
     (x, speed), total = row_axis(sound.speed, sound.metadata), sound.orders.total_weighted_level
     alone = np.stack([_total(sound, power) for power in sound.bearing_alone])
     floor = float(total.max()) - DEPTH
-    maximum = np.argsort(-alone.max(axis=1), kind="stable")[:MAX_ORDERS]
+    drawn = np.argsort(-alone.max(axis=1), kind="stable")[:MAX_ORDERS]
     lines = (
         Line("all", speed, _above(total, floor), palette.INK, width=2.2),
-        *category_lines(speed, [sound.bearing[b] for b in maximum], _above(alone[maximum], floor)),
+        *category_lines(speed, [sound.bearing[b] for b in drawn], _above(alone[drawn], floor)),
     )
     at = int(total.argmax())
     loud = int(alone[:, at].argmax())
@@ -195,7 +198,7 @@ def _panel_intensity(sound: RadiatedSound) -> Figure | None:
 
 
 def _total(sound: RadiatedSound, power: FloatArray) -> FloatArray:
-    """Return the A-weighted level of all orders of a power (S, H), (S,), dB(A)."""
+    """Return the A-weighted level (S,), dB(A), of all orders of a power (S, H)."""
     return OrderPower(sound.frequency.T, np.maximum(power.T, 0.0)).total_weighted_level
 
 
@@ -215,6 +218,7 @@ def _rpm(sound: RadiatedSound, row: int) -> str:
 
 
 def _above(level: FloatArray, floor: float) -> FloatArray:
+    """Return levels with NaN below the floor: plots leave a gap."""
     return np.where(level < floor, np.nan, level)
 
 
@@ -235,7 +239,7 @@ def _loudest_table(sound: RadiatedSound) -> Table:
 
 
 def _sentences(sound: RadiatedSound) -> tuple[str, ...]:
-    """Return sentences on the radiating parts at the loudest point and their paths; empty in silence."""
+    """Return a sentence on the loudest point: its mode, bearing and region; empty in silence."""
     return tuple(
         f"{_where(point, sound.metadata)}: {point.weighted_level:.1f} dB(A) through mode {point.mode} of "
         f"{point.mode_housing} ({number(point.natural_frequency, 4)} Hz); bearing {point.bearing} alone "
@@ -277,7 +281,7 @@ def _headlines(sound: RadiatedSound) -> tuple[Headline, ...]:
 
 
 def _pressure_headline(pressure: Json, metadata: Json) -> Headline:
-    """Say the level of the complaint's order, without one of the loudest, at the microphone."""
+    """Return the level at the microphone of the complaint's order, or without a complaint of the loudest."""
     complaint_order = metadata.get("complaint", {}).get("order", np.nan)
     marked = [row for row in pressure["orders"] if np.isclose(row["order"], complaint_order, rtol=1e-6)]
     row = marked[0] if marked else max(pressure["orders"], key=lambda row: row["level_db_a"])
@@ -338,7 +342,7 @@ def _region_name(region: Mapping[str, Any]) -> str:
 
 def _main_region(sound: RadiatedSound) -> str:
     """Say through which region most of the loudest point leaves."""
-    region = sound.metadata["regions"][0][0]
+    region = sound.metadata["regions"][0][0]  # of the loudest point the largest
     return f"{100.0 * region['share']:.0f} % leaves {_region_name(region)}"
 
 
@@ -371,6 +375,7 @@ def _figures(sound: RadiatedSound) -> tuple[Figure, ...]:
 
 
 def _limits(sound: RadiatedSound) -> Iterator[tuple[str, str]]:
+    """Yield what bounds the levels: a subject and how it is treated."""
     yield from force_rows(sound.metadata)
     for name in sound.housing:
         yield from _radiation_limits(sound, name)

@@ -11,29 +11,29 @@ from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Bars, Panel, largest, number
 
 MAX_PARTS, MAX_MODES = 12, 8
-"""Modes in the table of contributions, and in the bars."""
+"""Most contributions in the table, and in the bars."""
 
 
 def share_rows(shares: Shares, with_surface: bool) -> list[tuple[str, ...]]:
-    """Return rows of a table in %, of points, and of the surface where there is one."""
-    every = np.vstack([shares.point, shares.surface]) if with_surface else shares.point
-    maximum = largest(np.max(np.abs(every), axis=0), MAX_PARTS)
+    """Return the rows of the largest contributions in %: a column for each point, and one of the surface."""
+    contributions = np.vstack([shares.point, shares.surface]) if with_surface else shares.point
+    drawn = largest(np.max(np.abs(contributions), axis=0), MAX_PARTS)
     return [
         (
             shares.name[p],
             number(shares.frequency[p], 5) if np.isfinite(shares.frequency[p]) else "",
-            *(f"{100.0 * float(value):.1f}" for value in every[:, p]),
+            *(f"{100.0 * float(value):.1f}" for value in contributions[:, p]),
         )
-        for p in maximum
+        for p in drawn
     ]
 
 
 def share_panel(shares: Shares, part: FloatArray) -> Panel:
     """Draw contributions (p,) as bars that add up to 100 %, the small ones together."""
-    maximum = largest(np.abs(part), MAX_MODES)
-    values = [100.0 * float(part[p]) for p in maximum]
-    names = [_name(shares, p) for p in maximum]
-    if len(maximum) < part.size:
+    drawn = largest(np.abs(part), MAX_MODES)
+    values = [100.0 * float(part[p]) for p in drawn]
+    names = [_name(shares, p) for p in drawn]
+    if len(drawn) < part.size:
         names.append("others")
         values.append(100.0 - sum(values))
     bars = Bars("contribution", np.arange(float(len(names))), np.array(values), 0.0, 0.6, palette.BLUE)

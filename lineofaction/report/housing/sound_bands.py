@@ -57,6 +57,7 @@ def _causes(level: Json) -> Iterator[str]:
 
 def narrowest(metadata: Json) -> Iterator[str]:
     """Yield the measure that narrows the band of the largest level most, if any does."""
+    # contributions come with the one that leaves the narrowest band first
     level = (metadata["band"] or {}).get("largest_total", {})
     for name, left in level.get("widths_without_db", {}).items():
         if name in NARROWER and level["width_db"] - left >= MIN_NARROWED:
@@ -95,5 +96,5 @@ def _needed(row: Json) -> str:
 
 
 def ends(level: Json) -> str:
-    """Say from where to where a level lies."""
+    """Return the ends of a level's band as text."""
     return f"{level['low_db_a']:.1f} to {level['high_db_a']:.1f}"

@@ -1,4 +1,8 @@
-"""Natural modes of a run: their lines over speed, their table, and their moving parts."""
+"""Natural modes of a run: their lines over speed, their table, and their moving parts.
+
+A mode is natural about the run's equilibrium at rest, or whirls: then its frequency changes with speed. An
+order meets a mode at the mesh frequency at which its multiple is the mode's frequency. B: blocks of a run.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +16,9 @@ from dynamics.results import RunResult
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Bars, FloatArray, Panel, Table, number
 
-MAX_MODES, MIN_DISTANCE, _CIRCULAR = 8, 0.01, 0.1
+MAX_MODES, MIN_DISTANCE = 8, 0.01
+"""Most lines in a diagram, and least distance of two lines over its highest frequency."""
+_CIRCULAR = 0.1  # least size of a whirl, 1 on a circle, that has a sense
 MOVES, MET = "moves, share of the kinetic energy", "met by mesh order at mesh frequency"
 MODES_CAPTION = {
     False: "Dashed: natural frequencies about the static equilibrium",
@@ -30,9 +36,9 @@ _WIDTH = 0.62
 
 @dataclass(frozen=True)
 class ModeLine:
-    """A mode over the blocks of a diagram: legend, color, frequency (B,), Hz, and moving parts.
+    """A mode over the blocks of a diagram: legend, color, frequency (B,), Hz, and the part that moves most.
 
-    `shares` are those of the parts in its kinetic energy; empty for runs that do not hold them.
+    `shares` maps parts to their shares of the kinetic energy; empty for runs that do not hold them.
     """
 
     name: str
@@ -48,7 +54,7 @@ def whirling(run: RunResult) -> bool:
 
 
 def mode_lines(run: RunResult, mesh_frequency: FloatArray, top: float) -> list[ModeLine]:
-    """Return the lowest modes below `top` (Hz) that do not overlap, over mesh frequencies (B,), Hz."""
+    """Return lines of the lowest modes below `top`, Hz, that do not overlap, over mesh frequencies (B,)."""
     frequencies, whirls = _frequencies(run, mesh_frequency)
     modes = run.modes["over_speed"] if whirling(run) else run.modes
     lines: list[ModeLine] = []
@@ -58,13 +64,13 @@ def mode_lines(run: RunResult, mesh_frequency: FloatArray, top: float) -> list[M
         if 0.0 < values[0] < top and is_separate:
             name = whirl_name(whirls[index]) if whirling(run) else "natural modes"
             shares = dict(modes["moves"][index]) if "moves" in modes else {}
-            maximum = str(next(iter(shares)) if "moves" in modes else modes["freedom"][int(index)])
-            lines.append(ModeLine(name, _COLORS[name], values, maximum, shares))
+            part = str(next(iter(shares)) if "moves" in modes else modes["freedom"][int(index)])
+            lines.append(ModeLine(name, _COLORS[name], values, part, shares))
     return lines[:MAX_MODES]
 
 
 def _frequencies(run: RunResult, mesh_frequency: FloatArray) -> tuple[FloatArray, list[float]]:
-    """Frequencies (a, B), and each mode's whirl at the highest speed."""
+    """Return the frequencies (modes, B), Hz, and each mode's whirl at the highest speed."""
     if not whirling(run):
         rest = np.array(run.modes.get("frequency", ()), dtype=float)
         return np.repeat(rest[:, None], mesh_frequency.size, axis=1), [0.0] * rest.size
@@ -111,17 +117,21 @@ def _moves(modes: dict[str, Any], index: int) -> str:
 
 
 def _meeting(mesh: FloatArray, line: FloatArray, order: int) -> float | None:
-    """Mesh frequency at which a mode less an order changes its sign, linear between the speeds."""
+    """Return the mesh frequency at which an order meets a mode from below; None if it does not."""
     gap = line - order * mesh
     crossed = np.flatnonzero((gap[:-1] > 0.0) & (gap[1:] <= 0.0))
     if not crossed.size:
         return None
     i = int(crossed[0])
+    # linear between neighboring speeds
     return float(mesh[i] + (mesh[i + 1] - mesh[i]) * gap[i] / (gap[i] - gap[i + 1]))
 
 
 def _met(mesh: list[float] | None, line: FloatArray, orders: int, ends: tuple[float, float]) -> str:
-    """Name the orders up to `orders` that meet a mode, Hz over mesh frequencies, if it changes with them."""
+    """Name the orders up to `orders` that meet a mode between the mesh frequencies `ends`.
+
+    `line` is the mode's frequency over the mesh frequencies `mesh`; without `mesh` it is one number.
+    """
     met = []
     for order in range(1, orders + 1):
         where = float(line[0]) / order if mesh is None else _meeting(np.array(mesh), line, order)
@@ -145,11 +155,11 @@ def mode_bars(modes: Sequence[str], shares: Sequence[Mapping[str, float]], energ
     position, base = np.arange(float(len(modes))), np.zeros(len(modes))
     bars = []
     for index, part in enumerate(_largest_parts(shares)):
-        top = base + [100.0 * of.get(part, 0.0) for of in shares]
+        top = base + [100.0 * mode_shares.get(part, 0.0) for mode_shares in shares]
         bars.append(Bars(part, position, top, base, _WIDTH, palette.CATEGORIES[index]))
         base = top
     rest = np.where(base > 0.0, 100.0, 0.0)
-    if np.any(rest > base + 0.5):
+    if np.any(rest > base + 0.5):  # half a per cent is not drawn
         bars.append(Bars(OTHERS, position, rest, base, _WIDTH, palette.GRID))
     return Panel(
         Axis.of_names(modes, "mode"), Axis(f"share of the {energy}, %", limits=(0.0, 100.0)), bars=tuple(bars)
@@ -157,9 +167,9 @@ def mode_bars(modes: Sequence[str], shares: Sequence[Mapping[str, float]], energ
 
 
 def _largest_parts(shares: Sequence[Mapping[str, float]]) -> list[str]:
-    """Return the parts that have most of the energy of all modes together, as many as there are colors."""
+    """Return the parts with the largest energy in all modes together, as many as there are colors."""
     total: dict[str, float] = {}
-    for of in shares:
-        for part, share in of.items():
+    for mode_shares in shares:
+        for part, share in mode_shares.items():
             total[part] = total.get(part, 0.0) + share
     return sorted(total, key=lambda part: -total[part])[: len(palette.CATEGORIES)]

@@ -52,12 +52,12 @@ _X = Axis("travel of the driving gear within the window, base pitches", limits=(
 
 
 def signal_over_time(run: RunResult, signal: Signal) -> Figure:
-    """Draw the components of the quantity, over the few base pitches less their means: the ripple is seen."""
+    """Draw the components of the quantity, and less their means over a few base pitches, for the ripple."""
     way = travel(run, signal.mesh)
     speed = window_speeds(way.speed_rpm)[-1]
     window = way.window(speed)
-    of = "base pitches" if run.mesh else "turns"
-    detail = f"three {of} at {number(speed, 3)} rpm"
+    unit_of_travel = "base pitches" if run.mesh else "turns"
+    detail = f"three {unit_of_travel} at {number(speed, 3)} rpm"
     vector = signal.quantity.part == "bearing"
     quantity, _, unit = signal.label.rpartition(", ")
     size = signal.magnitude(getattr(run, signal.quantity.series)[..., window])
@@ -92,6 +92,7 @@ def _table(run: RunResult, signal: Signal) -> Table:
     unit, values = signal.quantity.unit, signal.quantity.factor * getattr(run, signal.quantity.series)
     names = run.bearing if values.ndim == 3 else run.mesh
     parts = ("x", "y", "z") if values.ndim == 3 else ("",)
+    # a row for each part: first the means of its components, then the deviations
     moments = np.stack([values.mean(axis=-1), values.std(axis=-1)], axis=1).reshape(len(names), -1)
     rows = [(name, *(number(v, 4) for v in row)) for name, row in zip(names, moments, strict=True)]
     head = (
@@ -106,7 +107,7 @@ def signal_spectrum(run: RunResult, signal: Signal) -> Figure:
     """Draw the amplitude spectrum."""
     window = spectrum_window(run.time)
     frequency, amplitude = amplitude_spectrum(run, signal, window)
-    mesh_frequency, of = order_frequency(run, signal.mesh), counted_by(run)
+    mesh_frequency, base = order_frequency(run, signal.mesh), counted_by(run)  # base: "mesh" or the shaft
     mesh = mesh_frequency[window]
     valid = highest_valid_order(run, signal.mesh)
     first, last = (number(run.time[at], 3) for at in (window.start, window.stop - 1))
@@ -115,11 +116,11 @@ def signal_spectrum(run: RunResult, signal: Signal) -> Figure:
         title=f"Spectrum of the {signal.name}",
         caption=f"From {first} to {last} s, "
         f"{_NAMES[signal.window]} window, {signal.scale} values. "
-        f"Dashed: the {of} frequency in the middle of the window and its multiples. "
-        f"{validity(valid, float(mesh_frequency.max()), of)}",
-        alternative=_spectrum_text(signal, frequency, amplitude, mesh, of),
+        f"Dashed: the {base} frequency in the middle of the window and its multiples. "
+        f"{validity(valid, float(mesh_frequency.max()), base)}",
+        alternative=_spectrum_text(signal, frequency, amplitude, mesh, base),
         content=(_spectrum_panel(signal, frequency, amplitude, float(np.median(mesh)), valid),),
-        table=_spectrum_table(signal, frequency, amplitude, mesh, (of, valid)),
+        table=_spectrum_table(signal, frequency, amplitude, mesh, (base, valid)),
     )
 
 
@@ -136,10 +137,10 @@ def spectrum_window(time: FloatArray) -> slice:
 
 
 def amplitude_spectrum(run: RunResult, signal: Signal, window: slice) -> tuple[FloatArray, FloatArray]:
-    """Return frequencies in Hz and amplitudes of a stretch in the signal's unit, without the mean."""
+    """Return frequencies in Hz and amplitudes in the signal's unit, of a window and without the mean."""
     values = getattr(run, signal.quantity.series)[..., window]
-    made = spectrum(values, run.sample_rate, window=signal.window)
-    return made.frequency[1:], signal.amplitude(made.amplitude)[1:]
+    lines = spectrum(values, run.sample_rate, window=signal.window)
+    return lines.frequency[1:], signal.amplitude(lines.amplitude)[1:]
 
 
 def order_amplitudes(
@@ -162,7 +163,8 @@ def _spectrum_panel(
     signal: Signal, frequency: FloatArray, amplitude: FloatArray, mesh: float, valid: int
 ) -> Panel:
     last = max(min(ORDERS, valid), 1)
-    end = float(np.clip((last + 0.5) * mesh or np.inf, frequency[0], frequency[-1]))  # a line at least
+    # half an order beyond the last, all lines where nothing turns, and at least the first line
+    end = float(np.clip((last + 0.5) * mesh or np.inf, frequency[0], frequency[-1]))
     inside = frequency <= end
     orders = [Reference(f"{k}×", k * mesh) for k in range(1, last + 1) if k * mesh < end]
     line = Line(signal.name, frequency[inside], np.maximum(amplitude[inside], 1e-12), palette.BLUE, width=1.2)
@@ -172,55 +174,55 @@ def _spectrum_panel(
 
 
 def _spectrum_text(
-    signal: Signal, frequency: FloatArray, amplitude: FloatArray, mesh: FloatArray, of: str
+    signal: Signal, frequency: FloatArray, amplitude: FloatArray, mesh: FloatArray, base: str
 ) -> str:
     peak = int(np.argmax(amplitude))
     low, high = number(mesh.min(), 3), number(mesh.max(), 3)
     runs = f"is {low} Hz" if low == high else f"runs from {low} to {high} Hz"
     return (
         f"The largest line is {number(amplitude[peak], 3)} {signal.unit} at "
-        f"{number(frequency[peak], 4)} Hz; the {of} frequency {runs}."
+        f"{number(frequency[peak], 4)} Hz; the {base} frequency {runs}."
     )
 
 
 def _spectrum_table(
     signal: Signal, frequency: FloatArray, amplitude: FloatArray, mesh: FloatArray, orders: tuple[str, int]
 ) -> Table:
-    of, valid = orders
+    base, valid = orders
     rows = tuple(
         (str(order), number(where, 4), number(size, 3))
         for order, (where, size) in enumerate(order_amplitudes(frequency, amplitude, mesh)[:valid], start=1)
     )
     head = ("order", "frequency, Hz", f"amplitude, {signal.unit}")
-    return Table(f"Largest line in the band of each {of} order", head, rows)
+    return Table(f"Largest line in the band of each {base} order", head, rows)
 
 
 def octave_bands(run: RunResult, signal: Signal, blocks: Waterfall) -> Figure | None:
     """Draw the rms of each band over the whole run and in its loudest block; None where no band fits."""
     try:
-        made = third_octaves(blocks, float(run.receipt["sampling"]["pass_frequency"]))
+        bands = third_octaves(blocks, float(run.receipt["sampling"]["pass_frequency"]))
     except InputError:  # the run is too short for a band
         return None
-    rms = signal.magnitude(made.rms)
+    rms = signal.magnitude(bands.rms)
     mean, maximum = np.sqrt(np.mean(rms**2, axis=0)), np.max(rms, axis=0)
     floor = float(maximum.max()) * 10.0 ** (-DEPTH / 20.0)
     lines = (
-        step_line("loudest block", made.edges, decibels(maximum, floor), palette.VERMILLION),
-        step_line("whole run", made.edges, decibels(mean, floor), palette.BLUE),
+        step_line("loudest block", bands.edges, decibels(maximum, floor), palette.VERMILLION),
+        step_line("whole run", bands.edges, decibels(mean, floor), palette.BLUE),
     )
     unit, worst = signal.quantity.unit, int(np.argmax(mean))
-    names = tuple((float(at), _nominal(at)) for at in made.nominal[made.band % 3 == 0])
-    x = Axis("nominal center of the band, Hz", "log", (float(made.edges[0]), float(made.edges[-1])), names)
+    names = tuple((float(at), _nominal(at)) for at in bands.nominal[bands.band % 3 == 0])
+    x = Axis("nominal center of the band, Hz", "log", (float(bands.edges[0]), float(bands.edges[-1])), names)
     return Figure(
         key="octave_bands",
         title=f"One-third-octave levels of the {signal.name}",
         caption=f"Effective values in bands after IEC 61260-1, lines of blocks of "
         f"{number(1.0 / float(blocks.line[1]), 2)} s added in power: over the whole run, and the largest of "
         "any block.",
-        alternative=f"The band at {_nominal(made.nominal[worst])} Hz is the loudest over the run: "
+        alternative=f"The band at {_nominal(bands.nominal[worst])} Hz is the loudest over the run: "
         f"{number(mean[worst], 3)} {unit} rms.",
         content=(Panel(x, Axis(f"level, dB re 1 {unit} rms"), lines),),
-        table=_band_table(made, mean, maximum, unit),
+        table=_band_table(bands, mean, maximum, unit),
     )
 
 
@@ -228,9 +230,9 @@ def _nominal(frequency: float) -> str:
     return f"{frequency:g}" if frequency < 1000.0 else f"{frequency / 1000.0:g}k"
 
 
-def _band_table(made: ThirdOctaves, mean: FloatArray, maximum: FloatArray, unit: str) -> Table:
+def _band_table(bands: ThirdOctaves, mean: FloatArray, maximum: FloatArray, unit: str) -> Table:
     rows = tuple(
-        (f"{at:g}", number(a, 3), number(b, 3)) for at, a, b in zip(made.nominal, mean, maximum, strict=True)
+        (f"{at:g}", number(a, 3), number(b, 3)) for at, a, b in zip(bands.nominal, mean, maximum, strict=True)
     )
     head = ("band, Hz", f"whole run, {unit} rms", f"loudest block, {unit} rms")
     return Table("One-third-octave bands", head, rows)
@@ -259,7 +261,7 @@ def dynamic_error(run: RunResult, mesh: int = 0) -> Figure:
 def _error_panel(
     run: RunResult, errors: tuple[FloatArray, FloatArray], way: Travel, speed: float, window: slice
 ) -> Panel:
-    position = way.position[window] - np.floor(way.position[window][0] + 1e-6)
+    position = way.position[window] - np.floor(way.position[window][0] + 1e-6)  # from about zero on
     lines = (
         Line("dynamic", position, 1e6 * errors[0][window], palette.BLUE),
         Line("static", position, 1e6 * errors[1][window], palette.VERMILLION, "dash"),
@@ -272,7 +274,7 @@ def _error_panel(
 def _error_table(
     run: RunResult, mesh: int, errors: tuple[FloatArray, FloatArray], windows: dict[float, slice]
 ) -> Table:
-    """Mean and peak-to-peak of both errors and the extremes of the mesh force at each speed."""
+    """List mean and peak-to-peak of both errors, and the extremes of the mesh force, by speed."""
     rows = []
     for speed, window in windows.items():
         cells = [um(float(take(error[window]))) for error in errors for take in (np.mean, np.ptp)]

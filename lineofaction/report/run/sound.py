@@ -39,7 +39,7 @@ LONGEST = 300.0
 
 @dataclass(frozen=True)
 class RunSignal:
-    """A run as a sound: its name, the run, and the shown signal."""
+    """The signal of a run that is drawn and heard, with the name of the run."""
 
     name: str
     run: RunResult
@@ -59,7 +59,7 @@ class RunSignal:
 
 
 def run_signals(runs: dict[str, RunResult], view: RunView) -> Iterator[RunSignal]:
-    """Yield runs as sounds by their names, all with the view of the first.
+    """Yield the signals of named runs; a view that leaves something open is that of the first run.
 
     Raises `BadInput`: a run does not hold what the view names.
     """
@@ -84,21 +84,21 @@ def full_scale_of(recordings: list[Recording]) -> float:
 
 def sound_of(signals: tuple[RunSignal, ...], axis: Axis) -> Sound | None:
     """Return the sound of runs for a plot over `axis`, their speed or time; None: a run is silent."""
-    passed = max(_passed(one) for one in signals)
-    rate = PAGE_RATE if passed <= PASSED * PAGE_RATE else SAMPLE_RATE
+    highest = max(_passed(source) for source in signals)
+    rate = PAGE_RATE if highest <= PASSED * PAGE_RATE else SAMPLE_RATE
     try:
-        recordings = [one.recording(rate) for one in signals]
+        recordings = [source.recording(rate) for source in signals]
     except BadInput:
         return None
     scale = full_scale_of(recordings)
-    fits = SAMPLE_BYTES * sum(one.samples.size for one in recordings) <= PAGE_BYTES
-    what = ". ".join(dict.fromkeys(one.quantity for one in recordings))
+    fits = SAMPLE_BYTES * sum(recording.samples.size for recording in recordings) <= PAGE_BYTES
+    what = ". ".join(dict.fromkeys(recording.quantity for recording in recordings))
     together = " of all, which play at their true relative level" if len(signals) > 1 else ""
     return Sound(
         f"Sound: {what}. From 20 Hz to {number(min(map(_passed, signals)), 3)} Hz, which the run holds. Full "
         f"scale{together}: {number(scale, 2)} {recordings[0].unit}.",
-        tuple(_track(one, axis) for one in signals),
-        tuple(wav_file(one, scale) for one in recordings) if fits else (),
+        tuple(_track(source, axis) for source in signals),
+        tuple(wav_file(recording, scale) for recording in recordings) if fits else (),
     )
 
 
@@ -120,9 +120,10 @@ def _track(source: RunSignal, axis: Axis) -> Track:
 
 
 def stored_sound(inputs: Json) -> Json:
-    """Return ``{"wav": base64}`` of the first of ``{"files": [...], "view": {...}}``, on one full scale.
+    """Return ``{"wav": base64}`` of the first of one or two files, on the full scale of both.
 
-    Files are those of runs, seen by the view, or of recordings: ``"kind"``.
+    `inputs` is ``{"files": [...], "kind": ..., "view": {...}}``. By their kind the files are runs, of which
+    the view names the signal, or recordings, which take no view.
 
     Raises `BadInput`: the run does not hold what the view names, is silent or too long; a view of a
     recording.
@@ -134,14 +135,14 @@ def stored_sound(inputs: Json) -> Json:
 
 
 def _of_runs(files: Sequence[Path], named: Mapping[str, Any]) -> list[Recording]:
-    """Return recordings of the runs' signals, all with the view of the first."""
+    """Return the signals of runs as recordings; the second run takes the view of the first."""
     runs = [RunResult.from_netcdf(file) for file in files]
     for run in runs:
         _require_short(float(np.ptp(run.time)))
     view = RunView(**named)
     first = RunSignal("", runs[0], selected_signal(runs[0], view))
     others = run_signals(dict(zip(("against",), runs[1:], strict=False)), same_view(view, first.signal))
-    return [one.recording() for one in (first, *others)]
+    return [source.recording() for source in (first, *others)]
 
 
 def _recordings(files: Sequence[Path], named: Mapping[str, Any]) -> list[Recording]:

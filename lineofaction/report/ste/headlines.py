@@ -22,19 +22,19 @@ from lineofaction.report.ste.teeth import UNBOUNDED, tooth_headlines
 
 
 def static_headlines(database: SteDatabase, force: float | None = None) -> tuple[Headline, ...]:
-    """Mean and peak-to-peak STE and the largest pressure at the stored load nearest to `force` (N)."""
+    """Return mean and peak-to-peak STE and the largest pressure at the stored load nearest to `force`, N."""
     load = headline_load(database, force)
-    at = (slice(None), load, *aligned_index(database))
-    pressure = float(np.nanmax(database.max_pressure[at]))
-    edge = float(np.nanmax(database.edge_pressure[at])) if database.edge_pressure.size else 0.0
+    cycle = (slice(None), load, *aligned_index(database))  # all positions of the aligned pair at this load
+    pressure = float(np.nanmax(database.max_pressure[cycle]))
+    edge = float(np.nanmax(database.edge_pressure[cycle])) if database.edge_pressure.size else 0.0
     remark = f"{UNBOUNDED}{edge_text(edge)}"
     curve, label = load_curve(database, load), load_labels(database)[load]
     figures = {"mean": curve.mean, "peak-to-peak": curve.peak_to_peak}
     biases = _over_face(curve)
     return (
         *(
-            Headline(f"{name} STE at {label}", f"{_to_error(one)} µm", f"{_band(one)}{bias}")
-            for (name, one), bias in zip(figures.items(), biases, strict=True)
+            Headline(f"{name} STE at {label}", f"{_to_error(estimate)} µm", f"{_band(estimate)}{bias}")
+            for (name, estimate), bias in zip(figures.items(), biases, strict=True)
         ),
         Headline(f"largest pressure at {label}", f"{number(1e-6 * pressure, 4)} MPa", remark),
         *tooth_headlines(database, load),
@@ -42,11 +42,14 @@ def static_headlines(database: SteDatabase, force: float | None = None) -> tuple
 
 
 def _over_face(curve: Curve) -> tuple[str, str]:
-    """Say mean and peak-to-peak of the gears of finite width; nothing where the table has them."""
+    """Return remarks on mean and peak-to-peak of gears of finite width, beside those of a plane model.
+
+    They are empty where the table itself has the finite width.
+    """
     if curve.over_face is None:
         return "", ""
     figures = curve.over_face.mean, curve.over_face.peak_to_peak
-    mean, ripple = (f"; gears of this width {_to_error(one)} µm {_band(one)}" for one in figures)
+    mean, ripple = (f"; gears of this width {_to_error(figure)} µm {_band(figure)}" for figure in figures)
     return mean, ripple
 
 

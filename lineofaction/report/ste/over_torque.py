@@ -1,4 +1,7 @@
-"""Figures of a table over torque: ripple, deviations, flank pressure, and the load along the face."""
+"""Figures of a table over torque: ripple, deviations, flank pressure, and the load along the face.
+
+Axes of arrays: P positions, F loads, M misalignments, n points of a plot, H harmonics.
+"""
 
 from __future__ import annotations
 
@@ -84,7 +87,7 @@ def _harmonics(across: Axis, torque: FloatArray, values: FloatArray, known: Bool
 
 
 def _ripple_text(curves: dict[str, Curve]) -> str:
-    """Return a sentence on the least and the largest ripple by the names of the curves."""
+    """Return a sentence on the curves of the least and of the largest ripple, by name."""
     ripple = {name: curve.peak_to_peak for name, curve in curves.items()}
     lowest, highest = (end(ripple, key=lambda name: ripple[name].value) for end in (min, max))
     minimum, maximum = ripple[lowest], ripple[highest]
@@ -127,9 +130,9 @@ def has_deviations(database: SteDatabase) -> bool:
 
 
 def deviation_curves(database: SteDatabase) -> Figure:
-    """Draw peak-to-peak STE, one line for each of a few loads, over each axis of more than one value.
+    """Draw peak-to-peak STE of a few loads over misalignment, and over the change of center distance.
 
-    The other deviation is kept at the value nearest to zero.
+    Either is drawn if the table has more than one value of it, the other at its value nearest to zero.
     """
     deviations = _deviations(database)
     return Figure(

@@ -58,12 +58,12 @@ _DECISIONS = {
 
 
 def static_alarms(database: SteDatabase) -> tuple[str, ...]:
-    """Say loudly which points failed."""
+    """Return the alarm that names failed points; empty if none failed."""
     return (database.failure_message(),) if database.n_failed else ()
 
 
 def static_results(database: SteDatabase, force: float | None = None) -> tuple[Section, ...]:
-    """Show the results of a pair's database; the deflection is split at the load nearest to `force` (N)."""
+    """Return the sections of results; the deflection is split at the load nearest to `force`, N."""
     pair = pair_of(database)
     sheet = () if pair is None else (data_sheet_section(pair, tolerance_class_of(database)),)
     sharing = Section("Load sharing", figures=(load_sharing(database),))
@@ -82,9 +82,9 @@ def _transmission_error(database: SteDatabase) -> Section:
 
 
 def _stiffness(database: SteDatabase, force: float | None) -> tuple[Section, ...]:
-    """Show the mesh stiffness and the deflections by part.
+    """Return the section of mesh stiffness and of deflections by part; none over a period of several pitches.
 
-    Over a longer period the deflection holds the teeth's errors, and a secant through them means nothing.
+    There the deflection contains the errors of single teeth, and a secant stiffness has no meaning.
     """
     if database.period > 1:
         return ()
@@ -104,7 +104,7 @@ def _flanks(database: SteDatabase) -> tuple[Section, ...]:
 
 
 def static_making(database: SteDatabase) -> tuple[Section, ...]:
-    """Show the errors of the database, its cost, and its inputs."""
+    """Return the sections on effects, errors, inputs and cost of the database."""
     metadata = database.metadata
     text = "Errors are half-widths of the band around each number."
     if bias := metadata.receipt.get("bias"):
@@ -133,7 +133,7 @@ def static_making(database: SteDatabase) -> tuple[Section, ...]:
 
 
 def contact_effects(ledger: Any) -> Section:
-    """Tabulate which effects were simulated, why, and their influence; trifles and decisions are folded."""
+    """Tabulate the effects in the contact with reason and influence; small ones and decisions are folded."""
     entries = [{"name": k, **v} for k, v in ledger.items()] if isinstance(ledger, dict) else ledger
     large, trifles = by_size(entries)
     where = influence_point(entries)
@@ -165,7 +165,7 @@ def _without(content: dict[str, Any], *names: str) -> dict[str, Any]:
 
 
 def _accuracy(database: SteDatabase) -> Table:
-    """Worst error estimate and residuals over the table."""
+    """Tabulate the worst error estimate and residuals, and inserted nodes."""
     good = ~database.failed
     relative = database.error_estimate[good] / database.static_transmission_error[good]
     rows = [("points", f"{database.status.size}, {database.n_failed} failed")]
@@ -176,7 +176,7 @@ def _accuracy(database: SteDatabase) -> Table:
             ("largest error estimate, µm", um(np.max(database.error_estimate[good]), 2)),
             ("median error estimate, % of STE", number(100.0 * float(np.median(relative)), 2)),
         ]
-    worst = np.nanmax(np.abs(database.residuals[good]), axis=0)  # pitches by derivatives have none
+    worst = np.nanmax(np.abs(database.residuals[good]), axis=0)  # NaN: base pitches by derivatives
     rows += [
         (f"largest residual, {name}", leftover(float(value), 2))
         for name, value in zip(_RESIDUALS, worst, strict=True)
@@ -190,7 +190,7 @@ def _accuracy(database: SteDatabase) -> Table:
 
 
 def _by_source(database: SteDatabase) -> Table:
-    """Errors of the figures at the highest load by source."""
+    """Tabulate the errors of the figures at the highest load by source."""
     rows = source_rows(database.metadata.receipt, -1)
     head = ("source", "mean, µm", "peak to peak, µm", "harmonic 1, µm")
     title = f"Errors by source at {load_labels(database)[-1]}"

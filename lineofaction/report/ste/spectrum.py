@@ -1,4 +1,7 @@
-"""The spectrum of the transmission error: of one load, and over torque."""
+"""The spectrum of the transmission error: of one load, and over torque.
+
+Axes of arrays: K orders, F loads, n cells of the map. Orders count in mesh frequencies.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +26,7 @@ from lineofaction.report.drawing.marks import TORQUE
 from lineofaction.report.ste.curves import drawn_loads, load_curve, load_labels, middle_load
 
 ORDERS = 20
-LONG_ORDERS = 4  # over a period of many pitches, where as many lines lie between two mesh orders
+LONG_ORDERS = 4  # highest mesh order over a period of N pitches, where N lines belong to each
 _UM = 1e6
 _DEPTH = 10.0  # range drawn below the least error, or below the least relevant level if none is known, dB
 _UNKNOWN = -80.0  # lowest level re the largest if no error is known, dB
@@ -71,7 +74,7 @@ def _panel(order: FloatArray, amplitude: FloatArray, error: FloatArray) -> Panel
     top = float(np.nanmax(np.concatenate([level, limit])))
     minimum = np.nanmin(limit) if np.isfinite(limit).any() else top + _UNKNOWN
     base = float(np.floor((minimum - _DEPTH) / 10.0) * 10.0)
-    spacing = float(order[0])
+    spacing = float(order[0])  # lines stand at multiples of the first
     bars = Bars("amplitude", order, np.maximum(level, base), base, 0.6 * spacing, palette.BLUE)
     veil = Bars("below its error", order, np.maximum(limit, base), base, spacing, palette.MUTED, veiled=True)
     x = Axis("mesh order", limits=(float(order[0]) - spacing, float(order[-1]) + spacing))
@@ -121,12 +124,12 @@ def ste_waterfall(database: SteDatabase) -> Figure:
 
 
 def _order_names(curve: Curve, order: FloatArray) -> Sequence[str]:
-    return [f"order {one:.4g}" for one in order] if curve.period == 1 else curve.spectrum.names
+    return [f"order {value:.4g}" for value in order] if curve.period == 1 else curve.spectrum.names
 
 
 def _in_cells(order: FloatArray, level: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the middles of so few cells that each is seen (n,), and the largest levels in them (F, n)."""
-    count = -(-order.size // _CELLS)
+    """Return the middles of at most `_CELLS` cells (n,), and the largest levels in them (F, n)."""
+    count = -(-order.size // _CELLS)  # orders to a cell, rounded up
     starts = np.arange(0, order.size, count)
     width = np.minimum(starts + count, order.size) - starts
     return order[starts] + 0.5 * (width - 1) * order[0], np.fmax.reduceat(level, starts, axis=1)
@@ -146,8 +149,8 @@ def _waterfall_text(database: SteDatabase, names: Sequence[str], level: FloatArr
     if np.isnan(level).all():
         return "No order exceeds its error at any load."
     load, order = divmod(int(np.nanargmax(level)), level.shape[1])
-    at = load_labels(database)[drawn_loads(database)[load]]
-    text = f"{names[order]} at {at} is the largest: {level[load, order]:.1f} dB re 1 µm."
+    label = load_labels(database)[drawn_loads(database)[load]]
+    text = f"{names[order]} at {label} is the largest: {level[load, order]:.1f} dB re 1 µm."
     return f"{text[0].upper()}{text[1:]}"
 
 

@@ -24,7 +24,7 @@ from lineofaction.report.drawing.page import Headline, Section
 from lineofaction.report.ste.curves import aligned, load_labels
 
 UNBOUNDED = "no error is stated for it"
-"""Why the largest pressure has no error: where it is largest differs between meshes and between slices."""
+"""Remark on the largest pressure: its place changes with mesh and slices, so that no error is known."""
 _WAY = "way of the pair through mesh, base pitches (0 = at the pitch point in mid-face)"
 _WIDTH = 0.8  # width of a bar over the distance of teeth
 _ABOVE = 1.15  # top of the axis over the largest bar, with room for the number of its tooth
@@ -67,7 +67,7 @@ def _megapascal(pressure: float) -> str:
 
 
 def tooth_sections(database: SteDatabase, load: int) -> tuple[Section, ...]:
-    """Show the largest load on each tooth where teeth differ, and the pressure on its way through mesh."""
+    """Return the section of the largest load and pressure of each tooth; none where teeth are alike."""
     teeth = teeth_at(database, load)
     loaded = tuple(loads for loads in teeth if loads.most_loaded)
     figures = [_loads(database, load, loaded)] if loaded else []
@@ -98,7 +98,7 @@ def _finding(loads: ToothLoads) -> str:
 
 
 def _derived(database: SteDatabase, load: int) -> str:
-    """Return a sentence on the error of forces by derivatives, if base pitches follow from them."""
+    """Return a sentence on the error of forces if base pitches of the table follow from derivatives."""
     share_error = database.metadata.receipt.get("cycle", {}).get("share_error")
     if share_error is None:
         return ""
@@ -125,7 +125,7 @@ def _notes(teeth: tuple[int, ...], height: float, count: int) -> tuple[Note, ...
     """Write the numbers of the worst teeth above their bars, if these are few."""
     if len(teeth) > _NAMED:
         return ()
-    late = [tooth > 0.5 * count for tooth in teeth]
+    late = [tooth > 0.5 * count for tooth in teeth]  # on the right half: the number left of its bar's edge
     return tuple(
         Note(tooth + (0.5 if left else -0.5), height, str(tooth), left=left)
         for tooth, left in zip(teeth, late, strict=True)
@@ -179,9 +179,10 @@ def _pressures(database: SteDatabase, load: int, loads: ToothLoads) -> Figure:
 
 
 def _in_mesh(loads: ToothLoads) -> tuple[Axis, BoolArray]:
-    """Return the axis of the way through mesh, and which columns lie between where any tooth is pressed."""
+    """Return the axis of the way through mesh, and a mask of the columns in which a tooth is pressed."""
     pressed = np.flatnonzero((loads.pressure_over_phase > 0.0).any(axis=0))
     inside = np.zeros(loads.phase.size, dtype=bool)
+    # and a column on either side, so that curves come down to zero
     inside[max(pressed[0] - 1, 0) : pressed[-1] + 2] = True
     return Axis.over(_WAY, loads.phase[inside]), inside
 

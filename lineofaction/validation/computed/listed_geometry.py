@@ -1,6 +1,7 @@
-"""Geometry of pairs with thickness allowances beside a listing of STplus (DIN 3960).
+"""Geometry of pairs with thickness allowances compared with a listing printed by STplus (DIN 3960).
 
-STplus generates with the upper allowance, x_E = x + A_sne / (2 m_n tan alpha_n); so do the gears here.
+STplus generates with the upper allowance, x_E = x + A_sne / (2 m_n tan alpha_n); so do the gears here. A_sne
+is the upper and A_sni the lower allowance of the tooth thickness.
 """
 
 from __future__ import annotations
@@ -19,15 +20,15 @@ from lineofaction.validation.comparison import Comparison, last_digit
 MM = 1e-3
 DEGREE = math.radians(1.0)
 CENTER_DISTANCE_TOLERANCE = 17.5e-6
-"""m; JS 7 from 80 to 120 mm (ISO 286), which the listing prints rounded."""
+"""Tolerance JS 7 of center distances from 80 to 120 mm (ISO 286), m; the listing prints it rounded."""
 
 Row = dict[str, str]
 Values = Callable[["Listing"], Sequence[float]]
-"""Numbers of both gears or of the pair, in mm, degrees or 1."""
+"""Function that returns the numbers of both gears or of the pair, in mm, degrees or 1."""
 
 
 def listed_quantities(data: Path, pair: str, iterated_mm: dict[str, float]) -> Iterator[Comparison]:
-    """Yield every printed quantity of a pair; `iterated_mm` are errors of those that STplus iterates."""
+    """Compare every printed quantity of a pair; `iterated_mm`: errors of quantities that STplus iterates."""
     with data.open(encoding="utf-8", newline="") as lines:
         rows = [row for row in csv.DictReader(lines) if row["pair"] == pair]
     listing = Listing(listed_pair(rows, "A_sne"), listed_pair(rows, "A_sni"))
@@ -72,7 +73,7 @@ def _gear(rows: Sequence[Row], column: str, hand: float, allowance: str) -> Gear
 
 
 def listed_pair(rows: Sequence[Row], allowance: str) -> GearPair:
-    """Return the pair with an upper or lower allowance; a center distance decides the wheel's shift."""
+    """Return the pair with the upper or lower allowance; a listed center distance sets the wheel's shift."""
     pinion, wheel = _gear(rows, "pinion", 1.0, allowance), _gear(rows, "wheel", -1.0, allowance)
     distance = _number(_of_kind(rows, "input"), "ACHSABSTAND", "pair_value") * MM
     if math.isnan(distance):
@@ -113,8 +114,8 @@ class Listing:
         return first, second
 
     def sliding(self, gear: int, *, at_tip: bool) -> float:
-        """Specific sliding of a gear at its tip or at its root."""
-        end = 1 if (gear == 0) == at_tip else 0
+        """Return the specific sliding of a gear at its tip or at its root."""
+        end = 1 if (gear == 0) == at_tip else 0  # the path ends at the pinion's tip, the wheel's root
         return float(specific_sliding(self.upper, self.rolls[end][0])[gear])
 
 

@@ -1,4 +1,4 @@
-"""Loaded transmission error and root stress beside a series of solid models of a sector."""
+"""Loaded transmission error and root stress compared with a series of solid models of a gear sector."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from fe_contact.types import FloatArray
 from lineofaction.validation.comparison import Comparison
 
 POSITIONS = range(66, 129)
-"""Positions of the series over one base pitch from the pitch point on, loaded by the middle tooth."""
+"""Numbers of the positions that span one base pitch from the pitch point on; the middle tooth carries."""
 MIDDLE_ROOT = range(66, 127)
 """Positions at which the root of the middle tooth is the most loaded one."""
 NODES = 128
-"""Positions of ours: evenly spaced, since a sector does not repeat from pitch to pitch."""
+"""Positions of our table; evenly spaced, since the series of a sector does not repeat from pitch to pitch."""
 SAMPLES = 240
 """Points of a pitch to which the series is interpolated."""
 
@@ -25,14 +25,14 @@ SAMPLES = 240
 def _series(
     pair: GearPair, data: Path, column: str, positions: range = POSITIONS
 ) -> tuple[FloatArray, FloatArray]:
-    """Return positions in base pitches and values of the runs that were completed."""
+    """Return positions in base pitches and values of a column, of the runs that were completed."""
     with data.open(encoding="utf-8", newline="") as lines:
         rows = [row for row in csv.DictReader(lines) if int(row["position_index"]) in positions]
-    whole = [row for row in rows if row["source"] == "table" and row["run_status"] == "complete"]
+    complete = [row for row in rows if row["source"] == "table" and row["run_status"] == "complete"]
     path = pair.path_of_contact
-    curvature = 1e-3 * np.array([float(row["rho1_mm"]) for row in whole])
-    values = np.array([float(row[column]) for row in whole])
-    return (curvature - path.pitch_point) / path.base_pitch, values
+    roll_length = 1e-3 * np.array([float(row["rho1_mm"]) for row in complete])
+    values = np.array([float(row[column]) for row in complete])
+    return (roll_length - path.pitch_point) / path.base_pitch, values
 
 
 def transmission_error(
@@ -57,7 +57,7 @@ def largest_root_stress(
 ) -> Iterator[Comparison]:
     """Yield the largest tensile root stress of the wheel; the series reads low by `mesh_error`."""
     position, values = _series(pair, data, "max_root_sigma1_MPa", MIDDLE_ROOT)
-    found = root_stress(pair, OperatingPoint(torque=torque_n_m), AnalysisOptions(), at=position)
-    peak, theirs = found.wheel.peak("tension").stress, (1.0 + mesh_error) * values.max()
+    stresses = root_stress(pair, OperatingPoint(torque=torque_n_m), AnalysisOptions(), at=position)
+    peak, theirs = stresses.wheel.peak("tension").stress, (1.0 + mesh_error) * values.max()
     ours = 1e-6 * peak.value, 1e-6 * peak.error
     yield Comparison("largest root stress", "MPa", theirs, relative_error * theirs, *ours)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from service.store.files import DirectoryFiles, digest_of
-from service.worker.child import _part_from_stored
+from service.worker.child import _unlink_stored
 
 
 def test_another_attempt_writes_beside_what_was_stored(tmp_path: Path) -> None:
@@ -16,7 +16,7 @@ def test_another_attempt_writes_beside_what_was_stored(tmp_path: Path) -> None:
     piece.write_bytes(b"kept for the next")
     files, sha256 = DirectoryFiles(kept), digest_of(made)
     files.put("a.nc", made, sha256)  # and here the service is killed
-    _part_from_stored(workspace)
+    _unlink_stored(workspace)
     with made.open("wb") as stream:
         stream.write(b"second attempt")
     assert files.digest("a.nc") == sha256
