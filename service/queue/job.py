@@ -169,7 +169,7 @@ class JobFilter:
     parent: str | None = None
     """Batch of the job; None: batches, and jobs outside batches."""
     once: bool = False
-    """Of jobs with one result list the newest alone; failed and dismissed ones only if all are so."""
+    """Whether one job is listed for each result: the newest, and none that failed unless all did."""
 
     @property
     def asks_duration(self) -> bool:
