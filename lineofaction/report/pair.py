@@ -171,16 +171,16 @@ def pair_drawing(pair: ParallelAxes, tolerance_class: int | None = None) -> Figu
     With a tolerance class, its F_alpha and F_beta of ISO 1328-1 are shaded about profiles and leads.
     """
     gears = {"pinion": pair.pinion, "wheel": pair.wheel}
-    made = {name: _made(gear) for name, gear in gears.items()}
+    as_made = {name: _made(gear) for name, gear in gears.items()}
     profiles = [
         _profile(name, pair, tolerance_class)
         for name, gear in gears.items()
-        if gear.modification.varies_along_profile or made[name]
+        if gear.modification.varies_along_profile or as_made[name]
     ]
     leads = {
         name: gear
         for name, gear in gears.items()
-        if gear.modification.varies_along_face or any(flank.varies_along_face for flank in made[name])
+        if gear.modification.varies_along_face or any(flank.varies_along_face for flank in as_made[name])
     }
     panels = (_section(pair), *profiles, *([_lead(leads, tolerance_class)] if leads else ()))
     caption = (
@@ -193,7 +193,7 @@ def pair_drawing(pair: ParallelAxes, tolerance_class: int | None = None) -> Figu
         caption += (
             f" Shaded: F_alpha and F_beta of class {tolerance_class} of ISO 1328-1:2013, half to each side."
         )
-    if any(made.values()):
+    if any(as_made.values()):
         caption += " Thin: the teeth as made, without their pitch deviations."
     return Figure(
         key="pair_drawing",
@@ -322,11 +322,11 @@ def _removed(gear: Toothing, roll: FloatArray, face: FloatArray | float) -> Floa
 
 
 def _finding(name: str, gear: Toothing) -> str:
-    made = f" {len(_made(gear))} of its teeth are drawn as made." if _made(gear) else ""
+    remark = f" {len(_made(gear))} of its teeth are drawn as made." if _made(gear) else ""
     if gear.modification.neutral:
-        return f"The {name} is not modified.{made}"
+        return f"The {name} is not modified.{remark}"
     roll, face = np.meshgrid(_usable(gear), np.linspace(-0.5, 0.5, _POINTS) * gear.face_width)
-    return f"At most {number(_removed(gear, roll, face).max(), 3)} µm are removed from the {name}.{made}"
+    return f"At most {number(_removed(gear, roll, face).max(), 3)} µm are removed from the {name}.{remark}"
 
 
 @dataclass(frozen=True)

@@ -69,8 +69,8 @@ def _named(figures: Sequence[Figure], view: str) -> Figure:
     if not view:
         return figures[0]
     exact = [figure for figure in figures if figure.key == view]
-    words = [_SYNONYMS.get(word, word) for word in view.lower().split()]
-    alike = [f for f in figures if all(word in f"{f.key} {f.title}".lower() for word in words)]
+    sought_words = [_SYNONYMS.get(word, word) for word in view.lower().split()]
+    alike = [f for f in figures if all(word in f"{f.key} {f.title}".lower() for word in sought_words)]
     if not (exact or alike):
         names = ", ".join(figure.key for figure in figures)
         raise BadInput.of("view", view, f"words of one of {names}")

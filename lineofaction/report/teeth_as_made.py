@@ -37,8 +37,8 @@ def excess_of_teeth(
     """
     toothing = (pair.pinion, pair.wheel)[gear]
     tooth = np.arange(toothing.teeth)[:, None, None]
-    along = face + (pair.axial_offset if gear else 0.0)
-    teeth = MeetingTeeth(pair, tooth, roll[:, None], roll[:, None], along)
+    mate_face = face + (pair.axial_offset if gear else 0.0)
+    teeth = MeetingTeeth(pair, tooth, roll[:, None], roll[:, None], mate_face)
     gaps = [term(teeth) for term in model.tooth_gaps if term.gear == gear]
     return -np.asarray(sum(np.broadcast_to(gap, (toothing.teeth, roll.size, face.size)) for gap in gaps))
 

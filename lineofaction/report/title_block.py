@@ -38,14 +38,14 @@ def titled(page: Page, about: ReportInput | None) -> Page:
     """
     if about is None:
         return page
-    named = {name: getattr(about, name) for name in ("project", "number", "revision", "author")}
-    rows = {("drawing" if name == "number" else name): text for name, text in named.items() if text}
+    fields = {name: getattr(about, name) for name in ("project", "number", "revision", "author")}
+    rows = {("drawing" if name == "number" else name): text for name, text in fields.items() if text}
     rows |= {
         "date": date.today().isoformat(),
         "made with": f"lineofaction {software_versions()['lineofaction']}",
     }
-    read = (Requirement.of(line) for line in about.requirements)
-    requirements = [requirement for requirement in read if requirement is not None]
+    parsed = (Requirement.of(line) for line in about.requirements)
+    requirements = [requirement for requirement in parsed if requirement is not None]
     verdicts = tuple(line for required in requirements for line in _verdicts(required, page.headlines))
     unmet = tuple(
         f"Required, but no main result of this report: {required.text}"
@@ -73,8 +73,8 @@ def _verdicts(required: Requirement, headlines: Sequence[Headline]) -> list[str]
     verdicts = []
     for headline, value in _meant(required, headlines):
         low, high, band = _band(headline, value)
-        met = value <= required.limit if required.maximum else value >= required.limit
-        verdict = "Open within the error" if low < required.limit < high else "Met" if met else "Not met"
+        is_met = value <= required.limit if required.maximum else value >= required.limit
+        verdict = "Open within the error" if low < required.limit < high else "Met" if is_met else "Not met"
         limit = f"{'at most' if required.maximum else 'at least'} {required.limit:g} {required.unit}".rstrip()
         result = f"{headline.value.removesuffix(required.unit).strip()}{band} {required.unit}".rstrip()
         verdicts.append(f"{verdict}: {headline.name} is {result}; required is {limit}.")

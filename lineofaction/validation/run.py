@@ -75,9 +75,9 @@ def _by_verb(case: ValidationCase, verb: Verb) -> Any:
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / f"{case.name}.toml"
         file.write_text(case.case, encoding="utf-8")
-        words = [str(file) if word == "CASE" else word for word in case.verb.split()]
+        arguments = [str(file) if word == "CASE" else word for word in case.verb.split()]
         # words that name a file of the tree become its path
-        return verb([str(TREE / word) if (TREE / word).is_file() else word for word in words])
+        return verb([str(TREE / word) if (TREE / word).is_file() else word for word in arguments])
 
 
 def _by_function(case: ValidationCase) -> Any:

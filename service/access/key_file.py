@@ -109,13 +109,13 @@ class KeyFile:
         if _NAME.fullmatch(name) is None:
             bound = "1 to 64 letters, digits, dots, dashes or underscores, the first a letter or a digit"
             raise BadInput.of("name", name, bound, "For example: test-bench-3")
-        known = self.read()
-        if any(key.name == name for key in known):
+        keys = self.read()
+        if any(key.name == name for key in keys):
             remedy = f"Renew it with: loa keys rotate {name}; or take it back first: loa keys remove {name}"
             raise BadInput.of("name", name, "new", remedy)
         holder = Holder(name=name, **_chosen(rights))
         secret, key = _made(holder, None if expires is None else _duration("expires", expires))
-        self._write((*known, key))
+        self._write((*keys, key))
         return secret
 
     def rotate(self, name: str, *, overlap: str = "0h", expires: str | None = None) -> str:
@@ -130,10 +130,10 @@ class KeyFile:
         expires : str, optional
             Duration for which the new key is good; default: the duration of the old one.
         """
-        known = self.read()
-        old = [key for key in known if key.name == name]
+        keys = self.read()
+        old = [key for key in keys if key.name == name]
         if not old:
-            raise _unknown(name, known)
+            raise _unknown(name, keys)
         last, instant = old[-1], datetime.now(UTC)
         life = None if expires is None else _duration("expires", expires)
         if expires is None and last.expires is not None:
@@ -146,7 +146,7 @@ class KeyFile:
             access_key if access_key.ends_within(common, instant) else replace(access_key, expires=end)
             for access_key in valid
         ]
-        self._write((*(entry for entry in known if entry.name != name), *ending, key))
+        self._write((*(entry for entry in keys if entry.name != name), *ending, key))
         return secret
 
     def remove(self, name: str) -> None:
@@ -154,11 +154,11 @@ class KeyFile:
 
         Raises `BadInput`: there is no key of this name.
         """
-        known = self.read()
-        left = tuple(key for key in known if key.name != name)
-        if len(left) == len(known):
-            raise _unknown(name, known)
-        self._write(left)
+        keys = self.read()
+        others = tuple(key for key in keys if key.name != name)
+        if len(others) == len(keys):
+            raise _unknown(name, keys)
+        self._write(others)
 
     def _write(self, keys: tuple[AccessKey, ...]) -> None:
         """Put a whole new file in the place of the old one."""

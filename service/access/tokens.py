@@ -152,12 +152,12 @@ class Tokens:
 
     def _project(self, claims: Json) -> str:
         """Return the project; where a claim names projects, a token without it is refused."""
-        named = self._settings.project_claim
-        if not named:
+        claim = self._settings.project_claim
+        if not claim:
             return COMMON
-        project = _claim(claims, named)
+        project = _claim(claims, claim)
         if not isinstance(project, str) or PROJECT.fullmatch(project) is None:
-            raise Unauthorised.of(f"This token names no project in its claim {named!r}.")
+            raise Unauthorised.of(f"This token names no project in its claim {claim!r}.")
         return project
 
 

@@ -105,8 +105,8 @@ class Job:
             return None
         updated = datetime.fromisoformat(self.updated)
         spent = (updated - datetime.fromisoformat(self.started)).total_seconds()
-        left = spent * (1.0 - self.fraction) / self.fraction
-        return max(left - (instant - updated).total_seconds(), 0.0)
+        seconds = spent * (1.0 - self.fraction) / self.fraction
+        return max(seconds - (instant - updated).total_seconds(), 0.0)
 
 
 def job_state() -> ColumnElement[Any]:

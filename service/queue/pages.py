@@ -51,9 +51,9 @@ class PageQuery:
         branches = [branch.subquery() for branch in self._branches(connection)]
         if not branches:
             return []
-        chosen = union_all(*(select(branch.c.job, branch.c.created) for branch in branches)).subquery()
-        newest = (chosen.c.created.desc(), chosen.c.job.desc())
-        page = select(chosen.c.job).order_by(*newest).limit(self.limit).subquery()
+        page_lines = union_all(*(select(branch.c.job, branch.c.created) for branch in branches)).subquery()
+        newest = (page_lines.c.created.desc(), page_lines.c.job.desc())
+        page = select(page_lines.c.job).order_by(*newest).limit(self.limit).subquery()
         statement = jobs_of_all_projects().join(page, page.c.job == jobs.c.id)
         return connection.execute(statement.order_by(jobs.c.created.desc(), jobs.c.id.desc())).all()
 

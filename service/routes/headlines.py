@@ -27,8 +27,8 @@ def with_headlines(jobs: Sequence[Job], context: Context) -> list[Job]:
     """Return jobs with the headlines of their tables; a few missing ones are computed and stored."""
     lacking = {job.key for job in jobs if job.process == ANALYZE.id and _ended_without(job)}
     lines = context.store.without_headline(lacking, ANALYZE.kind, MAX_AT_ONCE) if lacking else []
-    made = {line.key: _headline_of(line.key, line.size, context) for line in lines}
-    return [replace(job, headline=made.get(job.key) or job.headline) for job in jobs]
+    headlines = {line.key: _headline_of(line.key, line.size, context) for line in lines}
+    return [replace(job, headline=headlines.get(job.key) or job.headline) for job in jobs]
 
 
 def _ended_without(job: Job) -> bool:
@@ -37,13 +37,13 @@ def _ended_without(job: Job) -> bool:
 
 def _headline_of(key: str, size: int, context: Context) -> dict[str, Any]:
     """Compute and store the headline of a table; an empty one, too, so that no table is read twice."""
-    made: dict[str, Any] = {}
+    headline: dict[str, Any] = {}
     try:
         if size <= LARGEST_BYTES:
-            made = headline_json(context.databases.get(context.store, key).database)
+            headline = headline_json(context.databases.get(context.store, key).database)
     except (DatabaseUnavailable, StoreUnavailable):
-        return made
+        return headline
     except Exception as error:  # noqa: BLE001 (a list is shown whatever is wrong with an old file)
         logger.warning("no headline", key=key, error=str(error))
-    context.store.note_headline(key, ANALYZE.kind, made)
-    return made
+    context.store.note_headline(key, ANALYZE.kind, headline)
+    return headline

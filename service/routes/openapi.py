@@ -137,8 +137,8 @@ def _describe_refusals(document: Json) -> None:
         refused = {status: responses.pop(status) for status in list(responses) if int(status) >= 400}
         of_route = {int(status): entry[_KINDS] for status, entry in refused.items() if _KINDS in entry}
         for kinds in (of_route, _of_request(path, operation)):
-            for status, named in kinds.items():
-                all_kinds.setdefault(status, {}).update(named)
+            for status, titles in kinds.items():
+                all_kinds.setdefault(status, {}).update(titles)
                 responses[str(status)] = {"$ref": f"#/components/responses/{_name(status)}"}
     document["components"]["responses"] = {
         _name(status): _response(status, kinds) for status, kinds in all_kinds.items()

@@ -96,20 +96,20 @@ async def result_figures(
     """Every plot as data and layout for plotly.js, with its words and numbers; or a page to print."""
     printed = negotiated(accept, (JSON, HTML)) == HTML
     stored = await run_in_threadpool(known_result, context, key)
-    named: dict[str, Any] = {"file": str(stored.path)}
+    inputs: dict[str, Any] = {"file": str(stored.path)}
     tag, work = stored.sha256, FIGURES
     if against is not None:
         other = await run_in_threadpool(known_result, context, against)
-        tag, work, named = tag + other.sha256, COMPARISON, {"files": [str(stored.path), str(other.path)]}
-    order = LiveOrder(work, {**named, "printed": printed})
+        tag, work, inputs = tag + other.sha256, COMPARISON, {"files": [str(stored.path), str(other.path)]}
+    order = LiveOrder(work, {**inputs, "printed": printed})
     form, kind, body_of = ("page", HTML, _page) if printed else ("figures", JSON, bytes)
     response = await _cached_answer(request, context, f'"{tag}-{form}-{program_tag()}"', order, kind, body_of)
     response.headers.update({"Vary": "Accept"} | (_INERT if printed else {}))
     return response
 
 
-def _page(made: bytes) -> bytes:
-    text: str = json.loads(made)["page"]
+def _page(answer: bytes) -> bytes:
+    text: str = json.loads(answer)["page"]
     return text.encode("utf-8")
 
 
@@ -186,8 +186,8 @@ async def result_sound(
     keys = [result for result in (key, against) if result]
     stored = [await run_in_threadpool(known_result, context, result, kind) for result in keys]
     view = {"quantity": quantity, "bearing": bearing, "mesh": mesh, "direction": direction}
-    named = json.dumps([*(result.sha256 for result in stored), view, program_tag()])
-    tag = f'"{hashlib.sha256(named.encode()).hexdigest()}-sound"'
+    version = json.dumps([*(result.sha256 for result in stored), view, program_tag()])
+    tag = f'"{hashlib.sha256(version.encode()).hexdigest()}-sound"'
     order = LiveOrder(SOUND, {"kind": kind, "files": [str(result.path) for result in stored], "view": view})
     return await _cached_answer(
         request, context, tag, order, WAV, lambda made: base64.b64decode(json.loads(made)["wav"])

@@ -42,24 +42,24 @@ def reindex(store: ResultStore, deployment: Deployment) -> _Reindexed:
     deployment.take_over()
     missing_lines = (line for line in store.lines() if not store.files.has(line.file))
     struck = tuple(line.file for line in missing_lines if store.strike(line))
-    named = {line.file for line in store.lines()}
+    indexed = {line.file for line in store.lines()}
     entered, damaged, doubled = 0, [], []
     for file in list(store.files.files()):
         name = ResultName.of(file.name)
-        if name is None or file.name in named:
+        if name is None or file.name in indexed:
             continue
         with contextlib.suppress(FileNotFoundError):  # another was quicker
             sha256 = store.files.digest(file.name)
             if not (name.agrees(sha256) and _opens(store.files.local(file.name, sha256))):
                 damaged.append(file.name)
                 continue
-            made = instant(datetime.fromtimestamp(file.modified, UTC))
+            modified = instant(datetime.fromtimestamp(file.modified, UTC))
             line = IndexLine(name.key, name.kind, sha256, file.size, file.name, now(), project=name.project)
-            if store.enter(line, made=min(made, line.used)).file == file.name:
+            if store.enter(line, made=min(modified, line.used)).file == file.name:
                 entered += 1
             else:
                 doubled.append(file.name)
-    return _Reindexed(len(named), entered, tuple(damaged), tuple(doubled), struck)
+    return _Reindexed(len(indexed), entered, tuple(damaged), tuple(doubled), struck)
 
 
 def _opens(path: Path) -> bool:

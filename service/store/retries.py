@@ -113,11 +113,11 @@ def outage_of(error: SQLAlchemyError, engine: Engine) -> DatabaseUnavailable | N
 
 def unusable(engine: Engine, fault: str, remedy: str) -> DatabaseUnavailable:
     """Return the error of a database that needs a person; its address is for the log alone."""
-    where = engine.url.render_as_string(hide_password=True)
+    address = engine.url.render_as_string(hide_password=True)
     event, kind = _KINDS.get(remedy, ("database damaged", DatabaseDamaged))
-    logger.error(event, database=where, error=fault, remedy=remedy)
+    logger.error(event, database=address, error=fault, remedy=remedy)
     error = kind(f"{kind.title}: {fault}.")
-    error.add_note(f"{where}: {remedy}")
+    error.add_note(f"{address}: {remedy}")
     return error
 
 

@@ -92,8 +92,8 @@ def fresh_service(**settings: Any) -> Iterator[JobService]:
     """Run a service with one worker on a directory of its own, its log kept from the terminal."""
     with tempfile.TemporaryDirectory(prefix="loa-hard-jobs-") as name, capture_logs() as log:
         directory = Path(name).resolve()
-        chosen = Settings(data_directory=directory, workers=1, **settings)
-        parts = job_machinery(chosen, default_registry())
+        service_settings = Settings(data_directory=directory, workers=1, **settings)
+        parts = job_machinery(service_settings, default_registry())
         assert parts.scheduler is not None
         service = JobService(directory, parts.submissions, parts.store, parts.scheduler, log)
         service.scheduler.start()

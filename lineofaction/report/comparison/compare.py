@@ -77,18 +77,18 @@ def compare_runs(runs: dict[str, RunResult], view: RunView, measured: MeasuredOr
     sides = tuple(_side(run_signal) for run_signal in run_signals(runs, view))
     signal = sides[0].signal
     highest = int(min(side.blocks.line[-1] for side in sides))
-    chosen = signal.orders or largest_orders(signal, sides[0].blocks)
-    orders = tuple(order for order in chosen if order <= highest)
+    selected = signal.orders or largest_orders(signal, sides[0].blocks)
+    orders = tuple(order for order in selected if order <= highest)
     differences = tuple(_differences(sides, orders)) if len(sides) == 2 else ()
     figures = (_levels(sides, orders), _spectra(sides, measured))
-    listed = (differences_table(differences, tuple(runs)),) if differences else ()
-    sections = [Section(signal.heading, figures=figures, tables=listed)]
+    difference_tables = (differences_table(differences, tuple(runs)),) if differences else ()
+    sections = [Section(signal.heading, figures=figures, tables=difference_tables)]
     differing = changed_fields({name: run.case for name, run in runs.items()})
     if differing.rows:
         sections.append(Section("Scenes", tables=(differing,)))
     headlines = tuple(Headline(change.name, change.between, change.finding) for change in differences[:3])
-    lasted = ", ".join(f"{run.time[-1]:g} s" for run in runs.values())
-    lead = f"{signal.name}; {lasted} of motion; errors are those of runs, not of the tables they take"
+    durations = ", ".join(f"{run.time[-1]:g} s" for run in runs.values())
+    lead = f"{signal.name}; {durations} of motion; errors are those of runs, not of the tables they take"
     return Page(f"{' and '.join(runs)} compared", lead, headlines, tuple(sections))
 
 
@@ -218,9 +218,9 @@ def _compared_with_recording(
     results: dict[str, Path], recording: Recording, view: RunView, measurement: Measurement
 ) -> Page:
     """Compare the one run of some result files with a recording."""
-    read = {name: read_result(file) for name, file in results.items()}
-    runs = [(name, run) for name, run in read.items() if isinstance(run, RunResult) and run.mesh]
-    if len(read) != 1 or not runs:
+    results_read = {name: read_result(file) for name, file in results.items()}
+    runs = [(name, run) for name, run in results_read.items() if isinstance(run, RunResult) and run.mesh]
+    if len(results_read) != 1 or not runs:
         bound = "one run with a mesh beside a recording over time"
         raise BadInput.of(
             "files", ", ".join(results), bound, "For example: loa compare run.nc test.uff --rpm 3000"
@@ -234,17 +234,17 @@ def _compare_folders(folders: Sequence[Path], view: RunView, torque: float | Non
     by_folder = {name: _comparable(folder) for name, folder in named_files(folders)}
     first, second = by_folder.values()
     if not (shared := [name for name in first if name in second]):
-        what = "; ".join(f"{folder} has {', '.join(files) or 'none'}" for folder, files in by_folder.items())
+        text = "; ".join(f"{folder} has {', '.join(files) or 'none'}" for folder, files in by_folder.items())
         kind = "two folders with an STE database or a run of one name"
-        raise BadInput.of("files", what, kind, f"Name two files. {_REMEDY}")
+        raise BadInput.of("files", text, kind, f"Name two files. {_REMEDY}")
     pages = {
         name.replace("_", " "): _compare_results(
             {folder: files[name] for folder, files in by_folder.items()}, view, torque=torque
         )
         for name in shared
     }
-    alone = sorted(first.keys() ^ second.keys())
-    rest = f"; in one folder alone: {', '.join(alone)}" if alone else ""
+    unpaired = sorted(first.keys() ^ second.keys())
+    rest = f"; in one folder alone: {', '.join(unpaired)}" if unpaired else ""
     page = bound(pages)
     return replace(page, title=f"{' and '.join(by_folder)} compared", lead=f"{page.lead}{rest}")
 

@@ -375,17 +375,17 @@ def _page(flanks: LoadDistribution, database: SteDatabase | None = None) -> Page
 
 def _headlines(flanks: LoadDistribution) -> Iterator[Headline]:
     """Yield the largest pressure and line load, and K_Hbeta, each with its error or why it has none."""
-    at, reason = _operating_point(flanks), flanks.errors.reason
+    operating_point, reason = _operating_point(flanks), flanks.errors.reason
     pressure, load = flanks.largest_pressure, flanks.largest_line_load
     band = error_or_reason(pressure, "MPa", MPA, reason)
-    remark = f"{band}{_kink_text(flanks)}; {at}{edge_text(flanks.edge_pressure)}"
+    remark = f"{band}{_kink_text(flanks)}; {operating_point}{edge_text(flanks.edge_pressure)}"
     yield Headline("largest flank pressure", f"{_to_error(pressure, MPA)} MPa", remark)
     band = error_or_reason(load, "N/mm", N_PER_MM, reason)
-    remark = f"{band}{_length_text(flanks)}; {at}{_edge_load(flanks)}"
+    remark = f"{band}{_length_text(flanks)}; {operating_point}{_edge_load(flanks)}"
     yield Headline("largest line load", f"{_to_error(load, N_PER_MM)} N/mm", remark)
     if flanks.face_position.size > 1:
         factor = flanks.cycle_face_load_factor
-        remark = f"{error_or_reason(factor, '', 1.0, reason)}{_length_text(flanks)}; {at}"
+        remark = f"{error_or_reason(factor, '', 1.0, reason)}{_length_text(flanks)}; {operating_point}"
         yield Headline("K_Hbeta over the cycle", _to_error(factor), remark)
 
 
@@ -432,11 +432,11 @@ def _making(flanks: LoadDistribution, *, alone: bool) -> tuple[Section, ...]:
     if not metadata.receipt:
         return ()
     cost = {name: value for name, value in metadata.receipt.items() if name not in ("plan", "laws")}
-    made = {**metadata.software_versions, "content_hash": metadata.content_hash}
+    versions = {**metadata.software_versions, "content_hash": metadata.content_hash}
     section = Section(
         "Receipt of the flank results",
         tables=(settings_table("Cost", cost),),
-        folded=(settings_table("Made with", made),),
+        folded=(settings_table("Made with", versions),),
         part=Part.RECEIPT,
     )
     if not alone:

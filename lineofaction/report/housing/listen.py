@@ -86,8 +86,8 @@ def _headlines(audio: HeardRun) -> tuple[Headline, ...]:
         Headline("sound pressure level", f"{figures.weighted_level:.1f} dB(A)", f"{figures.level:.1f} dB")
     ]
     if figures.loudness is not None:
-        what = "loudness" if figures.steady else "loudness N5"
-        rows.append(Headline(what, f"{engineering(figures.loudness, 3)} sone", "ISO 532-1, free field"))
+        name = "loudness" if figures.steady else "loudness N5"
+        rows.append(Headline(name, f"{engineering(figures.loudness, 3)} sone", "ISO 532-1, free field"))
     if figures.sharpness is not None:
         rows.append(Headline("sharpness", f"{engineering(figures.sharpness, 3)} acum", "DIN 45692"))
     if figures.tones:

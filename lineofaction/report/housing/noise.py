@@ -204,11 +204,11 @@ def _total(sound: RadiatedSound, power: FloatArray) -> FloatArray:
 
 def _levels_table(sound: RadiatedSound, level: FloatArray, total: FloatArray) -> Table:
     rows = [("total", f"{total.max():.1f}", number(float(sound.speed[total.argmax()]) / RPM, 5), "")]
-    for order, at, row, hertz in zip(
+    for order, peak, row, hertz in zip(
         sound.order, level.argmax(axis=1), level, sound.frequency.T, strict=True
     ):
-        speed = number(float(sound.speed[at]) / RPM, 5)
-        rows.append((order_label(order, sound.metadata), f"{row[at]:.1f}", speed, number(hertz[at], 5)))
+        speed = number(float(sound.speed[peak]) / RPM, 5)
+        rows.append((order_label(order, sound.metadata), f"{row[peak]:.1f}", speed, number(hertz[peak], 5)))
     head = ("order", "dB(A)", "speed, rpm", "frequency, Hz")
     return Table("Largest level of each order", head, tuple(rows))
 

@@ -132,12 +132,12 @@ def _met(mesh: list[float] | None, line: FloatArray, orders: int, ends: tuple[fl
 
     `line` is the mode's frequency over the mesh frequencies `mesh`; without `mesh` it is one number.
     """
-    met = []
+    meetings = []
     for order in range(1, orders + 1):
-        where = float(line[0]) / order if mesh is None else _meeting(np.array(mesh), line, order)
-        if where is not None and ends[0] <= where <= ends[1]:
-            met.append(f"{order} at {number(where, 3)} Hz")
-    return ", ".join(met) or "none"
+        meeting = float(line[0]) / order if mesh is None else _meeting(np.array(mesh), line, order)
+        if meeting is not None and ends[0] <= meeting <= ends[1]:
+            meetings.append(f"{order} at {number(meeting, 3)} Hz")
+    return ", ".join(meetings) or "none"
 
 
 def mode_bars(modes: Sequence[str], shares: Sequence[Mapping[str, float]], energy: str) -> Panel:

@@ -111,12 +111,12 @@ def _track(source: RunSignal, axis: Axis) -> Track:
     """Return the track of a run: its place on the axis as it plays."""
     run = source.run
     time = np.linspace(float(run.time[0]), float(run.time[-1]), POINTS)
-    along = time
+    axis_values = time
     if unit_of(axis.label) == "rpm":
         speed = run.speed[run.shaft.index(driving_shaft(run, source.signal.mesh))]
-        along = np.interp(time, run.time, np.abs(speed)) * 30.0 / np.pi
+        axis_values = np.interp(time, run.time, np.abs(speed)) * 30.0 / np.pi
     mesh_frequency = np.interp(time, run.time, np.abs(run.mesh_frequency[source.signal.mesh]))
-    return Track(source.name, time - time[0], along, source.query, mesh_frequency)
+    return Track(source.name, time - time[0], axis_values, source.query, mesh_frequency)
 
 
 def stored_sound(inputs: Json) -> Json:
@@ -134,19 +134,19 @@ def stored_sound(inputs: Json) -> Json:
     return {"wav": base64.b64encode(wav).decode("ascii")}
 
 
-def _of_runs(files: Sequence[Path], named: Mapping[str, Any]) -> list[Recording]:
+def _of_runs(files: Sequence[Path], view_fields: Mapping[str, Any]) -> list[Recording]:
     """Return the signals of runs as recordings; the second run takes the view of the first."""
     runs = [RunResult.from_netcdf(file) for file in files]
     for run in runs:
         _require_short(float(np.ptp(run.time)))
-    view = RunView(**named)
+    view = RunView(**view_fields)
     first = RunSignal("", runs[0], selected_signal(runs[0], view))
     others = run_signals(dict(zip(("against",), runs[1:], strict=False)), same_view(view, first.signal))
     return [source.recording() for source in (first, *others)]
 
 
-def _recordings(files: Sequence[Path], named: Mapping[str, Any]) -> list[Recording]:
-    for name, value in named.items():
+def _recordings(files: Sequence[Path], view_fields: Mapping[str, Any]) -> list[Recording]:
+    for name, value in view_fields.items():
         if value:
             raise BadInput.of(name, value, "left out of a recording", "It holds one quantity.")
     recordings = [read_record(file, {SCHEMA: HeardRun}).recording for file in files]

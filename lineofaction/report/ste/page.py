@@ -113,7 +113,7 @@ def static_making(database: SteDatabase) -> tuple[Section, ...]:
     accuracy = Section("Accuracy of the table", text, tables=tables, part=Part.ACCURACY)
     text = "With all defaults filled in. Numbers without a unit are in SI."
     case = Section("Case", text, folded=case_tables(metadata.case), part=Part.INPUT)
-    made = {**metadata.software_versions, "content_hash": metadata.content_hash}
+    versions = {**metadata.software_versions, "content_hash": metadata.content_hash}
     stages = metadata.receipt.get("stages")
     entries = stages.items() if isinstance(stages, dict) else ()
     rows = tuple(
@@ -125,7 +125,7 @@ def static_making(database: SteDatabase) -> tuple[Section, ...]:
         tables=(Table("Time by stage", ("stage", "CPU s", "wall s"), rows),),
         folded=(
             settings_table("Receipt", _without(metadata.receipt, "stages")),
-            settings_table("Made with", made),
+            settings_table("Made with", versions),
         ),
         part=Part.RECEIPT,
     )
@@ -136,8 +136,8 @@ def contact_effects(ledger: Any) -> Section:
     """Tabulate the effects in the contact with reason and influence; small ones and decisions are folded."""
     entries = [{"name": k, **v} for k, v in ledger.items()] if isinstance(ledger, dict) else ledger
     large, trifles = by_size(entries)
-    where = influence_point(entries)
-    text = f"Effects in the contact: estimated change without each, {where}." if where else ""
+    point = influence_point(entries)
+    text = f"Effects in the contact: estimated change without each, {point}." if point else ""
     folded: tuple[Table, ...] = (
         (effect_table(trifles_title(trifles), map(_effect_row, trifles)),) if trifles else ()
     )

@@ -41,8 +41,8 @@ def ste_spectrum(database: SteDatabase) -> Figure:
     curve, label = load_curve(database, load), load_labels(database)[load]
     order, amplitude, error = _spectrum_of(curve)
     names = _order_names(curve, order)
-    chosen = np.sort(np.argsort(-amplitude, kind="stable")[:ORDERS])
-    rows = tuple((names[k].removeprefix("order "), um(amplitude[k], 3), um(error[k], 2)) for k in chosen)
+    drawn = np.sort(np.argsort(-amplitude, kind="stable")[:ORDERS])
+    rows = tuple((names[k].removeprefix("order "), um(amplitude[k], 3), um(error[k], 2)) for k in drawn)
     return Figure(
         key="ste_spectrum",
         title=f"Spectrum of the transmission error at {label}",

@@ -49,12 +49,12 @@ def tooth_headlines(database: SteDatabase, load: int) -> tuple[Headline, ...]:
     label = load_labels(database)[load]
     headlines = []
     for loads in teeth_at(database, load):
-        at = f"tooth of the {GEARS[loads.gear]} at {label}"
+        tooth = f"tooth of the {GEARS[loads.gear]} at {label}"
         if loads.most_loaded:
-            headlines.append(Headline(f"most loaded {at}", teeth_text(loads.most_loaded), _size(loads)))
+            headlines.append(Headline(f"most loaded {tooth}", teeth_text(loads.most_loaded), _size(loads)))
         if loads.most_pressed:
             remark = f"{_megapascal(loads.pressure.max())}; {UNBOUNDED}"
-            headlines.append(Headline(f"most pressed {at}", teeth_text(loads.most_pressed), remark))
+            headlines.append(Headline(f"most pressed {tooth}", teeth_text(loads.most_pressed), remark))
     return tuple(headlines)
 
 
