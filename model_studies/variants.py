@@ -14,7 +14,7 @@ R = TypeVar("R")
 
 
 class LeftOut(Exception):
-    """A variant is not valid here, and why."""
+    """A variant is not valid here; the text says why."""
 
 
 def run_variants(

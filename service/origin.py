@@ -23,8 +23,8 @@ class Origin:
     def of(cls, uri: str) -> Self:
         """Return the origin of an address.
 
-        Raises `ValueError`: it is not http or https, names nobody, or holds a user, a fragment or odd
-        characters.
+        Raises `ValueError`: it is not http or https, names no host, or contains a user, a fragment, or
+        characters outside printable ASCII.
         """
         parts = urlsplit(uri)
         plain = uri.isascii() and uri.isprintable() and " " not in uri and "\\" not in uri

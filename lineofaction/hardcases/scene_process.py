@@ -20,8 +20,8 @@ _START_LIMIT = 120.0  # seconds for a new process to import what it needs
 def run_scenes(scenes: Sequence[HardScene]) -> Iterator[Outcome]:
     """Yield the outcome of each scene, also of a scene that crashes or hangs.
 
-    One process serves them all, so that what is imported and compiled stays so; a scene that ends it, or that
-    does not end, gets another one started for its followers.
+    One process runs them all, so that modules are imported and compiled once. After a scene that ends the
+    process, or does not end, a new process runs the next ones.
     """
     worker: _Worker | None = None
     try:

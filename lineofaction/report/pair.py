@@ -221,7 +221,7 @@ def _section(pair: ParallelAxes) -> Panel:
     points = outline["path_of_contact"]["points_mm"]
     path = np.array(sorted(points.values()))
     lines.append(Line("path of contact", path[:, 0], path[:, 1], palette.GREEN, width=2.4, markers=True))
-    # the name of D a row lower, so that it is clear of the name of E
+    # the name of D stands a row lower than the others, clear of its neighbors
     notes = tuple(Note(x, y, name, -(name == "D"), left=name in "AB") for name, (x, y) in points.items())
     pitch_point = pair.operating_pitch_radii[0] / MM
     x = Axis("mm", limits=(-_WIDTH * half, _WIDTH * half))

@@ -176,7 +176,7 @@ class KeyFile:
             raise
 
     def _unusable(self, suggestion: str) -> BadInput:
-        """Return the error of a file whose keys cannot be read, which is no file without keys."""
+        """Return the error of a file that cannot be read; it must never count as a file without keys."""
         return BadInput.of("keys_file", str(self.path), "a readable file of access keys", suggestion)
 
 

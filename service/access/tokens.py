@@ -55,7 +55,7 @@ class OidcSettings(BaseSettings):
     @field_validator("issuer", "keys_url")
     @classmethod
     def _secure(cls, url: str | None) -> str | None:
-        """Refuse an address that others could answer at; an empty variable is none."""
+        """Refuse an address at which others could answer; an empty text counts as no address."""
         if not url:
             return None
         parts = urlsplit(url)

@@ -80,7 +80,7 @@ class ManagementServer:
 
 
 class _Server(ThreadingMixIn, TCPServer):
-    """A thread for each of a few requests."""
+    """Server with a thread for each request, up to `_MAX_REQUESTS`."""
 
     daemon_threads = True
     block_on_close = False

@@ -74,7 +74,7 @@ def _scheduler(settings: Settings, registry: Registry, engine: Engine, store: Re
 
 
 def crew_of(settings: Settings, registry: Registry, deployment: Deployment) -> Crew:
-    """Return the crew of the settings; raises an error that names a Dask scheduler of no use."""
+    """Return the crew that the settings name; raises `BadInput`: the Dask scheduler cannot be used."""
     if settings.scheduler is None:
         return Children(settings, registry.modules)
     cluster = Cluster(settings.scheduler, deployment.identifier() or "")

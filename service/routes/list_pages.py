@@ -1,4 +1,4 @@
-"""Pages of lists: links, and cursors that are opaque to callers and good as long as the service."""
+"""Pages of lists: links, and cursors, which are opaque to callers and do not expire."""
 
 from __future__ import annotations
 

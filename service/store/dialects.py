@@ -238,7 +238,7 @@ class _SQLite:
         return getattr(error.orig, "sqlite_errorcode", 0) == sqlite3.SQLITE_INTERRUPT
 
     def remedy(self, error: DBAPIError, url: URL) -> str | None:
-        """Return the action by the primary result code, the low byte; an empty new file has no tables."""
+        """Return the action by the primary result code, the low byte, or for a file that lost its tables."""
         if "no such table" in str(error.orig):
             return RESTORE
         code = getattr(error.orig, "sqlite_errorcode", 0) & 0xFF

@@ -177,7 +177,7 @@ def _drift(method: str, steps: int) -> float:
     duration = steps * float(fixed.fixed_step or 0.0)
     scene = torsional(
         spring(),
-        speed=TimeLaw.ramp(0.0, 1e-12, 1.0),  # practically zero, which a scene does not take
+        speed=TimeLaw.ramp(0.0, 1e-12, 1.0),  # practically at rest
         duration=duration,
         outputs=Outputs(1000.0),
         integration=fixed,

@@ -117,7 +117,7 @@ def _fold(jump: float, start: float, end: float) -> float:
 
 
 def _excitation(frequency: float) -> float:
-    """Return the amplitude of e that makes the force Fa W^2: it acts through spring, damper and inertia."""
+    """Return the amplitude A of e whose force by inertia and damping, A W sqrt(W^2 + 4 z^2), is Fa W^2."""
     return float(_AMPLITUDE * frequency / np.hypot(frequency, 2.0 * _ZETA))
 
 

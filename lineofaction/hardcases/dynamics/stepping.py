@@ -94,7 +94,8 @@ def _contact_lost() -> Sequence[Measured]:
     # a second difference of the error needs three samples in flight
     flying = (force[:-2] == 0.0) & (force[1:-1] == 0.0) & (force[2:] == 0.0)
     drive = 0.5 * fastest / duration
-    fall = TORQUE / INERTIA.polar * BASE_RADIUS + drive * BASE_RADIUS  # by the load, and the drive runs up
+    # the gear falls under its load, away from an accelerating drive
+    fall = TORQUE / INERTIA.polar * BASE_RADIUS + drive * BASE_RADIUS
     bend = np.diff(error, 2)[flying] * rate**2 / fall
     return (
         *common_figures(runs, scene),

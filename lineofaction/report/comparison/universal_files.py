@@ -24,9 +24,10 @@ def read_universal(path: Path, teeth: int, unit: str) -> MeasuredCurve | Measure
 
 
 def of_universal(recording: Recording, teeth: int, unit: str) -> MeasuredCurve | MeasuredOrders:
-    """Return the one function of a file that can be compared; `teeth` is the number of the driving gear.
+    """Return the one function of a file that can be compared.
 
-    `unit` is that of the computed series: "µm", "N" or "m/s²". A complex spectrum gives its amplitudes.
+    `teeth` is the number of teeth of the driving gear. `unit` is that of the computed series: "µm", "N" or
+    "m/s²". A complex spectrum gives its amplitudes.
     """
     quantity, per_si = _SCALES[unit]
     fitting = [channel for channel in recording.channels if _fits(channel, quantity)]

@@ -39,7 +39,7 @@ def _worst_case(result: GearboxDeflection, mesh: str) -> CaseDeflection:
 
 
 def _drawn_case(result: GearboxDeflection) -> CaseDeflection:
-    """Return the load case that misaligns a mesh most; without meshes, that moves the axes most."""
+    """Return the load case that misaligns a mesh most; without meshes, the one that moves the axes most."""
     names = _meshes_worst_first(result)
     return _worst_case(result, names[0]) if names else max(result.deflection.cases, key=largest_motion)
 

@@ -35,7 +35,7 @@ def _unit(study: Study, response: int) -> str:
 
 
 def _grid_figures(study: Study) -> tuple[Figure, ...]:
-    """Draw means over the grid: over one factor curves, over two a map; nothing without a grid."""
+    """Draw means over the grid: curves over one factor, a map over two; nothing without a grid."""
     axes = [k for k in _varied(study) if study.kind[k] == "grid"]
     responses = range(min(len(study.response), MAX_RESPONSES))
     if not axes:

@@ -14,7 +14,7 @@ def attached(pdf: bytes, name: str, content: bytes) -> bytes:
     Parameters
     ----------
     pdf : bytes
-        With a table of references at its end, no stream of them, and a catalog without names.
+        File with a table of references at its end, not a stream of them, and a catalog without names.
     name : str
         Name of the file, in ASCII without brackets.
     """

@@ -223,7 +223,7 @@ def _extent(flanks: LoadDistribution, gear: Gear, roll: FloatArray) -> tuple[flo
     marks = [*(1e3 * end for end in ends), float(roll[0]), float(roll[-1])]
     low, high = min(marks), max(marks)  # the tip of a ring is the lower one
     room = 0.06 * (high - low)
-    return low - room, high + room * (1.5 if flanks.face_position.size > 1 else 3.0)  # for texts of marks
+    return low - room, high + room * (1.5 if flanks.face_position.size > 1 else 3.0)  # room for marks' texts
 
 
 def _alternative(flanks: LoadDistribution) -> str:

@@ -342,7 +342,7 @@ def _region_name(region: Mapping[str, Any]) -> str:
 
 def _main_region(sound: RadiatedSound) -> str:
     """Say through which region most of the loudest point leaves."""
-    region = sound.metadata["regions"][0][0]  # of the loudest point the largest
+    region = sound.metadata["regions"][0][0]  # the largest region of the loudest point
     return f"{100.0 * region['share']:.0f} % leaves {_region_name(region)}"
 
 

@@ -1,7 +1,7 @@
 """Natural modes of a run: their lines over speed, their table, and their moving parts.
 
-A mode is natural about the run's equilibrium at rest, or whirls: then its frequency changes with speed. An
-order meets a mode at the mesh frequency at which its multiple is the mode's frequency. B: blocks of a run.
+The modes of a run belong to its equilibrium at rest, or they whirl and change their frequency with speed. An
+order meets a mode at the mesh frequency whose multiple by that order is the mode's frequency. B: blocks.
 """
 
 from __future__ import annotations

@@ -59,7 +59,7 @@ class RunSignal:
 
 
 def run_signals(runs: dict[str, RunResult], view: RunView) -> Iterator[RunSignal]:
-    """Yield the signals of named runs; a view that leaves something open is that of the first run.
+    """Yield the signals of named runs; what the view leaves open is selected by the first run for all.
 
     Raises `BadInput`: a run does not hold what the view names.
     """

@@ -46,7 +46,7 @@ _ROOM = 0.02  # margin at both ends of the axis over the range of torques
 
 
 def ripple_over_torque(database: SteDatabase) -> Figure:
-    """Draw peak-to-peak with its error, and harmonics as they are and in dB, over torque."""
+    """Draw over torque: peak-to-peak with its error, and the mesh harmonics in um and in dB."""
     curves = {load: load_curve(database, load) for load in drawn_loads(database)}
     across, torque = _torque_axis(np.array([curve.torque for curve in curves.values()]))
     value, error = np.stack([um_of(curve.harmonics[:HARMONICS]) for curve in curves.values()], axis=1)
