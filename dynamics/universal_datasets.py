@@ -95,6 +95,7 @@ def function_dataset(function: NodalFunction) -> str:
         58,
         [
             *lines,
+            # type of function, identification, version, load case; response; 0 and NONE: no reference
             f"{function.kind:5d}{0:10d}{0:5d}{0:10d}{node}",
             f"{form}{function.first:13.5E}{function.increment:13.5E}{0.0:13.5E}",
             *axes,

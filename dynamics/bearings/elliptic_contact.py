@@ -40,7 +40,7 @@ class EllipticContact:
             square = math.exp(2.0 * logarithm)
             return math.log(elliprd(0.0, square, 1.0) / elliprd(0.0, 1.0, square)) - math.log(ratio)
 
-        # below 0 by as much as rounding needs where the radii are almost equal
+        # the root is not above 0; the bracket is, by what rounding needs where the radii are almost equal
         return math.exp(float(brentq(residual, math.log(MIN_RATIO), 1e-12, xtol=1e-15)))
 
     @property

@@ -4,7 +4,7 @@ Only for steel bearings of good quality; lubrication and contamination (the modi
 
 References
 ----------
-.. [2] ISO/TS 16281:2008, Rolling bearings - Methods for calculating the modified reference rating life for
+.. [1] ISO/TS 16281:2008, Rolling bearings - Methods for calculating the modified reference rating life for
    universally loaded bearings, 4.3 (balls, equations 19 to 30) and 5.3 (rollers, equations 47 to 66), of
    radial bearings of one row.
 """
@@ -92,7 +92,7 @@ def _lamina_ratings(bearing: RollerBearing, rating: float) -> tuple[float, float
 def _ring_ratings(
     rating: float, ratio: float, constants: tuple[float, float], slope: float
 ) -> tuple[float, float]:
-    """Return the parts of the `rating` of both rings, whose own ones have the `ratio` inner to outer, N."""
+    """Return the ratings of inner and outer ring, N, which together give `rating` and have the `ratio`."""
     inner = rating / constants[0] * (1.0 + ratio**slope) ** (1.0 / slope)
     outer = rating / constants[1] * (1.0 + ratio**-slope) ** (1.0 / slope)
     return inner, outer

@@ -50,8 +50,8 @@ class MeshTemperature(MeshEffect):
 def _mean_error(mesh: LoadedMesh, point: FloatArray) -> float:
     """Return the mean transmission error under the nominal force at a `point` of the table's axes, m."""
     table = mesh.mesh.table
+    # axes of `deflection`: misalignment, center distance, position, level; `mean` loses the last first
     mean: FloatArray = np.mean(np.asarray(table.deflection, dtype=float), axis=2)
-    # the axes of `mean` from the last to the first
     axes = (table.level, mesh.force), (table.center_distance_change, point[1]), (table.misalignment, point[0])
     for knots, value in axes:
         weights = [np.interp(value, knots, unit) for unit in np.eye(np.size(knots))]

@@ -34,8 +34,8 @@ def bores_of_walls(walls: Sequence[BoreWall]) -> Iterator[Bore]:
         while parts:
             low, high, area = parts.pop(0)
             while parts and parts[0][0] < high - _SAME:
-                _, end, more = parts.pop(0)
-                high, area = max(high, end), area + more
+                _, end, wall_area = parts.pop(0)
+                high, area = max(high, end), area + wall_area
             if area >= 2.0 * np.pi * first.radius * (high - low) * COVERED:
                 middle = first.point + 0.5 * (low + high) * first.axis
                 yield Bore(triple(middle), triple(first.axis), 2.0 * first.radius, high - low)
@@ -53,11 +53,11 @@ def _coaxial(walls: Sequence[BoreWall]) -> Iterator[list[BoreWall]]:
     yield from groups
 
 
-def _same_cylinder(one: BoreWall, other: BoreWall) -> bool:
-    arm = other.point - one.point
-    off = np.linalg.norm(arm - (arm @ one.axis) * one.axis)
-    parallel = np.linalg.norm(np.cross(one.axis, other.axis)) < _SAME
-    return bool(parallel and off < _SAME and abs(one.radius - other.radius) < _SAME)
+def _same_cylinder(wall: BoreWall, other: BoreWall) -> bool:
+    arm = other.point - wall.point
+    distance = np.linalg.norm(arm - (arm @ wall.axis) * wall.axis)
+    parallel = np.linalg.norm(np.cross(wall.axis, other.axis)) < _SAME
+    return bool(parallel and distance < _SAME and abs(wall.radius - other.radius) < _SAME)
 
 
 def _ends(wall: BoreWall, first: BoreWall) -> tuple[float, float, float]:

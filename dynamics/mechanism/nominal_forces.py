@@ -30,6 +30,7 @@ def nominal_forces(scene: Scene, kinematics: Kinematics, inertia: FloatArray, *,
     free = shafts_without_drive(scene, kinematics)
     force, _, rank, _ = np.linalg.lstsq(lever[free], torque[free], rcond=1e-12)
     suggestion = "Give every mesh its nominal_force."
+    # shafts in rotating frames are planetary sets, whose planets share the load
     if rank < lever.shape[1] and all(shaft.frame is None for shaft in scene.shafts):
         raise InputError("meshes", len(scene.meshes), "loaded in one way only by the torques", suggestion)
     force = force[: len(scene.meshes)]

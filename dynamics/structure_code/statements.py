@@ -180,6 +180,7 @@ class Statements(ArrayAccess):
 
     def _bind(self, name: str, value: Any) -> None:
         names, local_names = self.frame.names, self.frame.local_names
+        # in a branch or loop that is decided when it runs, a name that is read outside of it is a variable
         if local_names and name not in local_names[-1] and not isinstance(names.get(name), Variable):
             self._vary(name, value)
         known = names.get(name)

@@ -33,7 +33,8 @@ def flank_slope(
     step : ndarray
         Half the distance of the differences along the flank, m.
     """
-    toothing, (roll_1, roll_2) = (pair.pinion, pair.wheel)[gear], rolls_at(pair, *s)
+    toothing = (pair.pinion, pair.wheel)[gear]
+    roll_1, roll_2 = rolls_at(pair, *s)
     roll, sign = (roll_1, roll_2)[gear], toothing.sign
     half = step * toothing.base_radius / roll
     middle = sign * np.minimum(sign * roll, sign * toothing.tip_form_roll_length - half)

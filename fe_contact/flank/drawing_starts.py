@@ -112,14 +112,12 @@ class DrawingStarts:
         length, text = modification.get(f"{relief}_length", 0.0), relief.replace("_", " ")
         ways = [*([f"{relief}_length"] if length else []), *starts]
         if len(ways) > 1:
-            bound, remedy = (
-                Text.of("left out beside ", FieldName(ways[0])),
-                f"State once where the {text} starts.",
-            )
+            bound = Text.of("left out beside ", FieldName(ways[0]))
+            remedy = f"State once where the {text} starts."
             raise InputError(f"modification.{ways[1]}", starts[ways[1]], bound, remedy)
         if not ways and modification.get(relief, 0.0):
             names = tuple(part for field in by_field for part in (", ", FieldName(field)))
-            bound = Text.of("above 0, or left out beside one of ", *names[1:])
+            bound = Text.of("above 0, or left out beside one of ", *names[1:])  # without the first comma
             raise InputError(
                 f"modification.{relief}_length", length, bound, f"State where the {text} starts."
             )

@@ -174,6 +174,7 @@ class _AlignmentLaws:
             )
             largest = np.where(self._good, self._ste, self._no_load[:, None]).max(axis=1)
             alone = alone * (1.0 + self._softening(largest)[:, None])
+            # g + (g - d_0) + deflection of one pair alone; g largest deviation, d_0 the error without load
             bound = (2.0 * high - self._no_load)[:, None] + alone + TOUCH
             bound, ste = np.where(self._good, bound, 1.0)[rigid], np.where(self._good, self._ste, 0.0)[rigid]
             floor = np.where(self._good, (low - TOUCH)[:, None], -1.0)[rigid]
