@@ -21,7 +21,7 @@ from lineofaction.gearbox.schemas.scene import SceneInput
 
 
 def with_quantity(moving: Scene, scene: SceneInput, reduced: Mapping[str, ReducedHousing]) -> Scene:
-    """Return a scene with the quantity by whose level its effects are sized; as it is: all bearing forces."""
+    """Return a scene with the quantity whose level sizes its effects; without one: all bearing forces."""
     sounding = {name: body for name, body in reduced.items() if body.surface is not None}
     bearing = None if scene.complaint is None else scene.complaint.bearing
     if bearing is not None:

@@ -76,7 +76,10 @@ def _either(work: Callable[[], _Work[Q, T, F]]) -> Takes[Concatenate[CaseLike | 
 
 
 def _as(call: Callable[P, None], work: Callable[[], _Work[Q, T, F]]) -> Takes[P, Q, T, F]:
-    """Bind the arguments of a function: the subject by its name, and the file of the inputs."""
+    """Return the arguments of a study with a file of inputs, by the signature of an example function.
+
+    Its first parameter names the subject; the second is the file, optional if it has a default.
+    """
     subject, file = signature(call).parameters.values()
     name = subject.name.replace("_", " ")
     return Takes(name, work, from_file=True, bare=file.default is not Parameter.empty)
@@ -94,6 +97,7 @@ def _scene_perhaps_file(scene: SceneLike, study: StudyLike = ...) -> None: ...
 class Studies:
     """Every study: a function of the class, a process of a client that inherits from it."""
 
+    # positional: arguments and computation, title, name of the command on the page, description, example
     flank = StudyOf(
         _case(lambda: computations.FLANK),
         "Flank pressure",

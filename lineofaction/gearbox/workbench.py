@@ -254,7 +254,7 @@ def _source(subject: Any) -> Any:
 
 def _warn(findings: Iterable[Mapping[str, Any]]) -> None:
     """Warn of each finding once, at the line of the caller's code."""
-    frame, level = currentframe(), 0
+    frame, level = currentframe(), 0  # level: number of frames of this package
     while frame and str(frame.f_globals.get("__name__")).startswith("lineofaction."):
         frame, level = frame.f_back, level + 1
     for warning in findings:

@@ -41,14 +41,12 @@ def _broken_monotonicity() -> Sequence[Measured]:
         Measured(
             "load series that fall",
             float(np.any(np.diff(clean + noise, axis=1) <= 0.0, axis=1).sum()),
-            None,
-            10,
+            minimum=10,
         ),
         Measured(
             "refused as it is, naming position and force",
             float("position" in refusal and "force" in refusal),
-            None,
-            1,
+            minimum=1,
         ),
         Measured("least growth of STE after repair, m", float(np.diff(ste, axis=1).min()), minimum=1e-15),
         Measured("largest change over the noise", report.largest_change / (2.0 * _AMPLITUDE), maximum=1.0),
@@ -56,8 +54,8 @@ def _broken_monotonicity() -> Sequence[Measured]:
         Measured(
             "reported change over that of the receipt",
             report.largest_change / stored["largest_change"],
-            1.0,
-            1.0,
+            maximum=1.0,
+            minimum=1.0,
         ),
         Measured(
             "least change of force with approach, N",

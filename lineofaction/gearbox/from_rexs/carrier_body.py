@@ -34,8 +34,8 @@ class _Piece:
 def carrier_body(layout: Layout, rotor: int) -> dict[str, Any]:
     """Return the body of a carrier.
 
-    Its axis is that of the first shaft that is no pin. A piece off the axis adds m r^2 about it and, as one
-    of several around it, m r^2 / 2 across it.
+    Its axis is that of the first shaft that is no pin. A piece off the axis adds m r^2 about it, and m r^2 /
+    2 across it, the mean over pieces all around.
     """
     pins = {pin.id for planets in layout.rotors.sets for pin in planets.pins}
     shafts = [member for member in layout.rotors.members(rotor) if member in layout.shafts]
@@ -56,7 +56,7 @@ def carrier_body(layout: Layout, rotor: int) -> dict[str, Any]:
 
 
 def _disc(layout: Layout, axis: PlacedShaft, rotor: int) -> dict[str, Any]:
-    """Return a steel disc of the circle of the planets' axes, where no part of the carrier has a size."""
+    """Return a steel disc as large as the circle of the planets' axes, where no part has a size."""
     planets = next(s.planets for s in layout.rotors.sets if layout.rotor(s.carrier[0].id) == rotor)
     placed = [layout.shafts[planet.id] for planet in planets if planet.id in layout.shafts]
     x, y, z = (float(value) for value in axis.origin)

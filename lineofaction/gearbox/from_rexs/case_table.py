@@ -83,7 +83,8 @@ def _refuse_strangers(pair: ToothedPair) -> None:
     Hands must be opposite, but the sign of a ring gear's helix angle depends on the writer's sign of its
     teeth: its size must fit.
     """
-    gears = pinion, wheel = pair.gears
+    gears = pair.gears
+    pinion, wheel = gears
     first, second = pinion.helix_angle, wheel.helix_angle
     modules = [f"module {gear.normal_module / MM:.9g} mm" for gear in gears]
     angles = [f"pressure angle {gear.pressure_angle / DEGREE:.9g} deg" for gear in gears]
@@ -108,7 +109,7 @@ def _strangers(
 ) -> BadInput:
     """Return the error of gears that do not mate: both values, and the mate's value as an assumption."""
     parts = [gear.part for gear in pair.gears]
-    named = [f"{part.id} {part.name}: {fact}" for part, fact in zip(parts, labels, strict=True)]
+    named = [f"{part.id} {part.name}: {label}" for part, label in zip(parts, labels, strict=True)]
     values = [None if (entry := part.attribute(item)) is None else entry.value for part in parts]
     mends = [
         f"--assume {part.id}.{item}={factor * mate:.9g}"
@@ -167,7 +168,7 @@ def _alteration(pair: ToothedPair, shifts: Mapping[int, float]) -> float:
 
 
 def _torques(pair: ToothedPair) -> list[float]:
-    """Return the torques on the pinion in N m, increasing; of a driving ring gear z_1 / z_2 of its own."""
+    """Return the torques on the pinion in N m, increasing; those on a driving ring gear times z_1 / z_2."""
     pinion, wheel = pair.gears
     ratio = pinion.teeth / wheel.teeth if pair.meshing.wheel_drives else 1.0
     torques = sorted({rounded(abs(torque) * ratio) for torque in pair.torques if torque})

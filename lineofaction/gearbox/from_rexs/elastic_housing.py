@@ -57,7 +57,7 @@ def elastic_housings(layout: Layout, seats: dict[int, str]) -> Iterator[Table]:
 def loosely_housed(layout: Layout) -> set[int]:
     """Return the components in an elastic housing that is not held in all directions: its matrix is singular.
 
-    Only linear bearings sit in such a housing.
+    The scene has linear bearings in such a housing: force laws need a regular matrix.
     """
     loose: set[int] = set()
     for group in _groups(layout):
@@ -104,6 +104,7 @@ def _stiffness(group: Part, points: int) -> FloatArray | None:
     except (TypeError, ValueError):
         group.say(_MATRIX, "refused", "not all of its entries are numbers")
         return None
+    # N/mm times 1e3 is N/m, N stays, N mm times 1e-3 is N m: roots, as each entry has two factors
     scale = np.tile([1e3**0.5] * 3 + [1e-3**0.5] * 3, points)
     matrix *= scale[:, None] * scale
     largest = float(np.max(np.abs(matrix)))

@@ -70,7 +70,7 @@ class PlainFlank:
         return math.sqrt(radius**2 - base**2)
 
     def reference_roll(self, part: Part, diameter: str, length: str, end: float) -> float:
-        """Return the roll length where an amount is stated, by a diameter or as such; else an end."""
+        """Return the roll length where an amount is stated, by diameter or roll length; else `end`."""
         meaning = "where the amount is stated"
         roll = self.roll_length(part, diameter, meaning)
         return (part.number(length, f"{meaning}: a roll length") if roll is None else roll) or end

@@ -12,7 +12,7 @@ from lineofaction.gearbox.units import GPA, MM
 RIM = 3.5
 """Normal modules: thinner rims weaken the tooth root, thicker have no influence (ISO 6336-3, clause 9)."""
 
-_THINNEST = 1.0  # normal modules between bore and root circle; less is one piece with the shaft
+_THINNEST = 1.0  # normal modules between bore and root circle; a thinner gear is one piece with its shaft
 
 _INTEGRAL = 0.5  # bore over root diameter of a gear without a stated bore
 

@@ -27,7 +27,7 @@ def clearing_tip(pair: ToothedPair, depths: Sequence[ToothDepth], shifts: Mappin
     minimum = 2.0 * math.hypot(base, _form_roll_length(pair, depths[0], shifts) + tangent)
     if depth.tip_diameter > minimum:
         return depth
-    tip = math.ceil(minimum / _STEP + 1e-3) * _STEP
+    tip = math.ceil(minimum / _STEP + 1e-3) * _STEP  # above the minimum by at least a thousandth of a step
     text = f"{tip / MM:.7g} mm, above {minimum / MM:.7g} mm = 2 sqrt(r_b2^2 + (l_F1 + a sin alpha_wt)^2),"
     text += f" where the tip meets the form circle of {pair.pinion.part.name}; d - 2 m_n (x + h_aP) would be"
     ring.part.say("tip_diameter", "defaulted", f"{text} {depth.tip_diameter / MM:.7g} mm")

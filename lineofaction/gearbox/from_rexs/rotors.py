@@ -39,40 +39,42 @@ class Rotors:
 
 def rotors_of(unit: GearUnit, sets: Sequence[PlanetarySet]) -> Rotors:
     """Return the rotors: the parts of a carrier are one rotor, with all parts rigidly coupled to them."""
-    of = {part.id: part.id for part in unit.of_type("shaft", "side_plate")}
+    rotor_of = {part.id: part.id for part in unit.of_type("shaft", "side_plate")}
     joined = [
         entry
         for entry in unit.couplings
-        if entry.on_ground is None and {entry.inner.id, entry.outer.id} <= of.keys()
+        if entry.on_ground is None and {entry.inner.id, entry.outer.id} <= rotor_of.keys()
     ]
     for planets in sets:
-        _merge(of, [part.id for part in planets.carrier])
-    carriers = {of[planets.carrier[0].id] for planets in sets}
+        _merge(rotor_of, [part.id for part in planets.carrier])
+    carriers = {rotor_of[planets.carrier[0].id] for planets in sets}
     changed = True
     while changed:
         changed = False
         for entry in joined:
-            ends = of[entry.inner.id], of[entry.outer.id]
+            ends = rotor_of[entry.inner.id], rotor_of[entry.outer.id]
             if ends[0] != ends[1] and carriers & set(ends) and _rotation(entry) >= _RIGID_ROTATION:
-                carriers.add(_merge(of, list(ends)))
+                carriers.add(_merge(rotor_of, list(ends)))
                 changed = True
     grounded = [entry for entry in unit.couplings if entry.on_ground is not None]
     grounded_rotors = frozenset(
-        of[entry.rotor_side.id] for entry in grounded if entry.rotor_side.id in of and _rotation(entry)
+        rotor_of[entry.rotor_side.id]
+        for entry in grounded
+        if entry.rotor_side.id in rotor_of and _rotation(entry)
     )
-    between = tuple(entry for entry in joined if of[entry.inner.id] != of[entry.outer.id])
+    between = tuple(entry for entry in joined if rotor_of[entry.inner.id] != rotor_of[entry.outer.id])
     for entry in joined:
         if entry not in between:
             entry.part.say("", "derived", "rigid: its sides are parts of one planet carrier")
-    return Rotors(of, grounded_rotors, between, tuple(sets))
+    return Rotors(rotor_of, grounded_rotors, between, tuple(sets))
 
 
-def _merge(of: dict[int, int], parts: list[int]) -> int:
-    rotors = {of[part] for part in parts}
+def _merge(rotor_of: dict[int, int], parts: list[int]) -> int:
+    rotors = {rotor_of[part] for part in parts}
     lowest = min(rotors)
-    for part, rotor in of.items():
+    for part, rotor in rotor_of.items():
         if rotor in rotors:
-            of[part] = lowest
+            rotor_of[part] = lowest
     return lowest
 
 

@@ -76,12 +76,12 @@ def _say_angles(gears: Mapping[int, Mapping[str, Any]], parts: Mapping[int, Part
 def _gear(layout: Layout, shafts: SceneShafts, gear: Part, shaft: Part, names: Names) -> dict[str, Any]:
     placed = layout.shafts[shaft.id]
     u = layout.u_on(placed, gear)
-    on = shafts.stubs.get(gear.id) or shafts.by_rotor[layout.rotor(shaft.id)]
+    scene_shaft = shafts.stubs.get(gear.id) or shafts.by_rotor[layout.rotor(shaft.id)]
     z = float(placed.start[2]) + placed.sense * u
     if gear.id not in shafts.stubs:
-        gear.say("", "taken", f"gear on shaft {on.name}")
+        gear.say("", "taken", f"gear on shaft {scene_shaft.name}")
     body = _body(gear, placed.outer_diameter(u), is_shaft_massless=not placed.sections)
-    return on.seat(names.of(gear), z) | body
+    return scene_shaft.seat(names.of(gear), z) | body
 
 
 def _body(gear: Part, shaft_diameter: float, *, is_shaft_massless: bool) -> dict[str, Any]:
@@ -115,16 +115,16 @@ def scene_discs(layout: Layout, shafts: SceneShafts) -> list[dict[str, Any]]:
     discs, names = [], Names()
     for part in layout.unit.of_type("additional_mass"):
         owner = part.shaft
-        on = None if owner is None else shafts.by_rotor.get(layout.rotor(owner.id))
-        if owner is None or on is None or owner.id not in layout.shafts:
+        scene_shaft = None if owner is None else shafts.by_rotor.get(layout.rotor(owner.id))
+        if owner is None or scene_shaft is None or owner.id not in layout.shafts:
             part.say("", "refused", "on no shaft of the scene")
             continue
-        table = _disc(part, on, layout.z_on(layout.shafts[owner.id], part), names)
+        table = _disc(part, scene_shaft, layout.z_on(layout.shafts[owner.id], part), names)
         discs += [] if table is None else [table]
     return discs
 
 
-def _disc(part: Part, on: SceneShaft, z: float, names: Names) -> dict[str, Any] | None:
+def _disc(part: Part, shaft: SceneShaft, z: float, names: Names) -> dict[str, Any] | None:
     mass = part.number("mass_of_component", "mass of a disc, kg")
     if not mass or mass < 0.0:
         part.say("", "refused", "no mass is stated")
@@ -134,5 +134,5 @@ def _disc(part: Part, on: SceneShaft, z: float, names: Names) -> dict[str, Any] 
     if moments[1] != moments[2]:
         part.say("moment_of_inertia_w_axis", "derived", "mean of v and w: a disc is a body of revolution")
     inertia = Inertia(mass, moments[0], 0.5 * (moments[1] + moments[2]))
-    part.say("", "taken", f"disc on shaft {on.name}")
-    return on.seat(names.of(part), z) | {"inertia": inertia_table(inertia)}
+    part.say("", "taken", f"disc on shaft {shaft.name}")
+    return shaft.seat(names.of(part), z) | {"inertia": inertia_table(inertia)}

@@ -23,7 +23,7 @@ Bearings = Mapping[str, FloatArray]
 
 def placements(bores: Sequence[Bore], bearings: Bearings) -> Iterator[Placement]:
     """Yield the placements in which two bores are about two shafts."""
-    shafts = _once(np.array([at[:2] for at in bearings.values()]))
+    shafts = _once(np.array([position[:2] for position in bearings.values()]))
     distance = np.linalg.norm(shafts[:, None] - shafts[None], axis=-1)
     if not distance.any():
         return
@@ -59,7 +59,7 @@ def _along(bore: Bore, direction: FloatArray) -> bool:
 
 def _frame(z: FloatArray) -> FloatArray:
     """Return a right-handed frame with this z axis, by columns."""
-    x = np.cross(z, np.eye(3)[np.abs(z).argmin()])
+    x = np.cross(z, np.eye(3)[np.abs(z).argmin()])  # with the axis that is farthest from z
     x /= np.linalg.norm(x)
     return np.stack([x, np.cross(z, x), z], axis=1)
 
@@ -67,7 +67,7 @@ def _frame(z: FloatArray) -> FloatArray:
 def _turned(
     frame: FloatArray, lines: FloatArray, pair: FloatArray
 ) -> Iterator[tuple[FloatArray, FloatArray]]:
-    """Yield axes and origin across the shafts, for lines of bores on a pair of shafts."""
+    """Yield the axes, and the origin across them, that put two lines of bores on the pair of shafts."""
     span = pair[1] - pair[0]
     for first, second in permutations(lines, 2):
         arm = second - first
@@ -81,8 +81,9 @@ def _turned(
 
 def _offsets(middles: FloatArray, across: FloatArray, bearings: Bearings) -> list[float]:
     """Return the offsets along z of turned bores that put a bearing in the middle of one, m."""
-    at = np.array(list(bearings.values()))
-    off = at[:, None, :2] - across - middles[None, :, :2]
-    offsets = (at[:, None, 2] - middles[None, :, 2])[np.hypot(off[..., 0], off[..., 1]) < NEAR]
+    positions = np.array(list(bearings.values()))
+    distance = positions[:, None, :2] - across - middles[None, :, :2]
+    aligned = np.hypot(distance[..., 0], distance[..., 1]) < NEAR
+    offsets = (positions[:, None, 2] - middles[None, :, 2])[aligned]
     _, first = np.unique(np.round(offsets, 6), return_index=True)
     return [float(offset) for offset in offsets[first]]

@@ -58,7 +58,7 @@ STATEMENTS = {
 
 @dataclass(frozen=True)
 class TraceRange:
-    """Measured and evaluated range of a trace: diameters or heights, mm."""
+    """Measured range, `begin` to `end`, and evaluated range, `first` to `last`: diameters or heights, mm."""
 
     begin: float
     first: float
@@ -150,8 +150,9 @@ class Heading:
             if not all(symbol in self.dimensions for symbol in symbols):
                 continue
             for side, flank in enumerate(flanks):
-                begin, first, last, end = ends = [self.dimensions[symbol][side] for symbol in symbols]
-                if not all(one <= two for one, two in pairwise(ends)) or first >= last:
+                ends = [self.dimensions[symbol][side] for symbol in symbols]
+                begin, first, last, end = ends
+                if not all(low <= high for low, high in pairwise(ends)) or first >= last:
                     line = max(self.dimension_lines[symbol] for symbol in symbols)
                     raise ValueError(f"a file with {' <= '.join(symbols)}; up to line {line} they are {ends}")
                 reliefs = self.dimensions.get(relief, (-math.inf, -math.inf))

@@ -1,6 +1,6 @@
-"""A curve file judges its reading: slopes, forms and pitches are recomputed and compared to printed ones.
+"""Check of the reading of a curve file: slopes, forms and pitches are recomputed, compared to printed ones.
 
-Without printed values the tips of both flanks are the judges: material is missing there, never in excess.
+Without printed values the tips of both flanks decide: material is missing there, never in excess.
 """
 
 from __future__ import annotations
@@ -52,6 +52,7 @@ def judged(file: MachineFile, gear: Toothing, printed: Iterable[Printed] = ()) -
     Raises `ValueError`: nothing is printed of its profiles, and the tips show that their sign is wrong.
     """
     computed = dict(results(file, gear))
+    # value[1:4] is the key of a result: figure, flank, tooth
     pairs = [(value, computed[value[1:4]]) for value in (*file.printed, *printed) if value[1:4] in computed]
     differences = [
         _difference(value, result) for value, result in pairs if abs(value.value - result) > LIMIT_UM + 1e-9
@@ -103,7 +104,7 @@ def results(file: MachineFile, gear: Toothing) -> Iterator[tuple[Key, float]]:
 
 
 def _over_an_eighth(cumulative: FloatArray) -> float:
-    """Return the largest sum of pitches over an eighth of the teeth, rounded half up; z (n,) in um."""
+    """Return the largest sum of pitches over an eighth of the teeth, rounded half up, um."""
     span = int(cumulative.size / 8.0 + 0.5)
     return float(np.abs(np.roll(cumulative, -span) - cumulative).max())
 
@@ -157,7 +158,7 @@ def _fall(trace: Trace, conventions: Conventions, gear: Toothing) -> float:
     inside = measured & (coordinate >= first) & (coordinate <= last)
     if inside.sum() < _TIP_POINTS:
         return 0.0
-    # of a tip relief only the part before it is straight
+    # the evaluated range ends before a tip relief, so that a line fits it
     line = np.polyfit(coordinate[inside], trace.values[inside], 1)
     tip = np.flatnonzero(measured)[-_TIP_POINTS:]
     rise = np.mean(trace.values[tip] - np.polyval(line, coordinate[tip]))

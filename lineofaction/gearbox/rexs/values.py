@@ -46,7 +46,7 @@ def integer_of(text: str, location: str) -> int:
 
 def _float_of(text: str, location: str) -> float:
     try:
-        number = float(text) if "_" not in text else math.nan
+        number = float(text) if "_" not in text else math.nan  # Python alone reads 1_000
     except ValueError:
         number = math.nan
     if not math.isfinite(number):
@@ -87,7 +87,7 @@ def kind_of(attribute: str, texts: Sequence[str]) -> str:
 
     `kinds.toml` lists the attributes of REXS 1.0 to 2.0.0 whose kind their text does not show. Of
     others, and where the text is no value of the listed kind, a number is a floating point, true and false
-    are boolean, and any other text is a string. No text at all is a number not given.
+    are boolean, and any other text is a string. Without a text the kind is that of a number, not given.
     """
     listed = owners("kinds").get(attribute)
     if listed and _all_of(listed, texts):

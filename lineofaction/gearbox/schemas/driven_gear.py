@@ -49,7 +49,7 @@ class WheelInput(ToothingInput):
     @model_validator(mode="before")
     @classmethod
     def _ring_defaults(cls, data: Any) -> Any:
-        """Fill in a ring gear's tool, so that the echo says so; its tip rounding makes the root."""
+        """Fill in the defaults of a ring gear, so that the echo has them."""
         if isinstance(data, dict) and data.get("internal") is True:
             return _DEFAULTS | {name: value for name, value in data.items() if value is not None}
         return data

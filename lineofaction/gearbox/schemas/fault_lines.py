@@ -33,7 +33,7 @@ def line_of_field(text: str, field: str) -> int | None:
     while field:
         if field in lines:
             return lines[field]
-        field = re.sub(r"(\[\d+\]|\.?[^.\[\]]+)$", "", field)
+        field = re.sub(r"(\[\d+\]|\.?[^.\[\]]+)$", "", field)  # the table around it
     return None
 
 

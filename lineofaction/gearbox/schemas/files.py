@@ -1,4 +1,4 @@
-"""Files that a scene's housings name, and all files that a table names: read and written out in it."""
+"""Files that the housings of a scene name: their content replaces the names; so for all files of a table."""
 
 from __future__ import annotations
 
@@ -129,6 +129,7 @@ def side_files(scene: Table) -> tuple[Table, list[FileContentInput]]:
         names = {}
         for field, stem, ending, content in _contents(housing):
             number, name = 1, f"{stem}{ending}"
+            # equal files share a name, others get a number
             while files.get(name, content).unpacked() != content.unpacked():
                 number += 1
                 name = f"{stem}_{number}{ending}"

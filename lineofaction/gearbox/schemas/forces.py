@@ -93,7 +93,7 @@ class ForceInput(BoundaryModel):
 
     @model_validator(mode="after")
     def _acts(self) -> Self:
-        """State what acts; 0 where load cases alone do."""
+        """Refuse a force of which neither force nor moment is given."""
         if not self.model_fields_set.intersection(ACTING):
             remedy = "If it acts under load cases alone, give 0."
             refuse("force_n", None, "given, or moment_n_m", remedy)
@@ -101,7 +101,7 @@ class ForceInput(BoundaryModel):
 
     @model_validator(mode="after")
     def _one_course(self) -> Self:
-        """One course, its lists of one length."""
+        """Refuse more than one course, and lists of different lengths."""
         courses = [name for name in BY if getattr(self, name) is not None]
         if len(courses) > 1:
             refuse(courses[1], courses, f"left out beside {courses[0]}", "Give one course.")

@@ -103,7 +103,7 @@ class ToothingInput(_ToothingFigures):
 
     @model_validator(mode="after")
     def _few_nodes(self) -> Self:
-        """Refuse surfaces of teeth that take long to look through, before any is."""
+        """Refuse surfaces of teeth with so many nodes that their checks take long."""
         grids = [flank.flank_grid for flank in getattr(self, "tooth_flanks", ()) if flank.flank_grid]
         nodes = sum(len(grid.roll_length_mm) * len(grid.face_position_mm) for grid in grids)
         if nodes > MAX_NODES:

@@ -73,7 +73,7 @@ class QueryInput(BoundaryModel):
     def _same_length(self) -> Self:
         """Refuse lists of different lengths, except lists of a single value."""
         points = len(self.position)
-        for name in tuple(LIMITS)[1:]:
+        for name in tuple(LIMITS)[1:]:  # all but the position
             values = getattr(self, name)
             count = len(values) if isinstance(values, tuple) else 1
             if points == 1:

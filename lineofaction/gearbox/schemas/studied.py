@@ -33,9 +33,9 @@ start."""
 
 
 class OverSpeeds(BoundaryModel):
-    """Inputs of a study over speeds, which are an axis; `at_rest`: whether it has an answer without any.
+    """Inputs of a study over speeds; `at_rest`: whether it also has an answer without speeds.
 
-    `usual_speeds` is how many there are if none is named: peaks of modes damped by 1 % lie between fewer.
+    `usual_speeds` is the number of speeds by default: with fewer, peaks of modes damped by 1 % are missed.
     """
 
     at_rest: ClassVar[bool] = False

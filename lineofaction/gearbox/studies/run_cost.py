@@ -54,7 +54,7 @@ def run_cost(scene: SceneInput, runs: int = 1, receipt: Receipt | None = None) -
     try:
         probed = _probed(SceneText(scene.model_dump_json(), scene))
     except (InputError, SolveError):
-        return None  # it will be said by the run, on its own tables
+        return None  # the run itself will raise, on the computed tables
     with_errors = full and bool(before.meshes)
     seconds = probed.seconds(runs, with_errors=with_errors)
     return StudyCost((Work("run" if runs == 1 else "runs", seconds / runs, runs),))
@@ -65,5 +65,5 @@ def _probed(written: SceneText) -> ProbedRun:
     from dynamics.simulation.run_cost import probe_run  # noqa: PLC0415 (start-up time)
 
     before = scene_in_motion(written)
-    assert before is not None  # its caller has asked
+    assert before is not None  # checked by the caller
     return probe_run(before)

@@ -1,4 +1,4 @@
-"""Results of a bearing: forces on both sides, and how they move, each and against each other."""
+"""Results of a bearing: forces on both sides, displacement of each, and deflection between them."""
 
 from __future__ import annotations
 
@@ -35,9 +35,9 @@ def bearing_results(part: BearingPart, load: BearingLoad) -> tuple[Attribute, ..
     The load is in x, y, z of the scene.
     """
     on_housing, moment = _turned(part, load.force)
-    across, tilt = _turned(part, load.elastic + load.clearance)
+    deflection, tilt = _turned(part, load.elastic + load.clearance)
     seat, seat_tilt = _turned(part, load.seat)
-    shaft, shaft_tilt = across + seat, tilt + seat_tilt
+    shaft, shaft_tilt = deflection + seat, tilt + seat_tilt
     shaft_side, housing_side = ("inner", "outer") if part.shaft_inside else ("outer", "inner")
     inward = 1.0 if part.shaft_inside else -1.0
     return (
@@ -45,7 +45,7 @@ def bearing_results(part: BearingPart, load: BearingLoad) -> tuple[Attribute, ..
         *_loads(housing_side, on_housing, moment),
         *(
             calculated(name, inward * value / UM, "mum")
-            for name, value in zip(_DEFLECTIONS, across, strict=True)
+            for name, value in zip(_DEFLECTIONS, deflection, strict=True)
         ),
         *_along("angular_deflection_in", inward * tilt, "rad", "vw"),
         *_displacements(shaft_side, shaft, shaft_tilt),

@@ -43,7 +43,7 @@ def _plastic_on_steel() -> Sequence[Measured]:
     pairs = (GearPair(steel, soft, 80e-3), GearPair(soft, steel, 80e-3), GearPair(mean, mean, 80e-3))
     driven, driving, equal = (posed(pair, NOMINAL_TORQUE * np.array([1e-3, 0.02])) for pair in pairs)
     problem, solution = driven.solve(position)
-    turned = driving.ste((1.0 - position) % 1.0)
+    turned = driving.ste((1.0 - position) % 1.0)  # equal teeth: the pair seen from its other gear
     halves = equal.ste(position)
     return (
         *soundness(problem, solution),
@@ -119,5 +119,5 @@ def _on_rim(modules: float) -> GearPair:
 
 
 def _mean(case: Posed, position: np.ndarray[tuple[int], np.dtype[np.float64]]) -> float:
-    """Mean STE at the highest load, m."""
+    """Return the mean STE at the highest load, m."""
     return float(case.ste(position)[:, -1].mean())

@@ -48,7 +48,7 @@ def _five_per_cent() -> Sequence[Measured]:
     problem, solution = case.solve(position)
     mirrored_problem, mirrored = other.solve(position)
     slices = case.plan.discretization.slices
-    wedge = 0.5 * _MISALIGNMENT * (1.0 - 1.0 / (slices * POINTS))
+    wedge = 0.5 * _MISALIGNMENT * (1.0 - 1.0 / (slices * POINTS))  # at the outermost point of a slice
     candidates = problem.candidates
     face = candidates.face_position
     plain = np.where(candidates.touch.lag == 1.0, candidates.gap, np.inf).min(axis=1)

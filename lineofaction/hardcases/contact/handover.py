@@ -28,15 +28,20 @@ _COUNTED = 2000
 
 _TIP_CLEARANCE = 0.25
 
+_NOMINAL_RADIUS = 0.0376
+"""Base radius of the nominal gear, m."""
+
 
 def _handover_at_ratio(ratio: float) -> Sequence[Measured]:
     """Choose the addendum for the contact ratio, load the pair, and follow it past the end of the pitch."""
-    low, high = (0.587, 1.0) if ratio < 1.5 else (1.0, 1.75)
+    low, high = (0.587, 1.0) if ratio < 1.5 else (1.0, 1.75)  # addenda in modules around the root
     addendum = brentq(
         lambda height: _pair(height, ratio).transverse_contact_ratio - ratio, low, high, xtol=1e-13
     )
     pair = _pair(addendum, ratio)
-    case = posed(pair, NOMINAL_TORQUE * pair.pinion.base_radius / 0.0376 * np.array([1e-3, 1.0]))
+    # the tooth force of the nominal pair
+    torque = NOMINAL_TORQUE * pair.pinion.base_radius / _NOMINAL_RADIUS
+    case = posed(pair, torque * np.array([1e-3, 1.0]))
     position = even_positions(240)
     problem, solution = case.solve(position)
     ends = case.ste(np.array([0.0, 1.0]))

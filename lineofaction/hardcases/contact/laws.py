@@ -46,7 +46,7 @@ def _disagreement(problem: ContactProblem, solution: ContactSolution, position: 
 
 
 def _plain(problem: ContactProblem, position: int, force: FloatArray) -> Problem:
-    """Write one position as the second solver takes it; candidates that are none are left out.
+    """Return one position as a problem of the second solver, without entries that are no candidates there.
 
     Bodies that tilt yield as they do under the `force` that is to be confirmed.
     """
@@ -55,7 +55,8 @@ def _plain(problem: ContactProblem, position: int, force: FloatArray) -> Problem
     state = pressed_state(point, force[candidates])
     move(point, state)
     fill_yielding(point, state)
-    blend = np.array([motions(point, one) for one in np.eye(len(point.bodies))]).T
+    # (contacts, curve heights): the matrix of the linear map `motions`
+    blend = np.array([motions(point, unit) for unit in np.eye(len(point.bodies))]).T
     real = np.isin(np.arange(c.pair.size), candidates)
     motion = c.motion_arm[position, real]
     row = position % len(problem.compliance)

@@ -52,7 +52,7 @@ def _seven_decades() -> Sequence[Measured]:
         Measured(
             "mean STE at nominal load, against a table of that load alone",
             mean_off(at_nominal, nominal),
-            5e-3,
+            maximum=5e-3,
         ),
         Measured("peak-to-peak likewise", range_off(at_nominal, nominal), maximum=2e-2),
         Measured("points whose contact outgrew its patch", float(solution.beyond.sum())),
@@ -70,7 +70,7 @@ def _zero_load() -> Sequence[Measured]:
     pair = nominal_pair(modification=relief)
     case = posed(pair, NOMINAL_TORQUE * np.geomspace(1e-15, 1.0, 6))
     problem, solution = case.solve(even_positions(48))
-    left = (solution.deflection[:, 0] - solution.no_load) / solution.deflection[:, -1]
+    rest = (solution.deflection[:, 0] - solution.no_load) / solution.deflection[:, -1]
     table = analyze(pair, torques=[NOMINAL_TORQUE], level="draft", positions=48, receipt="minimal")
     at_rest = table.ste(table.position, 0.0)
     lift_off = table.no_load_transmission_error[:, 0, 0]
@@ -81,7 +81,7 @@ def _zero_load() -> Sequence[Measured]:
         refused = error.field
     return (
         *soundness(problem, solution),
-        Measured("STE left at 1e-15 of the load, over its nominal value", float(left.max()), 1e-12, 0.0),
+        Measured("STE left at 1e-15 of the load, over its nominal value", float(rest.max()), 1e-12, 0.0),
         Measured("table at zero force against the rigid gap, m", float(np.ptp(at_rest - lift_off)), 1e-16),
         Measured("force at lift-off, N", float(table.force_at(table.position, lift_off).force.max()), 0.0),
         Measured(

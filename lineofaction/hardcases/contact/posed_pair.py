@@ -92,6 +92,7 @@ def posed(
     checked = check_request(pair, axes, AnalysisOptions(level=level, model=model, effects=effects or {}))
     request = checked.request
     plan = checked.plan()
+    # without the problems of the other pair, which a contact keeps
     known = None if bodies is None else replace(bodies, pair=pair, plan=plan, _problems={})
     contact = known or pair_contact(pair, plan, None)
     (point,) = operating_points(request.scene, request.choices, contact).places

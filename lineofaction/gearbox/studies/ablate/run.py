@@ -35,9 +35,9 @@ class _AblateStudy(
     file = record_file(("ablation of a case", Ablation), ("ablation of a scene", SceneAblation))
 
     def check(self, subject: CheckedCase | SceneInput, inputs: Inputs) -> None:
-        """Refuse a case that cannot be, and an effect that there is not."""
+        """Refuse a case without a pair that can be computed, and an unknown effect."""
         if isinstance(subject, CheckedCase):
-            _ = subject.request(_table, inputs)
+            _ = subject.request(_table, inputs)  # for its refusals
         _requested(inputs.only, of_scene=not isinstance(subject, CheckedCase))
 
     def normalized(self, subject: CheckedCase | SceneInput, inputs: Inputs) -> Json:

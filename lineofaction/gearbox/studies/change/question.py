@@ -51,7 +51,7 @@ def check_receiver(scene: SceneInput, receiver: HeardInput) -> None:
 
 
 def check_driving(scene: SceneInput, load_cases: Sequence[LoadCaseInput]) -> None:
-    """Refuse load cases that cannot be, and loads on other than the driving flanks."""
+    """Refuse load cases that do not fit the scene, and loads on the coast flanks."""
     for index, case in enumerate(check_cases(scene, load_cases)):
         if case.direction != DRIVE:
             bound = f'"{DRIVE}": the flanks that are heard are the driving ones'

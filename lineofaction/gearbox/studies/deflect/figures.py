@@ -32,6 +32,9 @@ zero. Moments are compared times 1/m. Displacements are compared as forces of al
 DIGITS = 3
 """Number of decimals of a misalignment in um."""
 
+BALL_EXPONENT = 3.0
+"""Exponent of the equivalent load of ball bearings (ISO 281)."""
+
 
 def _loads_by_case(cases: Sequence[CaseDeflection]) -> list[list[BearingLoad]]:
     """Return the loads of all bearings in every case, forces and displacements within rounding zero."""
@@ -75,7 +78,7 @@ def _over_cases(loads: Sequence[BearingLoad], weights: Sequence[float]) -> Defle
 
     def equivalent(sizes: Sequence[float]) -> dict[str, float]:
         return {
-            "ball": equivalent_load(sizes, speed, weights, 3.0),
+            "ball": equivalent_load(sizes, speed, weights, BALL_EXPONENT),
             "roller": equivalent_load(sizes, speed, weights),
         }
 
@@ -162,13 +165,13 @@ def optimization_inputs(result: GearboxDeflection, mesh: str) -> Json:
     """Return the loads of a mesh over the spectrum: torques, their misalignments, their shares as weights.
 
     Load cases of equal torque and misalignment, to the digits of the file, are one load; those of equal
-    torque at different misalignments are several. Load cases on the coast side load the other flanks and are
-    left aside, unless all are. A plane model has no misalignment: there the inputs have none.
+    torque at different misalignments are several. Load cases on the coast side load the other flanks: they
+    count only if no case drives. A plane model has no misalignment: there the inputs have none.
     """
     in_plane = all(np.isnan(flanks.face_load_factor) for flanks in result.flanks if flanks.mesh == mesh)
     shares: dict[tuple[float, float], float] = {}
     for torque, share, misalignment in _points(result, mesh):
-        load = _digits(torque), 0.0 if in_plane else round(misalignment / UM, DIGITS) + 0.0
+        load = _digits(torque), 0.0 if in_plane else round(misalignment / UM, DIGITS) + 0.0  # -0.0 is 0.0
         shares[load] = shares.get(load, 0.0) + share
     torques, misalignments = zip(*sorted(shares), strict=True)
     weights = [_digits(shares[load]) for load in sorted(shares)]
@@ -180,14 +183,15 @@ def optimization_inputs(result: GearboxDeflection, mesh: str) -> Json:
 
 
 def _points(result: GearboxDeflection, mesh: str) -> list[tuple[float, float, float]]:
-    """Return torque on the pinion, share and misalignment of the load cases."""
+    """Return torque on the pinion, share and misalignment of driving load cases, else of coast ones."""
     torque = {flanks.case: flanks.torque for flanks in result.flanks if flanks.mesh == mesh}
-    points = []
+    driving: list[tuple[float, float, float]] = []
+    coast: list[tuple[float, float, float]] = []
     for case in result.deflection.cases:
         alignment = next(part for part in case.meshes if part.name == mesh)
-        points.append((case.direction == COAST, torque[case.name], case.share, alignment.misalignment))
-    driving = [point[1:] for point in points if not point[0]]
-    return driving or [point[1:] for point in points]
+        points = coast if case.direction == COAST else driving
+        points.append((torque[case.name], case.share, alignment.misalignment))
+    return driving or coast
 
 
 def write_spectrum(result: GearboxDeflection, _scene: Any, target: Path) -> None:

@@ -1,4 +1,4 @@
-"""Facts in the file of a sound, in addition to its arrays, as plain JSON."""
+"""Metadata in the file of a sound, in addition to its arrays, as plain JSON."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from lineofaction.gearbox.studies.noise import (
 from lineofaction.gearbox.studies.noise.uncertainty import SoundUncertainty
 
 RESPONSE = ("leading_shaft", "equilibrium", "effect_ledger", "forces", "lines_left_out")
-"""Facts that a sound copies from its response or run."""
+"""Metadata that a sound copies from its response or run."""
 
 
 def sound_metadata(sound: SceneSound, response: Json, scene: Json) -> Json:
-    """Return the facts of a sound: copies from its response and its scene, regions, models."""
+    """Return the metadata of a sound: copies from its response and its scene, regions, models."""
     return {
         **sound.power.metadata,
         "regions": [[_region(region) for region in regions] for regions in sound.regions],
@@ -38,7 +38,7 @@ def sound_metadata(sound: SceneSound, response: Json, scene: Json) -> Json:
 
 
 def uncertainty_metadata(known: SoundUncertainty) -> Json:
-    """Return the bands and the sensitivities of a sound; None and nothing where they were not requested."""
+    """Return bands and sensitivities of a sound; not requested, bands are None, sensitivities empty."""
     band = known.band and figures_of(
         SoundBandFigures,
         known.band,

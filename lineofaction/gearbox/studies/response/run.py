@@ -67,12 +67,12 @@ def _mesh(row: Row) -> tuple[Any, ...]:
 def _rms(response: ForcedResponse, bearing: int) -> Json:
     """Return root mean squares of all orders of a bearing force together by speed, N."""
     square = response.bearing_mean_square[bearing]
-    omitted, off = (
+    omitted, error = (
         part[bearing] if part.size else np.zeros(square.size)
         for part in (response.bearing_floor, response.bearing_floor_error)
     )
     rms = np.sqrt(square)
-    minimum = np.sqrt(np.maximum(square - off, 0.0))
+    minimum = np.sqrt(np.maximum(square - error, 0.0))
     return {"rms": rms, "left_out_rms": np.sqrt(omitted), "rms_error": rms - minimum}
 
 

@@ -49,7 +49,7 @@ def _factor(index: int, factor: FactorInput, scene: SceneInput, places: tuple[Lo
 def _by_class(index: int, factor: FactorInput, scene: SceneInput, places: tuple[Location, ...]) -> Normal:
     """Return the distribution within a class of ISO 1328 about the designed value, um."""
     limits = set()
-    for location in places:
+    for location in places:  # ("meshes", index, "case", "pair", gear, field)
         case = scene.meshes[int(location[1])].case
         assert case is not None and factor.iso1328_class is not None
         gear, name = str(location[4]), str(location[5])

@@ -37,7 +37,7 @@ def responses_of(inputs: Inputs) -> tuple[Response, ...]:
 
 
 def check_parts(scene: SceneInput, responses: tuple[Response, ...]) -> None:
-    """Every response names a mesh or a bearing of the scene, or of one of its planets."""
+    """Refuse responses of a mesh or bearing that neither the scene nor one of its planets has."""
     meshes, bearings = names_with_planets(scene)
     for index, response in enumerate(responses):
         for field, name, known in (
@@ -78,7 +78,7 @@ def factor_places(scene: SceneInput, inputs: Inputs) -> Mapping[str, tuple[Locat
 
 
 def _check_case(scene: SceneInput, field: str, factor: FactorInput, location: Location) -> None:
-    """Refuse fields of a case that cannot vary: only flanks can, at one alignment; a class is of slopes."""
+    """Refuse fields of a case but its flanks, several alignments, and a class of a field that is no slope."""
     index = mesh_of_case(location)
     if index is None:
         if factor.iso1328_class is not None:

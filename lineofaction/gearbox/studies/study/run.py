@@ -47,7 +47,7 @@ class _ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):
     def check(self, scene: SceneInput, inputs: Inputs) -> None:
         """Refuse a path that names no number, a value that its field does not accept, too many points.
 
-        So are responses that cannot be, or name no part of the scene.
+        Responses that have no meaning, or name no part of the scene, are refused too.
         """
         factor_places(scene, inputs)
         check_parts(scene, responses_of(inputs))

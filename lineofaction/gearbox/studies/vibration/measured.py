@@ -56,7 +56,7 @@ class MeasuredHousingVibration(Plottable):
     vibration: MeasuredVibration
     at_speed: int
     at_order: int
-    """`at_speed`, `at_order`: Indices of the speed and the order looked at."""
+    """`at_speed`, `at_order`: Indices of the speed and the order of the shares."""
     bearing: tuple[str, ...]
     """e bearings whose seats were pushed."""
     share: FloatArray
@@ -87,7 +87,7 @@ class MeasuredHousingVibration(Plottable):
 
     @property
     def omitted_part(self) -> FloatArray:
-        """Return their part of the sum of the squared forces, by order, then by speed."""
+        """Return the part of the omitted forces in the sum of squared forces, by order, then by speed."""
         return self.vibration.omitted_force.T
 
     @property
@@ -188,8 +188,8 @@ def _require_band(covered: BoolArray, mobility: MeasuredMobility, field: str, va
     """Refuse speeds or orders that lie outside the measured band as a whole; raises `BadInput`."""
     if np.any(covered):
         return
-    ends = (engineering(float(mobility.frequency[end]), 5) for end in (0, -1))
-    bound = f"such that an order lies inside the measured band, {next(ends)} to {next(ends)} Hz"
+    low, high = (engineering(float(mobility.frequency[end]), 5) for end in (0, -1))
+    bound = f"such that an order lies inside the measured band, {low} to {high} Hz"
     raise BadInput.of(field, value, bound, "Choose other speeds or more orders.")
 
 
