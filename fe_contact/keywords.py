@@ -45,7 +45,7 @@ class TableKeywords(TypedDict, total=False):
 def with_keywords(
     axes: TableAxes | None, options: AnalysisOptions, run: Run, keywords: TableKeywords
 ) -> tuple[TableAxes | None, AnalysisOptions, Run]:
-    """Return axes, options and run with those of their members that are given as keywords.
+    """Return axes, options and run with the keywords in place of their fields.
 
     Raises `InputError`: a value that cannot be used, by field name; `TypeError`: a keyword that is none.
     """

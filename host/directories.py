@@ -16,9 +16,9 @@ OFF = ("", "0", "off", "none")
 
 
 def default_cache_directory() -> Path | None:
-    """Return where results are kept.
+    """Return the directory of the cache, None if it is off.
 
-    ``$LINEOFACTION_CACHE`` if set ("off": nowhere, None), else ``lineofaction`` in ``$XDG_CACHE_HOME``, else
+    ``$LINEOFACTION_CACHE`` if set ("off": None), else ``lineofaction`` in ``$XDG_CACHE_HOME``, else
     in the platform's directory of caches.
     """
     setting = os.environ.get(ENVIRONMENT)

@@ -47,7 +47,7 @@ class Unavailable(OSError):
         self.what, self.remedy = what, remedy
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickle by what it is made of."""
+        """Pickle by the arguments of the constructor."""
         return type(self), (self.what, self.remedy)
 
 
@@ -60,7 +60,7 @@ class MissingExtra(ModuleNotFoundError):
         self.extra = extra
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickle by what it is made of."""
+        """Pickle by the arguments of the constructor."""
         return type(self), (self.name, self.extra)
 
 

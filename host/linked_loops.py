@@ -59,7 +59,7 @@ def _raise_of_shapes(src_shapes: Any, index_shape: Any) -> None:
 
 
 def link_what_numba_writes() -> None:
-    """Let what numba writes in Python be linked as inner loops are, its messages of shapes be short."""
+    """Link numba's own functions in Python as inner loops are, and shorten its messages on shapes."""
     _OverloadFunctionTemplate._get_jit_decorator = _linked  # type: ignore[method-assign]
     overload(_raise_of_shapes)(arrayobj.ol_raise_with_shape_context_generic)
     arrayobj.raise_with_shape_context = _raise_of_shapes

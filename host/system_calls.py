@@ -99,7 +99,7 @@ _Checked = tuple[tuple[int, int], tuple[_Check, ...]]
 
 
 def _checked_calls(pid: int) -> tuple[_Checked, ...]:
-    """Return the numbers of calls that depend on their arguments, and what these are, in process `pid`."""
+    """Return the calls that are allowed with some arguments, and the conditions, in process `pid`."""
     itself, calling = (_Check(0, (pid,)),), _Check(0, (0,))
     private = _Check(6, (_MAP_PRIVATE,), _MAP_KIND | _MAP_GROWS | _MAP_HUGE)
     return (

@@ -1,4 +1,4 @@
-"""Compliance of a plain annular disc between a held inner and a rigid outer edge, in closed form.
+"""Compliance of a plain annular disc between its rigid inner and outer edges, in closed form.
 
 Thin discs are in plane stress. Timoshenko and Goodier, Theory of Elasticity, art. 37 (torsion of a ring) and
 Muskhelishvili's complex potentials of a force at the hole of an annulus, both edges rigid.

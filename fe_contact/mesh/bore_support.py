@@ -29,7 +29,7 @@ class BoreSupport(Protocol):
         """
 
     def constrained(self, grid: SectorGrid, z: FloatArray) -> BoolArray:
-        """Return which components (radial, tangential, axial) are held, (planes, n, 3); `z` (planes,), m."""
+        """Return which components (radial, tangential, axial) are fixed, (planes, n, 3); `z` (planes,), m."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class PlaneStrain:
 
 @dataclass(frozen=True)
 class _SeatedBore:
-    """The bore is held where its seat is, in the directions in which that is rigid; `face_width` in m."""
+    """The bore is fixed over the length of its seat, where the seat is rigid; `face_width` in m."""
 
     seat: BoreSeat
     face_width: float
@@ -83,5 +83,5 @@ class _SeatedBore:
 
 
 def bore_support(gear: Toothing) -> BoreSupport:
-    """Return how a gear is held: clamped, or by its seat."""
+    """Return the support of the bore of a gear: clamped, or by its seat."""
     return ClampedBore() if gear.seat == CLAMPED else _SeatedBore(gear.seat, gear.face_width)

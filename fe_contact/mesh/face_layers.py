@@ -20,7 +20,7 @@ DIGITS = 12  # layers are equally thick if their thickness over the face width a
 
 @dataclass(frozen=True)
 class Layers:
-    """Layers of elements, or those above mid-face; symmetric unless a web or a seat of the bore is not."""
+    """Layers of elements over the face or its upper half; symmetric unless a web or a seat is not."""
 
     ends: FloatArray
     """Axial positions of their ends, m; 0 is mid-face, increasing. Shape (L + 1,)."""
@@ -71,7 +71,7 @@ def layers_across(
 
 
 def _broken(width: float, usual: float, group: int, growth: float, breaks: Sequence[float]) -> Layers:
-    """Divide every part of the face by itself; `usual` is the thickness of a group without breaks."""
+    """Divide each part of the face between breaks; `usual` is the thickness of a group without breaks."""
     corners = [-0.5 * width, *breaks, 0.5 * width]
     ends, thickness = [corners[:1]], []
     for i, (low, high) in enumerate(pairwise(corners)):

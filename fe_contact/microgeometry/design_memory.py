@@ -81,7 +81,7 @@ class DesignMemory:
             stream.write(record)  # in one write: only the last record of a file can be incomplete
 
     def _read(self, name_size: int) -> None:
-        """Read whole records, and cut off what a killed writer left of one."""
+        """Read complete records, and cut off an incomplete one that a killed writer left."""
         size, text = name_size + _RECORD.size, self.file.read_bytes() if self.file.exists() else b""
         intact = 0
         for begin in range(0, len(text) - size + 1, size):

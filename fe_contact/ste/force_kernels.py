@@ -40,7 +40,7 @@ class KernelTable(NamedTuple):
 
 @inner(nogil=True, error_model="numpy")
 def _inside(knots: FloatArray, first: int, size: int, period: float, query: float) -> float:
-    """Return the query wrapped into the period, or held between the ends of an open axis (period 0)."""
+    """Return the query wrapped into the period, or clipped to the ends of an open axis (period 0)."""
     start = knots[first]
     if period > 0.0 and size > 1:
         if start <= query < start + period:

@@ -169,7 +169,7 @@ def _on_branches(levels: LoadLevels, pairs: IntArray, k: int, force: FloatArray)
 
 
 def _largest_exponent(maximum: FloatArray, holds: Callable[[FloatArray], BoolArray]) -> FloatArray:
-    """Return the largest exponents up to those wanted for which a condition `holds`, as it does for 0."""
+    """Return the largest exponents up to `maximum` at which a condition `holds`; at 0 it does."""
     low, high = np.zeros_like(maximum), maximum
     if np.all(holds(maximum)):
         return maximum

@@ -1,4 +1,4 @@
-"""Loads of a table that carry the interpolation between those requested."""
+"""Support loads of a table: further loads by which it interpolates between the requested ones."""
 
 from __future__ import annotations
 

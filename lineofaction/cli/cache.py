@@ -58,7 +58,7 @@ def run_limit(gigabytes: float | None, *, as_json: bool) -> None:
 
 
 def run_clear(kinds: list[str], *, as_json: bool) -> None:
-    """Remove all that is kept, of some kinds if any are named."""
+    """Remove all entries, or those of the named kinds."""
     for kind in kinds:
         if kind not in KINDS:
             raise BadInput.of("kind", kind, f"one of {', '.join(KINDS)}", "Or leave it out: all of them.")

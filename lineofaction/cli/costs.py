@@ -42,7 +42,7 @@ def table_cost(case: Case) -> StudyCost:
 
 
 def tables_cost(scene: SceneInput, folder: Path) -> StudyCost:
-    """Return the predicted cost of the tables of a scene that are not kept."""
+    """Return the predicted cost of the tables of a scene that are not in the cache."""
     written = (mesh.case for mesh in with_inline_cases(scene, folder).meshes if isinstance(mesh.case, Case))
     cases = {case.model_dump_json(): case for case in written}
     return sum(

@@ -32,7 +32,7 @@ class RunSound:
 
 
 def bearing_sounds(runs: Mapping[str, RunResult], view: RunView) -> tuple[list[RunSound], str]:
-    """Return runs as sounds of their own series, e.g. forces on a bearing, and a remark on all of them."""
+    """Return the series of runs, e.g. forces on a bearing, as sounds, and a remark on all of them."""
     sounds = []
     for series in tuple(run_signals(dict(runs), view)):
         recording, moment = series.recording(), loudest(series.run, series.signal)

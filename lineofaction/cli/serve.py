@@ -47,10 +47,10 @@ def log_to_standard_error() -> None:
 
 
 def _leave() -> NoReturn:
-    """End a process with success whose work is done, without the interpreter's own end.
+    """End this process with success, without the cleanup of the interpreter.
 
-    That frees module after module, for 0.7 CPU s once both libraries are loaded: several seconds beside
-    twenty busy processes, in which a supervisor waits.
+    The cleanup frees module after module, for 0.7 CPU s once both libraries are loaded: several seconds on a
+    machine with twenty busy processes, in which a supervisor waits.
     """
     sys.stdout.flush()
     sys.stderr.flush()

@@ -81,7 +81,7 @@ class ResultCache:
         return result if is_stored else None
 
     def _folder(self, kind: str, key: str) -> Path:
-        """Return the folder of a key, whose files differ where services gave different bytes for it.
+        """Return the folder of a key; it has several files if services gave different bytes for the key.
 
         A key is hashed again unless it is a plain hash.
         """

@@ -58,7 +58,7 @@ class MeshTables:
         try:
             if case is not None:
                 return (yield from self._of_case(case))
-            assert mesh.database_hash is not None  # the schema has seen to it
+            assert mesh.database_hash is not None  # the schema has refused that
             return (yield from self._source.by_hash(mesh.database_hash))
         except BadInput as error:
             raise error.within(field if case is None else f"{field}.case") from None
@@ -82,7 +82,7 @@ class MeshTables:
 
 
 def finished(steps: Steps[T]) -> T:
-    """Return the result of an operation that wants nothing of network and clock."""
+    """Return the result of an operation that needs neither network nor clock."""
     try:
         action = next(steps)
     except StopIteration as end:

@@ -45,7 +45,7 @@ def run_json(file: Path) -> dict[str, Any]:
 
 
 def _plain(value: object) -> object:
-    """Attribute as JSON; a number that JSON cannot hold is shown as text, and JSON in a text is unfolded."""
+    """Return an attribute as JSON; infinite numbers and NaN as text, JSON in a text as its value."""
     if isinstance(value, np.ndarray | np.generic):
         value = value.tolist()
     if isinstance(value, float) and not np.isfinite(value):

@@ -55,7 +55,7 @@ def _phrased(content: Json, name: Callable[[str], str]) -> Json:
 
 
 def _field_in(case: Case) -> Callable[[str], str]:
-    """Return a function to the field as the case has it: a material may be that of both gears."""
+    """Return a function from a field to its name in the case; both gears may share a material."""
     case_field = on_demand("lineofaction.gearbox.convert.boundary_names:case_field")
 
     def field(name: str) -> str:

@@ -18,7 +18,7 @@ Part = TypeVar("Part")
 
 
 def part_of(kind: type[Part], model: BaseModel | None, name: str, **further: Any) -> Part | None:
-    """Return a part of the libraries' from the table that has its fields, None if it is left out.
+    """Return a dataclass of the libraries from the table that has its fields, None without a table.
 
     Raises `RefusedValue`: a value out of its bounds, named within `name`.
     """

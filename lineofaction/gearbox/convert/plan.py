@@ -14,7 +14,7 @@ from lineofaction.gearbox.units import in_um
 
 
 def plan_of(case: CheckedCase, time_budget_s: float | None, cache: Path | None) -> RunPlan:
-    """Plan a case; `time_budget_s` stands beside a tolerance of the case.
+    """Plan a case; `time_budget_s` counts in addition to a tolerance of the case.
 
     Raises `BadInput`: no such pair, or a request that no plan can meet.
     """

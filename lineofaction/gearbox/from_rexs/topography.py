@@ -42,7 +42,7 @@ def topographical_modification(flank: PlainFlank, part: Part) -> Modification:
 
 
 def _roll_lengths(flank: PlainFlank, part: Part) -> tuple[float, ...] | None:
-    """Return the roll lengths in m of the nodes, from their diameters or as such."""
+    """Return the roll lengths in m of the nodes, stated by diameters or as roll lengths."""
     diameters = part.numbers(_DIAMETERS, "flank_grid, as roll lengths")
     if diameters is None:
         return part.numbers(_LENGTHS, "flank_grid")

@@ -1,4 +1,4 @@
-"""The heading of a file of a Klingelnberg machine: what it states of its values, in one record.
+"""The heading of a file of a Klingelnberg machine: the conventions of its values, in one record.
 
 A heading has a preamble, as ``UNITS mm``, and numbered lines ``161 :label :NAME: value``. A statement that
 decides how values are read has a row in `STATEMENTS` with the values whose meaning is known. Another value is

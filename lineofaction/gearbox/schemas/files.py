@@ -45,7 +45,7 @@ def _with_housing_files(table: Table, find: Find, read: Collection[str]) -> Tabl
 def _written_out(
     housing: object, find: Find, read: Collection[str], contents: Contents, index: int
 ) -> object:
-    """One housing with the content of its file, which is read once however often it is named."""
+    """Return a housing with the content of its file; a file that several housings name is read once."""
     if not isinstance(housing, dict):
         return housing
     named = [field for field in READERS if not isinstance(housing.get(field), dict | None)]

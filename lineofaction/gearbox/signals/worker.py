@@ -52,7 +52,7 @@ def _answer(request: dict[str, Any]) -> dict[str, Any]:
 
 
 def _written(index: int, channel: RawChannel) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the facts of a channel as JSON, and its arrays by name."""
+    """Return the fields of a channel as JSON, and its arrays by name."""
     even = list(map(float, channel.abscissa)) if isinstance(channel.abscissa, tuple) else None
     arrays = {f"values_{index}": channel.values}
     if even is None:

@@ -41,7 +41,7 @@ def runs_cost(
 
 
 def run_cost(scene: SceneInput, runs: int = 1, receipt: Receipt | None = None) -> StudyCost | None:
-    """Return the cost of so many runs of a scene, by some steps of it; None: nothing predicts it.
+    """Return the cost of so many runs of a scene, measured on some steps; None: nothing predicts it.
 
     `receipt`: of the runs; None: as the scene says. Modes that a solid housing keeps are not known before
     and do not count. Raises `BadInput`: no such scene.

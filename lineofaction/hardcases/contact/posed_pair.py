@@ -68,7 +68,7 @@ def nominal_gear(**changes: object) -> Gear:
 
 
 def nominal_pair(**changes: object) -> GearPair:
-    """Return the pair of two such gears at 80 mm."""
+    """Return the pair of two nominal gears at a center distance of 80 mm."""
     gear = nominal_gear(**changes)
     return GearPair(gear, gear, 80e-3)
 

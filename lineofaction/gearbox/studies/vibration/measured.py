@@ -58,13 +58,13 @@ class MeasuredHousingVibration(Plottable):
     at_order: int
     """`at_speed`, `at_order`: Indices of the speed and the order of the shares."""
     bearing: tuple[str, ...]
-    """e bearings whose seats were pushed."""
+    """e bearings at whose seats the measurement applied forces."""
     share: FloatArray
     """Share of each bearing, at this speed and order, in the mean square velocity of each point; NaN for a
     point at rest. Shape (e, k).
     """
     metadata: Json = field(default_factory=dict, metadata=under_key("facts"))
-    """Facts of the response as plain JSON."""
+    """Metadata of the response as plain JSON."""
 
     @property
     def axes(self) -> dict[str, str]:
