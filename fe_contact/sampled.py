@@ -60,9 +60,9 @@ def spread(nodes: FloatArray, sample: IntArray, values: FloatArray, axis: int) -
     """
     if sample.size == nodes.size:
         return values
-    known = nodes[sample]
-    right = np.clip(np.searchsorted(known, nodes), 1, sample.size - 1)
-    part = (nodes - known[right - 1]) / (known[right] - known[right - 1])
+    abscissa = nodes[sample]
+    right = np.clip(np.searchsorted(abscissa, nodes), 1, sample.size - 1)
+    part = (nodes - abscissa[right - 1]) / (abscissa[right] - abscissa[right - 1])
     weight = part.reshape([-1 if i == axis % values.ndim else 1 for i in range(values.ndim)])
     low, high = np.take(values, right - 1, axis=axis), np.take(values, right, axis=axis)
     return np.asarray(

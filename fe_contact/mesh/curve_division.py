@@ -65,8 +65,8 @@ def spread(
         Maps (k, 2) points to (k,) sizes.
     """
 
-    def size(place: FloatArray) -> FloatArray:
-        across, along = (place[:, None, axis] - points[:, axis] for axis in (0, 1))  # (k, n) each
+    def size(target: FloatArray) -> FloatArray:
+        across, along = (target[:, None, axis] - points[:, axis] for axis in (0, 1))  # (k, n) each
         nearest: FloatArray = np.min(sizes + growth * np.sqrt(across * across + along * along), axis=1)
         return np.minimum(nearest, largest)
 

@@ -159,5 +159,5 @@ def _numbered(outline: Outline, start: int, count: int, keys: IntArray) -> IntAr
 def rotated(points: FloatArray, angle: float) -> FloatArray:
     """Return points turned counter-clockwise by `angle` about the origin."""
     c, s = np.cos(angle), np.sin(angle)
-    turned: FloatArray = points @ np.array([[c, s], [-s, c]])
-    return turned
+    result: FloatArray = points @ np.array([[c, s], [-s, c]])
+    return result

@@ -63,20 +63,22 @@ def _changes(
     Wider load patches say nothing about root stress, as they cover the stations of the roots.
     """
     contact, discretization = evaluator.contact, evaluator.contact.plan.discretization
-    few, others = (evaluator.at(evaluator.position[parity::2]) for parity in (0, 1))
+    even, odd = (evaluator.at(evaluator.position[parity::2]) for parity in (0, 1))
 
-    def on(other: PairContact, roots: RootInfluence | None = None) -> Evaluation:
-        return replace(few, contact=replace(other, varied=True), roots=roots).evaluate(values)
+    def on(rougher: PairContact, roots: RootInfluence | None = None) -> Evaluation:
+        return replace(even, contact=replace(rougher, varied=True), roots=roots).evaluate(values)
 
-    half = few.evaluate(values)
+    half = even.evaluate(values)
     yield _Change(evaluation, half)
-    yield _Change(evaluation, others.evaluate(values))  # one of both halves lacks the position of the largest
+    yield _Change(evaluation, odd.evaluate(values))  # one of both halves lacks the position of the largest
     if discretization.slices > 1:
         yield _Change(half, on(contact.in_slices(discretization.coarse_slices), evaluator.roots))
     plain = contact.in_plane_strain  # as the coarse meshes are
     coarse = pair_contact(contact.pair, contact.plan, cache, coarse=True)
-    by_mesh = [half if other is contact else on(other) for other in (plain, plain.in_coarse_patches, coarse)]
+    by_mesh = [
+        half if rougher is contact else on(rougher) for rougher in (plain, plain.in_coarse_patches, coarse)
+    ]
     yield from (_Change(*ends) for ends in pairwise(by_mesh))
     if evaluator.roots is not None and evaluator.roots.rough is not None:
-        rough = replace(few, roots=evaluator.roots.rough).evaluate(values)
+        rough = replace(even, roots=evaluator.roots.rough).evaluate(values)
         yield _Change(half, rough, evaluator.roots.remaining)

@@ -55,8 +55,8 @@ def errors_by_source(table: SteFields, point: OperatingPoint) -> FloatArray:
 
 def source_places(table: SteFields, point: OperatingPoint) -> NodePlaces:
     """Return the place of one point between the nodes of a table."""
-    at = point.force, point.misalignment, point.center_distance_change
-    return NodePlaces.of(table, *(np.array([value]) for value in at))
+    coordinates = point.force, point.misalignment, point.center_distance_change
+    return NodePlaces.of(table, *(np.array([value]) for value in coordinates))
 
 
 def source_names(errors: FloatArray) -> tuple[str, ...]:

@@ -194,7 +194,7 @@ def sample_forces(
         for corner in range(corners):
             offset[corner] *= stride
         _factors(factor, weight, order)
-        force[i], stiffness[i], known = _at_deflection(
+        force[i], stiffness[i], flag = _at_deflection(
             level, deflections, stiffnesses, offset, factor, points[3, i]
         )
-        validity[i] = flags + known
+        validity[i] = flags + flag

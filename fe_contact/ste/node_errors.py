@@ -88,11 +88,11 @@ def error_band(table: SteFields, position: FloatArray, places: NodePlaces) -> Fl
     places : NodePlaces
         Of all points, or a single one.
     """
-    at = Axis(table.position, float(table.period)).stencil(position)
+    along_position = Axis(table.position, float(table.period)).stencil(position)
     if places.force.left.size == 1:
-        stored = _linear((at,), places.at_nodes(np.moveaxis(table.error_estimate, 0, 3))[0])
+        stored = _linear((along_position,), places.at_nodes(np.moveaxis(table.error_estimate, 0, 3))[0])
     else:
-        stored = _linear((at, *places.stencils), table.error_estimate)
+        stored = _linear((along_position, *places.stencils), table.error_estimate)
     return np.asarray(stored + places.interval_error(table))
 
 
@@ -126,12 +126,14 @@ def _linear(
     """
     total: FloatArray | float = 0.0
     # an axis of one node has no right-hand side
-    sides = ((0,) if np.array_equal(at.left, at.right) else (0, 1) for at in stencils)
+    sides = ((0,) if np.array_equal(stencil.left, stencil.right) else (0, 1) for stencil in stencils)
     for corner in product(*sides):
         weight = np.ones(stencils[0].left.size)
-        for at, side in zip(stencils, corner, strict=True):
-            weight = weight * (at.fraction if side else 1.0 - at.fraction)
-        index = tuple(at.right if side else at.left for at, side in zip(stencils, corner, strict=True))
+        for stencil, side in zip(stencils, corner, strict=True):
+            weight = weight * (stencil.fraction if side else 1.0 - stencil.fraction)
+        index = tuple(
+            stencil.right if side else stencil.left for stencil, side in zip(stencils, corner, strict=True)
+        )
         term = values[(*rows, *index)]
         weight = weight.reshape(-1, *[1] * (term.ndim - 1))
         total = total + np.where(weight > 0.0, weight * term, 0.0)

@@ -59,9 +59,9 @@ def _normal_force(database: SteFields, torque: float | None, force: float | None
         name, unit, stored, value = "torque", "N m", database.torque, positive("torque", torque)
     else:
         name, unit, stored, value = "force", "N", database.force, positive("force", force or 0.0)
-    known = np.flatnonzero(np.isclose(stored, value, rtol=1e-12, atol=0.0))
-    if known.size:
-        return float(database.force[known[0]])
+    nodes = np.flatnonzero(np.isclose(stored, value, rtol=1e-12, atol=0.0))
+    if nodes.size:
+        return float(database.force[nodes[0]])
     if value > stored[-1]:
         bound = at_most(float(stored[-1]), unit, note=", the highest load stored")
         raise InputError(name, value, bound, "Add it to the case.")

@@ -81,8 +81,8 @@ def monotone_table(table: Table) -> tuple[Table, Repair]:
         mended[index] = _isotonic(levels[index], table.force, minimum)
     change = np.moveaxis(np.abs(mended - levels)[..., 1:], -1, 1)
     worst = np.unravel_index(int(np.argmax(change)), change.shape)
-    where = {name: float(getattr(table, name)[i]) for name, i in zip(GRID, worst, strict=True)}
-    report = Repair(len(falling), float(change[worst]), **where)
+    coordinates = {name: float(getattr(table, name)[i]) for name, i in zip(GRID, worst, strict=True)}
+    report = Repair(len(falling), float(change[worst]), **coordinates)
     metadata = replace(table.metadata, receipt=table.metadata.receipt | {"monotone_repair": asdict(report)})
     repaired = replace(
         table,

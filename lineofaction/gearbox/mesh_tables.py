@@ -73,9 +73,9 @@ class MeshTables:
         return SteDatabase.from_netcdf(file)
 
     def _of_case(self, case: Case) -> Steps[SteDatabase]:
-        known = next((database for other, database in self._known if other == case), None)
-        if known is not None:
-            return known
+        cached_database = next((database for other, database in self._known if other == case), None)
+        if cached_database is not None:
+            return cached_database
         database = yield from self._source.by_case(case)
         self._known.append((case, database))
         return database

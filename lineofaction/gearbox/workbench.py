@@ -197,8 +197,8 @@ def studied(
     work.check(chosen, varied)
     workers = InProcess() if workers is None else workers
     means = Means(cache_home(), progress or silent, workers, folder=folder, run=run)
-    made = chosen if isinstance(chosen, CheckedCase) else _made(study, chosen, files, means)
-    result = work.compute(made, varied, means)
+    computed_subject = chosen if isinstance(chosen, CheckedCase) else _made(study, chosen, files, means)
+    result = work.compute(computed_subject, varied, means)
     _warn(work.warnings(result) or ())
     if failure := work.failure(result):
         raise JobFailed(failure)

@@ -54,12 +54,12 @@ def _table(index: int, mesh: MeshInput) -> MeshTable:
     """Return the table of a closed form; with friction, the sliding of standard teeth is in it."""
     assert mesh.stiffness is not None  # the caller asks for no other mesh
     stiffness, error = mesh.stiffness.stiffness_n_per_m, mesh.stiffness.transmission_error_um
-    where = f"meshes[{index}].stiffness"
-    with named(f"{where}.stiffness_n_per_m"):
+    field = f"meshes[{index}].stiffness"
+    with named(f"{field}.stiffness_n_per_m"):
         of_stiffness = _curve(stiffness, 1.0)
-    with named(f"{where}.transmission_error_um"):
+    with named(f"{field}.transmission_error_um"):
         of_error = None if error is None else _curve(error, UM)
-    with named(f"{where}.stiffness_n_per_m"):
+    with named(f"{field}.stiffness_n_per_m"):
         return stiffness_table(of_stiffness, of_error, _standard_teeth(mesh))
 
 

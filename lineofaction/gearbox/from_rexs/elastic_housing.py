@@ -42,7 +42,7 @@ def elastic_housings(layout: Layout, seats: dict[int, str]) -> Iterator[Table]:
             group.say("", "refused", "no reduction point refers to a bearing of the scene")
             continue
         rotation = np.kron(np.eye(2 * len(points)), layout.axes.rotation(Placement.of(group) or FIXED))
-        turned = rotation @ matrix @ rotation.T
+        scene_matrix = rotation @ matrix @ rotation.T
         rows = [index for index, name in enumerate(bearings) if name]
         group.say("", "taken", "elastic housing")
         text = f"stiffness under {len(rows)} bearings; u, v, w turned to x, y, z, mm to m"
@@ -50,7 +50,7 @@ def elastic_housings(layout: Layout, seats: dict[int, str]) -> Iterator[Table]:
         yield {
             "name": names.of(group),
             "bushings": [name for name in bearings if name],
-            "stiffness_matrix": _condensed(turned, rows).tolist(),
+            "stiffness_matrix": _condensed(scene_matrix, rows).tolist(),
         }
 
 

@@ -138,9 +138,9 @@ class Heading:
         line, value = self.statements.get(name, (0, ""))
         if value not in statement.known:
             known = " or ".join(f"{value} ({meaning})" for value, meaning in statement.known.items())
-            where = f"line {statement.line} of the heading" if statement.line else "the preamble"
+            location = f"line {statement.line} of the heading" if statement.line else "the preamble"
             raise ValueError(
-                f"a file whose {name} ({statement.subject}, {where}) is {known}; {_found(line, value)}"
+                f"a file whose {name} ({statement.subject}, {location}) is {known}; {_found(line, value)}"
             )
         return statement.known[value]
 

@@ -111,8 +111,8 @@ def _over_an_eighth(cumulative: FloatArray) -> float:
 
 def _difference(printed: Printed, value: float) -> str:
     tooth = f" of tooth {printed.tooth}" if printed.tooth else ""
-    where = f"{_SYMBOLS[printed.figure]}{tooth}{f' {printed.flank}' if printed.flank else ''}"
-    return f"{where}: {printed.value:.1f} µm printed, {value:.1f} µm recomputed"
+    label = f"{_SYMBOLS[printed.figure]}{tooth}{f' {printed.flank}' if printed.flank else ''}"
+    return f"{label}: {printed.value:.1f} µm printed, {value:.1f} µm recomputed"
 
 
 def _unequal_columns(table: PitchTable) -> Iterator[str]:

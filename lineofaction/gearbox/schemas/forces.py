@@ -105,10 +105,10 @@ class ForceInput(BoundaryModel):
         courses = [name for name in BY if getattr(self, name) is not None]
         if len(courses) > 1:
             refuse(courses[1], courses, f"left out beside {courses[0]}", "Give one course.")
-        by = courses[0] if courses else None
-        points = getattr(self, by) if by in ("time_s", "speed_rpm") else None
-        _as_many("factor", self.factor, by or "time_s", points)
-        refuse_unsorted(str(by), points)
+        course = courses[0] if courses else None
+        points = getattr(self, course) if course in ("time_s", "speed_rpm") else None
+        _as_many("factor", self.factor, course or "time_s", points)
+        refuse_unsorted(str(course), points)
         _as_many("amplitude", self.amplitude, "orders", self.orders)
         _as_many("phase_deg", self.phase_deg, "orders", self.orders, optional=True)
         if self.mean and self.orders is None:
@@ -127,13 +127,13 @@ class UnbalanceInput(BoundaryModel):
 def _as_many(
     field: str,
     values: tuple[float, ...] | None,
-    of: str,
+    axis: str,
     points: tuple[float, ...] | None,
     optional: bool = False,
 ) -> None:
     """Refuse a list that does not have one value for each of the points."""
     if points is None and values is not None:
-        refuse(field, list(values), f"left out without {of}", "Say at what these values hold.")
+        refuse(field, list(values), f"left out without {axis}", "Say at what these values hold.")
     if points is not None and (values is not None or not optional) and len(values or ()) != len(points):
-        bound = f"a list of {len(points)}, one for each of {of}"
+        bound = f"a list of {len(points)}, one for each of {axis}"
         refuse(field, None if values is None else list(values), bound, "Give one value each.")

@@ -66,9 +66,9 @@ def _shafts(parts: SceneParts, names: tuple[str, ...], case: CaseDeflection) -> 
     lines = case.shafts
     for index, name in enumerate(names):
         if name in parts.shafts:
-            at = np.flatnonzero(lines.shaft == index)
+            rows = np.flatnonzero(lines.shaft == index)
             part = parts.shafts[name]
-            yield part.component, shaft_results(part, lines.position[at], lines.motion[at])
+            yield part.component, shaft_results(part, lines.position[rows], lines.motion[rows])
 
 
 def _bearings(parts: SceneParts, case: CaseDeflection) -> Iterator[_Part]:
@@ -81,10 +81,10 @@ def _bearings(parts: SceneParts, case: CaseDeflection) -> Iterator[_Part]:
 def _meshes(parts: SceneParts, result: GearboxDeflection, case: CaseDeflection) -> Iterator[_Part]:
     """Yield the attributes of the stages; a load case on the coast side turns the train the other way."""
     flanks = {entry.mesh: entry for entry in result.flanks if entry.case == case.name}
-    turned = 1 if case.direction == "drive" else -1
+    direction = 1 if case.direction == "drive" else -1
     for mesh in case.meshes:
         if mesh.name in parts.meshes:
             part = parts.meshes[mesh.name]
-            sense = turned * part.sense
+            sense = direction * part.sense
             of_flanks = flank_results(flanks[mesh.name], sense) if mesh.name in flanks else ()
             yield part.component, (*alignment_results(mesh, sense), *of_flanks)

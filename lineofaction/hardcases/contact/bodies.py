@@ -43,7 +43,7 @@ def _plastic_on_steel() -> Sequence[Measured]:
     pairs = (GearPair(steel, soft, 80e-3), GearPair(soft, steel, 80e-3), GearPair(mean, mean, 80e-3))
     driven, driving, equal = (posed(pair, NOMINAL_TORQUE * np.array([1e-3, 0.02])) for pair in pairs)
     problem, solution = driven.solve(position)
-    turned = driving.ste((1.0 - position) % 1.0)  # equal teeth: the pair seen from its other gear
+    reversed_ste = driving.ste((1.0 - position) % 1.0)  # equal teeth: the pair seen from its other gear
     halves = equal.ste(position)
     return (
         *soundness(problem, solution),
@@ -55,7 +55,7 @@ def _plastic_on_steel() -> Sequence[Measured]:
         ),
         Measured(
             "soft gear driving, position turned: mean STE, relative difference",
-            mean_off(turned[:, 1], solution.deflection[:, 1]),
+            mean_off(reversed_ste[:, 1], solution.deflection[:, 1]),
             maximum=5e-3,
         ),
     )

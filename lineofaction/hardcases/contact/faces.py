@@ -35,7 +35,7 @@ _WIDE = 60e-3
 )
 def _five_per_cent() -> Sequence[Measured]:
     """Misalign a wide pair until one slice of nineteen carries all, to either side."""
-    case, other = (
+    case, mirrored_case = (
         posed(
             nominal_pair(face_width=_WIDE),
             [0.02 * NOMINAL_TORQUE],
@@ -46,7 +46,7 @@ def _five_per_cent() -> Sequence[Measured]:
     )
     position = even_positions(24)
     problem, solution = case.solve(position)
-    mirrored_problem, mirrored = other.solve(position)
+    mirrored_problem, mirrored = mirrored_case.solve(position)
     slices = case.plan.discretization.slices
     wedge = 0.5 * _MISALIGNMENT * (1.0 - 1.0 / (slices * POINTS))  # at the outermost point of a slice
     candidates = problem.candidates

@@ -36,8 +36,8 @@ def _seven_decades() -> Sequence[Measured]:
     """Solve one table over seven decades of load, and its nominal curve alone."""
     wide = posed(nominal_pair(), NOMINAL_TORQUE * _DECADES)
     problem, solution = wide.solve(even_positions(48))
-    alone = posed(nominal_pair())
-    nominal = alone.ste(even_positions(48))[:, 0]
+    single = posed(nominal_pair())
+    nominal = single.ste(even_positions(48))[:, 0]
     at_nominal = solution.deflection[:, int(np.argmin(np.abs(_DECADES - 1.0)))]
     elastic = solution.deflection - solution.no_load[:, None]
     stiffening = np.diff(solution.tangent, axis=1) / solution.tangent[:, :-1]

@@ -93,8 +93,8 @@ def posed(
     request = checked.request
     plan = checked.plan()
     # without the problems of the other pair, which a contact keeps
-    known = None if bodies is None else replace(bodies, pair=pair, plan=plan, _problems={})
-    contact = known or pair_contact(pair, plan, None)
+    reused = None if bodies is None else replace(bodies, pair=pair, plan=plan, _problems={})
+    contact = reused or pair_contact(pair, plan, None)
     (point,) = operating_points(request.scene, request.choices, contact).places
     return Posed(point.contact, point.model)
 

@@ -37,18 +37,18 @@ def sound_metadata(sound: SceneSound, response: Json, scene: Json) -> Json:
     }
 
 
-def uncertainty_metadata(known: SoundUncertainty) -> Json:
+def uncertainty_metadata(uncertainty: SoundUncertainty) -> Json:
     """Return bands and sensitivities of a sound; not requested, bands are None, sensitivities empty."""
-    band = known.band and figures_of(
+    band = uncertainty.band and figures_of(
         SoundBandFigures,
-        known.band,
-        damping_source=known.damping.source,
-        damping_range=known.damping.factors,
+        uncertainty.band,
+        damping_source=uncertainty.damping.source,
+        damping_range=uncertainty.damping.factors,
     )
     return {
         "band": band,
-        "sensitivities": [figures_of(SensitivityFigures, row) for row in known.sensitivities],
-        "sensitivities_left_out": dict(known.omitted),
+        "sensitivities": [figures_of(SensitivityFigures, row) for row in uncertainty.sensitivities],
+        "sensitivities_left_out": dict(uncertainty.omitted),
     }
 
 

@@ -165,8 +165,8 @@ def measured_result(
     _require_band(covered, mobility, "run" if means.run is not None else "speed_rpm")
     with boundary_errors():
         vibration = measured_vibration(response, mobility)
-        at = _point_indices(vibration, mobility, inputs)
-        shares = bearing_shares(response, mobility)[(..., *at)]
+        indices = _point_indices(vibration, mobility, inputs)
+        shares = bearing_shares(response, mobility)[(..., *indices)]
     metadata = response.metadata
     seconds = {**metadata["seconds"], "vibration": cpu_seconds() - began}
     result = MeasuredHousingVibration(
@@ -176,7 +176,7 @@ def measured_result(
         float(mobility.frequency[-1]),
         mobility.response,
         vibration,
-        *at,
+        *indices,
         mobility.bearings,
         shares,
         {**metadata, "seconds": seconds},
@@ -197,23 +197,23 @@ def _point_indices(
     vibration: MeasuredVibration, mobility: MeasuredMobility, inputs: Inputs
 ) -> tuple[int, int]:
     """Return the indices of the speed and order to look at: the nearest, or where a point moves fastest."""
-    near = np.ones(vibration.frequency.shape, dtype=bool)
+    candidates = np.ones(vibration.frequency.shape, dtype=bool)
     if inputs.at_rpm is not None:
         row = np.argmin(np.abs(vibration.speed - inputs.at_rpm * RPM))
-        near &= (np.arange(vibration.speed.size) == row)[:, None]
-        _require_band(near & vibration.covered, mobility, "at_rpm", inputs.at_rpm)
+        candidates &= (np.arange(vibration.speed.size) == row)[:, None]
+        _require_band(candidates & vibration.covered, mobility, "at_rpm", inputs.at_rpm)
     if inputs.at_order is not None:
-        near &= np.arange(vibration.order.size) == np.argmin(np.abs(vibration.order - inputs.at_order))
-        _require_band(near & vibration.covered, mobility, "at_order", inputs.at_order)
-    near &= vibration.covered
-    size = np.where(near, vibration.rms.max(axis=0), -1.0)
+        candidates &= np.arange(vibration.order.size) == np.argmin(np.abs(vibration.order - inputs.at_order))
+        _require_band(candidates & vibration.covered, mobility, "at_order", inputs.at_order)
+    candidates &= vibration.covered
+    size = np.where(candidates, vibration.rms.max(axis=0), -1.0)
     row, column = np.unravel_index(int(np.argmax(size)), size.shape)
     return int(row), int(column)
 
 
 def measured_figures(result: MeasuredHousingVibration) -> Json:
     """Return the figures of a measured housing; None stands for values outside the measured band."""
-    vibration, at = result.vibration, (result.at_speed, result.at_order)
+    vibration, indices = result.vibration, (result.at_speed, result.at_order)
     return figures_of(
         VibrationFigures,
         result,
@@ -225,9 +225,9 @@ def measured_figures(result: MeasuredHousingVibration) -> Json:
         points={name: _point(vibration, k) for k, name in enumerate(vibration.point)},
         surface=None,
         contributions=Contributions(
-            float(vibration.speed[at[0]]),
-            float(vibration.order[at[1]]),
-            float(vibration.frequency[at]),
+            float(vibration.speed[indices[0]]),
+            float(vibration.order[indices[1]]),
+            float(vibration.frequency[indices]),
             bearings=contributions_of(result.bearing_shares, vibration.point),
             modes=[],
         ),
