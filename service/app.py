@@ -139,9 +139,16 @@ def _lifespan(context: Context, lock: DirectoryLock | None) -> Callable[[FastAPI
 
 def _context(settings: Settings, registry: Registry, works: bool) -> Context:
     parts = job_machinery(settings, registry, works=works)
-    pools, engine = (live_pool(settings), reading_pool(settings.data_directory)), parts.engine
-    answers = KeptAnswers(settings.data_directory / CACHE_DIRECTORY / "figures")
-    writes = WriteCheck(Deployment(engine, parts.store), parts.integrity)
-    watcher = Watcher(engine, partial(events.event_of, registry=registry))
-    queue = (parts.submissions, parts.scheduler, parts.store)
-    return Context(settings, registry, *queue, *pools, answers, engine, writes, watcher)
+    return Context(
+        settings=settings,
+        registry=registry,
+        submissions=parts.submissions,
+        scheduler=parts.scheduler,
+        store=parts.store,
+        live=live_pool(settings),
+        reader=reading_pool(settings.data_directory),
+        cached_answers=KeptAnswers(settings.data_directory / CACHE_DIRECTORY / "figures"),
+        engine=parts.engine,
+        writes=WriteCheck(Deployment(parts.engine, parts.store), parts.integrity),
+        watcher=Watcher(parts.engine, partial(events.event_of, registry=registry)),
+    )

@@ -96,14 +96,14 @@ async def job_filter(
     """Return the filter of jobs by the parameters."""
     earliest, latest = _interval(instant)
     return JobFilter(
-        tuple(process_id),
-        tuple(status),
-        earliest,
-        latest,
-        float(shortest) if shortest else None,
-        longest,
-        tuple(tag),
-        tuple(title.split()),
+        processes=tuple(process_id),
+        statuses=tuple(status),
+        earliest=earliest,
+        latest=latest,
+        shortest_s=float(shortest) if shortest else None,
+        longest_s=longest,
+        tags=tuple(tag),
+        words=tuple(title.split()),
         parent=parent,
         once=once,
     )
