@@ -303,10 +303,14 @@ LEVEL = re.compile(r"(−?[\d.]+)(?: dB)? ± ([\d.]+)")
 CHANGE = re.compile(r"([+−][\d.]+) ± ([\d.]+)")
 STATED = """async (heard) => {
   const { besideFigures, heardFigures } = await import("/page/live_numbers.js");
-  const plain = (text) => text.replace("\\u00a0", " ");
-  const more = { flanks: { k_h_beta: null }, error_by_source_um: {} };
+  const plain = (cell) => (cell.text ?? cell).replace("\\u00a0", " ");
+  const said = (remarks) => remarks.filter(Boolean).map((part) => part.text ?? part).join("; ");
+  const words = ([name, value, remarks]) => [name, value, said(remarks)];
+  const more = { torque_n_m: 80, flanks: { k_h_beta: null }, error_by_source_um: {} };
   const curves = heard.curves.map((own) => ({ ...own, curve: { ...more, ...own.curve } }));
-  return [heardFigures(heard), besideFigures(curves, heard).rows.slice(0, 2).map((row) => row.map(plain))];
+  heard = { ...heard, curves };
+  const rows = besideFigures(curves, heard).rows.slice(0, 2);
+  return [heardFigures(heard).map(words), rows.map((row) => row.map(plain))];
 }"""
 BESIDE = """() => [...document.querySelectorAll("#compared tbody tr")].slice(0, 2).map((row) => (
   [...row.children].map((cell) => cell.textContent.replace("\\u00a0", " "))))"""
@@ -338,10 +342,10 @@ def test_levels_have_the_band_of_their_error_and_changes_that_of_both(visit: Vis
     # 20 lg 0.2 = -13.98, -20 lg 0.9 = 0.915, 20 lg 0.1 = -20
     name = "complaint, harmonic 2 at 80 N m"
     assert stated(curve(0.2, 0.02), curve(0.1, 0.01)) == [
-        [[name, "−20.00 dB", "± 0.92 re 1 µm; −6.0 ± 1.8 dB from A"]],
+        [[name, "−20.00 dB", "± 0.92 re 1 µm; change −6.0 ± 1.3 dB from A"]],
         [
             [f"{name}, dB re 1 µm", "−13.98 ± 0.92", "−20.00 ± 0.92"],
-            ["the same, dB from A", "", "−6.0 ± 1.8"],
+            ["the same, dB from A", "", "−6.0 ± 1.3"],
         ],
     ]
     alone, beside = stated(curve(0.2, 0.02), curve(0.05, 0.1))
@@ -367,6 +371,7 @@ def test_the_dock_has_the_level_of_the_complaint_of_both_variants_at_its_torque(
     assert " from " not in row, "nothing was moved"
     page.get_by_role("button", name="Another variant").press("Enter")
     expect(page.get_by_role("button", name="Variant B")).to_have_attribute("aria-pressed", "true")
+    moved(page, "#live-torque_n_m", "End")
     sent: list[dict[str, Any]] = []
     page.on("request", lambda request: sent.append(request.post_data_json) if "/ste" in request.url else None)
     moved(page, "#live-pinion-tip_relief_um", "End")

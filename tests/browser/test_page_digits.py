@@ -12,8 +12,10 @@ WRITTEN = """async (pairs) => {
   return pairs.map(([value, error]) => withError(value, error, "µm"));
 }"""
 CHANGES = """async (pairs) => {
-  const { change } = await import("/page/digits.js");
-  return pairs.map(([value, from]) => change(value, from));
+  const { changeOf } = await import("/page/digits.js");
+  const part = (value, from) => 100 * (value / from - 1);
+  const changed = (value, from, error) => ({ subject: "", value: part(value, from), error, unit: "%" });
+  return pairs.map((pair) => changeOf(changed(...pair)).text);
 }"""
 PAIRS = [(9.7861, 0.0347), (9.7861, 0.0996), (1.31, 0.0125), (-3.0, 2.0), (0.001, 0.4), (5.0, 1e-4)]
 
@@ -26,3 +28,5 @@ def test_page_and_terminal_write_one_number_alike(scripts: Page) -> None:
 def test_a_change_below_what_answers_resolve_is_none(scripts: Page) -> None:
     pairs = [(1.0 + 2e-14, 1.0), (1.0001, 1.0), (1.002, 1.0), (0.8, 1.0)]
     assert scripts.evaluate(CHANGES, pairs) == ["no change", "no change", "+0.2 %", "−20 %"]
+    pairs = [(0.8, 1.0, 4.94), (0.8, 1.0, 30.0)]
+    assert scripts.evaluate(CHANGES, pairs) == ["−20.0 ± 4.9 %", "no change (± 30 %)"]

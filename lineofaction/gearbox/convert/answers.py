@@ -165,12 +165,15 @@ def headline_json(table: SteDatabase) -> Json:
     """
     force = float(table.force[table.force.size // 2])
     curve = table.curve(force=force, at=_RIPPLE, allow_failed=True)
-    error, ripple = curve.peak_to_peak.error, (curve.ste - curve.mean.value) / UM
+    ripple, tone = (curve.ste - curve.mean.value) / UM, curve.harmonics[0]
+    errors = [estimate.error / UM for estimate in (curve.peak_to_peak, tone)]
+    ripple_error, tone_error = (error if np.isfinite(error) else None for error in errors)
     return {
         "torque_n_m": as_typed(curve.torque),
         "peak_to_peak_um": curve.peak_to_peak.value / UM,
-        "peak_to_peak_error_um": error / UM if np.isfinite(error) else None,
-        "first_harmonic_um": curve.harmonics[0].value / UM,
+        "peak_to_peak_error_um": ripple_error,
+        "first_harmonic_um": tone.value / UM,
+        "first_harmonic_error_um": tone_error,
         "ripple_um": [float(f"{value:.4g}") for value in ripple],
     }
 

@@ -27,6 +27,9 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.curve_derivatives import CurveDerivatives, FlankDerivatives, curve_derivatives
 from fe_contact.microgeometry.tolerances import iso1328_tolerances
 from fe_contact.ste import SteDatabase
+from fe_contact.ste.curve_errors import BETWEEN_NODES, errors_by_source, source_names
+from fe_contact.ste.curve_quantities import BY_SOURCE
+from fe_contact.ste.operating_point import OperatingPoint
 from fe_contact.types import FloatArray
 from host import cpu_seconds
 from lineofaction.gearbox.convert.answers import curve_json
@@ -44,6 +47,8 @@ if TYPE_CHECKING:
 
 _N_PER_MM = 1e3
 """N/m in a N/mm."""
+_SAME_LOAD = 1e-9
+"""Relative rounding by which a torque may differ from a load of a table."""
 _DIGITS = 5
 """Significant digits of numbers that are only drawn."""
 _STEPS, _COLUMNS = 32, 64
@@ -169,6 +174,8 @@ class CondensedCase:
     pair: ParallelAxes
     """Gear pair with the flanks that the case states."""
     bodies: CondensedPair
+    table: SteDatabase
+    """Stored table, which states the figures of these flanks at its loads and alignments."""
     drawn: OrderedDict[str, DrawnRipple] = field(default_factory=OrderedDict)
     """Pairs drawn within tolerances, by the text of the question; every answer solves some more."""
 
@@ -193,7 +200,7 @@ def condensed_of(file: Path, cache: Path, *, compute: bool = False) -> Condensed
             "elsewhere, or it was removed. Ask once with condense = true: it is then computed here first, in "
             "seconds in the plane and up to some minutes over the face."
         )
-    return CondensedCase(case, pair, bodies)
+    return CondensedCase(case, pair, bodies, database)
 
 
 def live_curves(condensed: CondensedCase, change: LiveInput) -> Json:
@@ -205,7 +212,8 @@ def live_curves(condensed: CondensedCase, change: LiveInput) -> Json:
         changes = {name: _figures_of(getattr(change, name)) for name in ("pinion", "wheel")}
         pair = with_flanks(condensed.pair, condensed.case, changes)
         with boundary_errors():
-            answer = _answer(condensed.bodies, pair, change)
+            table = None if change.preview or any(changes.values()) else condensed.table
+            answer = _answer(condensed.bodies, pair, change, table)
             if change.tolerance_class is not None:
                 _add_band(answer, condensed.bodies, pair, change, condensed.drawn)
         return answer
@@ -266,12 +274,16 @@ def _band(ripple: DrawnRipple, tolerance_class: int) -> Json:
     }
 
 
-def _answer(bodies: CondensedPair, pair: ParallelAxes, change: LiveInput) -> Json:
-    """Return the curves, each with the further answers that the question requests, and the cost."""
+def _answer(bodies: CondensedPair, pair: ParallelAxes, change: LiveInput, stored: SteDatabase | None) -> Json:
+    """Return the curves, each with the further answers that the question requests, and the cost.
+
+    The curves at loads and alignments of `stored` are those of that table: a report, the terminal and this
+    answer state one number with one error.
+    """
     torques = np.array(change.torque_n_m)
     alignment = change.misalignment_um * UM, change.center_distance_change_mm * MM
     table, solved = bodies.solve_table(pair, torques, *alignment, preview=change.preview)
-    curves = [_curve(table, k) for k in range(table.force.size)]
+    curves = [_stored_curve(stored, table, k) or _curve(table, k) for k in range(table.force.size)]
     answer = {"curves": curves, **_receipt(table)}
 
     @cache
@@ -296,6 +308,41 @@ def _answer(bodies: CondensedPair, pair: ParallelAxes, change: LiveInput) -> Jso
                 curve[name] = part
             answer["cost"][f"{name}_cpu_seconds"] = cpu_seconds() - begin
     return answer
+
+
+def _stored_curve(stored: SteDatabase | None, solved: SteDatabase, k: int) -> Json | None:
+    """Return the curve of the stored table at load k of the solved one; None where that is none of its loads.
+
+    Between loads and alignments the table interpolates, with a larger error than an answer that is solved.
+    """
+    if stored is None or stored.n_failed:
+        return None
+    nearest = stored.force[np.argmin(np.abs(stored.force - solved.force[k]))]
+    alignment = float(solved.misalignment[0]), float(solved.center_distance_change[0])
+    is_aligned = alignment[0] in stored.misalignment and alignment[1] in stored.center_distance_change
+    if abs(nearest / solved.force[k] - 1.0) > _SAME_LOAD or not is_aligned:
+        return None
+    curve = curve_json(
+        stored,
+        force_n=float(nearest),
+        at=solved.position.tolist(),
+        misalignment_um=alignment[0] / UM,
+        center_distance_change_mm=alignment[1] / MM,
+    )
+    if "mean_error_um" not in curve:  # its receipt has no errors: those of the answer stand in
+        answer = _curve(solved, k)
+        return curve | {name: value for name, value in answer.items() if "error" in name or name == "bias"}
+    errors = errors_by_source(stored, OperatingPoint(float(nearest), *alignment))
+    return curve | {
+        "bias": in_um(stored.metadata.receipt.get("bias")),
+        "error_by_source_um": {
+            source: {
+                name.removesuffix("_m"): float(of_source[index] / UM) for name, index in BY_SOURCE.items()
+            }
+            for source, of_source in zip(source_names(errors), errors, strict=True)
+            if source not in BETWEEN_NODES and np.isfinite(of_source).all()
+        },
+    }
 
 
 def _curve(table: SteDatabase, k: int) -> Json:

@@ -109,6 +109,7 @@ class Headline(BaseModel):
     peak_to_peak_um: float | None = None
     peak_to_peak_error_um: float | None = Field(default=None, description="null: not estimated")
     first_harmonic_um: float | None = Field(default=None, description="Amplitude of mesh harmonic 1")
+    first_harmonic_error_um: float | None = Field(default=None, description="null: not estimated")
     ripple_um: list[float] = Field(
         default=[], description="Transmission error less its mean over two base pitches, both ends included"
     )

@@ -27,12 +27,12 @@ export function draw(name, attributes, text) {
 
 export const byId = (id) => document.getElementById(id);
 
-const NUMERIC = /^$|^[-+]?[\d.]+(e[-+]?\d+)?( (N m|µm|%|± .*))?$/;
+const NUMERIC = /^$|^(no change|within the errors|below )|^[-+−]?[\d.]+(e[-+]?\d+)?(\s(N m|µm|%|±\s.*))?$/;
 
-/** A table of texts; its first column names the row, columns of numbers stand to the right. */
+/** A table of texts or printed numbers; its first column names the row, columns of numbers stand to the right. */
 export function dataTable({ caption, head, rows }, marked = () => false) {
-  const right = head.map((_, k) => rows.every((row) => NUMERIC.test(row[k])));
-  const cell = (kind, text, k, more = {}) => make(kind, { class: right[k] ? "n" : null, ...more }, text);
+  const right = head.map((_, k) => rows.every((row) => NUMERIC.test(row[k].text ?? row[k])));
+  const cell = (kind, content, k, more = {}) => make(kind, { class: right[k] ? "n" : null, ...more, ...content.data }, content.text ?? content);
   const table = make(
     "table", { class: "data" },
     make("caption", {}, caption),
@@ -49,10 +49,13 @@ export function folded(title, ...content) {
   return make("details", {}, make("summary", {}, title), ...content);
 }
 
+/** Names with their values and remarks: texts, or printed numbers; `data` is that of the value. */
 export function figures(list, entries) {
-  list.replaceChildren(...entries.map(([name, value, remark]) => make(
-    "div", {}, make("dt", {}, name), make("dd", {}, value, remark ? make("small", {}, ` ${remark}`) : null),
-  )));
+  const remark = (parts) => parts.flatMap((part, k) => [k ? "; " : " ", typeof part === "string" ? part : make("span", part.data, part.text)]);
+  list.replaceChildren(...entries.map(([name, value, remarks = [], data = {}]) => {
+    const parts = [remarks].flat().filter(Boolean);
+    return make("div", {}, make("dt", {}, name), make("dd", data, value, parts.length ? make("small", {}, ...remark(parts)) : null));
+  }));
 }
 
 /** Hand a file to the browser. */

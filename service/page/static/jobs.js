@@ -97,7 +97,7 @@ export class Jobs {
     const facts = [what, state(job), when].join(", ");
     return make(
       "li", { class: job.parentID ? "inner" : "" },
-      ...label(job), ...headline(job.headline), make("p", { class: "hint" }, facts), make("div", { class: "buttons" }, ...buttons),
+      ...label(job), ...headline(job.headline, job.jobID), make("p", { class: "hint" }, facts), make("div", { class: "buttons" }, ...buttons),
     );
   }
 

@@ -2,16 +2,18 @@
 
 import { Problem, ask, pause, post } from "./api.js";
 import { heardIn } from "./complaint.js";
-import { button, byId, dataTable, figures, folded, make, number } from "./elements.js";
+import { withError } from "./digits.js";
+import { button, byId, dataTable, figures, folded, make } from "./elements.js";
 import { SHOWN_HARMONICS, harmonicsFigure, sharingFigure, steFigure, strongestOrders } from "./live_figures.js";
 import { faultsOf } from "./job.js";
 import { LiveFlanks, liveBlock } from "./live_flanks.js";
-import { besideFigures, heardFigures, mainFigures, numbersOf, ordersOf, sourcesOf } from "./live_numbers.js";
+import { besideFigures, heardFigures, mainFigures, numbersOf, ordersOf, pointWords, sourcesOf, spokenFigures } from "./live_numbers.js";
 import { LiveSound } from "./live_sound.js";
 import { MadeBand } from "./made_band.js";
 import { plot } from "./plots.js";
 import { Sliders } from "./sliders.js";
 import { TorqueCurve } from "./torque_curve.js";
+import { reveal } from "./tabs.js";
 import { Other, UNMOVED } from "./variants.js";
 
 const STYLES = {
@@ -22,12 +24,20 @@ const STYLES = {
   c: { name: "C", color: "#009E73", width: 2.4, dash: "solid" },
 };
 const PLACES = { ste: "live-ripple", harmonics: "live-orders", sharing: "live-load", flanks: "live-flank", sound: "live-sound" };
-const NOTHING = { harmonics_um: [], flanks: {} }; // to compare with
 const REST = 150; // milliseconds without a move after which sliders are taken to rest
 const AWAY = 2; // seconds after which a service that does not answer is asked again
 
 /** Curves of the complaint whose last is under way. @param {any} heard */
 const coming = ({ curves, ...heard }) => ({ ...heard, curves: curves.map((own, k) => (k < curves.length - 1 ? own : { ...own, curve: { ...own.curve, preview: true } })) });
+
+/** The torque that all views begin with: the complaint's, or the middle load. @param {any} content the design @param {number[]} torques of its table */
+function usualTorque(content, torques) {
+  const { order, torque } = heardIn(content);
+  return Number.isFinite(order) && torque > 0 && torque <= 2 * torques.at(-1) ? torque : torques[Math.floor(torques.length / 2)];
+}
+
+/** A pair by its teeth. @param {{case: any}} known */
+const pairOf = ({ case: { pair } }) => `${pair.pinion.teeth}/${pair.wheel.teeth}`;
 
 export class Live {
   /**
@@ -46,31 +56,67 @@ export class Live {
       this.sound?.mark();
       this.ask();
     });
+    design.watch(() => this.retorque());
+    byId("operating-point").addEventListener("click", () => this.atTorque());
   }
 
   /**
    * Begin with the result of an analysis, or with none; `restored` draws it.
-   * @param {{key: string, case: object, torques: number[], torque: number, plane: boolean} | null} known
+   * @param {{key: string, case: object, torques: number[], plane: boolean} | null} known
    */
   show(known) {
     clearTimeout(this.resting);
     Object.assign(this, { before: null, waiting: null, shown: null, rested: null, sound: null });
     byId("live-none").hidden = known !== null;
     byId("live-body").hidden = byId("quick").hidden = !known || known.long;
-    this.known = known && { ...known, highest: known.torques.at(-1) };
+    this.known = known && { ...known, highest: known.torques.at(-1), torque: usualTorque(this.design.case, known.torques) };
     this.analyzed = known && new Other("before", known, UNMOVED);
     this.heard = null;
+    byId("operating-point").hidden = true;
     for (const id of ["live-figures", "compared", "sliders", "quick", ...Object.values(PLACES)]) byId(id).replaceChildren(); // of another result
     this.design.view.press(null);
     if (known) this.controls();
     if (known && !known.long) this.plots();
   }
 
-  /** Show a curve that came with the program, on its pair. @param {any} curve @param {any} outline */
-  async still(curve, outline) {
+  /** Show a curve that came with the program, on its pair. @param {any} curve @param {any} outline @param {any} content its case */
+  async still(curve, outline, content) {
     this.design.view.press(curve, outline);
     this.plots();
-    await this.plot([{ ...STYLES.now, curve }], NOTHING, { still: true });
+    await this.plot([{ ...STYLES.now, curve, pair: pairOf({ case: content }) }], { still: true });
+  }
+
+  /** Follow the torque of the complaint, where nobody moved the slider. */
+  retorque() {
+    const torque = this.known && usualTorque(this.design.case, this.known.torques);
+    if (!this.known || torque === this.known.torque) return;
+    const stands = this.sliders.value("torque_n_m") === this.known.torque;
+    this.known.torque = torque;
+    this.sliders.stand("torque_n_m", torque, stands);
+    if (stands) this.ask();
+  }
+
+  /** Let the torque of the curves be typed. */
+  atTorque() {
+    const exact = byId("live-torque_n_m-exact");
+    if (!exact) return;
+    reveal(exact);
+    exact.select();
+  }
+
+  /** Say in the dock at which operating point its numbers are. @param {any} curve */
+  named(curve) {
+    const point = byId("operating-point");
+    point.hidden = false;
+    point.textContent = this.at(curve);
+    point.disabled = !this.known;
+    return point.textContent;
+  }
+
+  /** The operating point of a curve, with the speed of the complaint. @param {any} curve */
+  at(curve) {
+    const { driver } = heardIn(this.design.case);
+    return `${pointWords(curve)}${driver > 0 ? `, ${Number(driver.toPrecision(4))} rpm` : ""}`;
   }
 
   /** The sliders stand where the address left them: draw that. */
@@ -82,7 +128,7 @@ export class Live {
 
   controls() {
     this.sliders = new Sliders(this.known, [...this.design.fields], () => this.ask());
-    this.torques = new TorqueCurve(2 * this.known.highest, this.caller, () => this.again());
+    this.torques = new TorqueCurve(2 * this.known.highest, this.caller, () => this.again(), (torque) => this.sliders.put("torque_n_m", torque));
     this.sliders.block("torque_n_m").append(this.torques.node);
     const note = this.known.plane ? make(
       "div", {},
@@ -149,7 +195,7 @@ export class Live {
       const others = [];
       for (const other of this.others) {
         const curve = await other.at(waiting.torque_n_m[0], this.caller);
-        if (curve) others.push({ ...STYLES[other.name], curve, known: other.known, asked: { key: other.known.key, flanks: other.flanks } });
+        if (curve) others.push({ ...STYLES[other.name], curve, known: other.known, pair: pairOf(other.known), asked: { key: other.known.key, flanks: other.flanks } });
       }
       const found = await ask(`${key}/ste`, { ...waiting, flanks: true, passage: true, caller: this.caller });
       const round = performance.now() - begin;
@@ -186,8 +232,8 @@ export class Live {
     if (waiting.preview && !slider && same) return coming(this.heard); // it is a request of its own: at rest
     const own = slider ? now : await new Other("now", this.known, waiting).at(torque, caller);
     const compared = this.others.length ? this.others : [this.analyzed];
-    const curves = await Promise.all(compared.map(async (other) => ({ ...STYLES[other.name], curve: await other.at(torque, caller) })));
-    const last = { ...STYLES[this.others.length ? this.variants.on : "now"], curve: own && { ...own, preview: waiting.preview } };
+    const curves = await Promise.all(compared.map(async (other) => ({ ...STYLES[other.name], pair: pairOf(other.known), curve: await other.at(torque, caller) })));
+    const last = { ...STYLES[this.others.length ? this.variants.on : "now"], pair: pairOf(this.known), curve: own && { ...own, preview: waiting.preview } };
     return { harmonic, torque, curves: [...curves, last].filter(({ curve }) => curve) };
   }
 
@@ -243,30 +289,32 @@ export class Live {
 
   /** Curves as they are drawn: as analyzed, those of other variants, in front that of the sliders. */
   beside(now, others, asked) {
-    const own = { ...STYLES[others.length ? this.variants.on : "now"], curve: now, asked };
-    return [{ ...STYLES.before, curve: this.before, asked: { ...asked, flanks: UNMOVED } }, ...others, own];
+    const pair = pairOf(this.known);
+    const own = { ...STYLES[others.length ? this.variants.on : "now"], pair, curve: now, asked };
+    return [{ ...STYLES.before, pair, curve: this.before, asked: { ...asked, flanks: UNMOVED } }, ...others, own];
   }
 
   async draw(shown) {
     this.sound.show(shown.map(({ name, curve, known = this.known }) => (
       { name, teeth: known.case.pair.pinion.teeth, harmonics: curve.harmonics_um.filter(Number.isFinite) })));
     this.torques.draw(shown);
-    await this.plot(shown, this.before);
+    await this.plot(shown);
   }
 
-  /** Plot curves, the last with its figures and their change. @param {object[]} shown @param {object} from @param {object} [facts] of the first plot */
-  plot(shown, from, facts = {}) {
+  /** Plot curves, the last with its figures and their change from the first. @param {object[]} shown @param {object} [facts] of the first plot */
+  plot(shown, facts = {}) {
     const { curve } = shown.at(-1);
+    const point = this.named(curve);
     const alone = shown.length < 3;
-    figures(byId("live-figures"), alone ? [...heardFigures(this.heard), ...mainFigures(curve, from)] : []);
+    figures(byId("live-figures"), alone ? [...heardFigures(this.heard), ...mainFigures(shown.at(-1), shown[0])] : []);
     const refused = this.others.filter((other) => other.refused).map((other) => make("p", { class: "hint" }, other.refused));
     byId("compared").replaceChildren(...(alone ? [] : [dataTable(besideFigures(shown.slice(1), this.heard)).firstChild]), ...refused);
-    this.describe(shown);
+    this.describe(shown, point);
     return Promise.all([
       plot(this.blocks.ste.node, { ...this.ripple(shown), ...facts }),
       plot(this.blocks.harmonics.node, harmonicsFigure(shown, this.count(curve))),
       plot(this.blocks.sharing.node, sharingFigure(curve)),
-      this.flanks.draw(shown),
+      this.flanks.draw(shown, point),
     ]);
   }
 
@@ -275,15 +323,16 @@ export class Live {
     return steFigure(shown, this.made.traces(shown));
   }
 
-  /** Say over how many pitches a curve goes, and which orders it has. */
-  named({ period }) {
+  /** Say over how many pitches a curve goes, at which operating point, and which orders it has. @param {any} curve @param {string} point */
+  entitle({ period }, point) {
     const words = period > 1
       ? [`Transmission error over ${period} base pitches`, "Orders of teeth that differ",
         "Of the mesh (mesh 1), of a shaft (pinion 1: its run-out; pinion 11: 11 waves, a ghost order), and sidebands (mesh 1 - pinion 1)."]
       : ["Transmission error over two base pitches", "Mesh harmonics", "Amplitudes of the mesh frequency and its multiples."];
-    const { ste, harmonics } = this.blocks;
-    ste.block.querySelector("h3").textContent = words[0];
-    harmonics.block.querySelector("h3").textContent = words[1];
+    const { ste, harmonics, sharing } = this.blocks;
+    ste.block.querySelector("h3").textContent = `${words[0]}, ${point}`;
+    harmonics.block.querySelector("h3").textContent = `${words[1]}, ${point}`;
+    sharing.block.querySelector("h3").textContent = `Load sharing, ${point}`;
     harmonics.block.querySelector("figcaption").textContent = words[2];
   }
 
@@ -293,20 +342,19 @@ export class Live {
     return harmonic && harmonic <= length ? Math.max(SHOWN_HARMONICS, harmonic) : SHOWN_HARMONICS;
   }
 
-  describe(shown) {
+  describe(shown, point) {
     const now = shown.at(-1).curve;
     const count = this.count(now);
-    const tables = [numbersOf(shown, count), ...(now.period > 1 ? [ordersOf(now)] : []), sourcesOf(now)];
+    const tables = [numbersOf(shown, count), ...(now.period > 1 ? [ordersOf(shown.at(-1))] : []), sourcesOf(shown.at(-1))];
     const numbers = tables.map((table) => dataTable(table));
     this.numbers.replaceChildren(make("summary", {}, "Numbers"), ...numbers);
-    const ripple = shown.map(({ name, curve }) => `${name} ${number(curve.peak_to_peak_um, 3)} µm`).reverse().join(", ");
-    this.named(now);
-    this.blocks.ste.node.setAttribute(
-      "aria-label", `Transmission error: peak to peak ${ripple}; mean ${number(now.mean_um, 4)} µm now.`,
-    );
+    this.entitle(now, point);
+    const spoken = shown.map((own) => ({ name: own.name, ...spokenFigures(own, count) })).reverse();
+    const ripples = spoken.map(({ name, ripple }) => `${name} ${ripple}`).join(", ");
+    this.blocks.ste.node.setAttribute("aria-label", `Transmission error ${point}: peak to peak ${ripples}; mean ${spoken[0].mean} now.`);
     const tones = now.period > 1
-      ? `Strongest orders: ${strongestOrders(now, SHOWN_HARMONICS).map(({ name, amplitude }) => `${name} ${number(amplitude, 3)}`).join(", ")} µm.`
-      : `Mesh harmonics 1 to ${count}: ${now.harmonics_um.slice(0, count).map((value) => number(value, 3)).join(", ")} µm.`;
+      ? `Strongest orders: ${strongestOrders(now, SHOWN_HARMONICS).map(({ name, amplitude, error }) => `${name} ${withError(amplitude, error, "µm")}`).join(", ")}.`
+      : `Mesh harmonics 1 to ${count}: ${spoken[0].harmonics}.`;
     this.blocks.harmonics.node.setAttribute("aria-label", tones);
     this.blocks.sharing.node.setAttribute("aria-label", "Load share of each tooth pair over the base pitch.");
   }

@@ -11,7 +11,7 @@ const APART = 0.09; // mesh orders between names
 const [PARTS, ROOM] = [8, 0.4]; // of an axis: steps of the grid that it ends on at least, steps beyond its values
 
 /**
- * @typedef {{name: string, curve: object, color: string, width: number, dash: string}} Shown a curve as it is drawn
+ * @typedef {{name: string, pair: string, curve: any, color: string, width: number, dash: string}} Shown a curve of a pair as it is drawn
  */
 
 /** Positions and values over two pitches (or the whole longer period), closed. */
@@ -56,8 +56,8 @@ export function steFigure(shown, bands) {
 }
 
 /** The strongest orders of a curve up to the fourth of the mesh, by name: of the mesh, of a shaft, or beside the mesh. @param {any} curve */
-export function strongestOrders({ order, order_name: names, amplitude_um: amplitudes }, most = STRONGEST) {
-  const lines = order.map((at, k) => ({ order: at, name: names[k], amplitude: amplitudes[k] })).filter((line) => line.order < HIGHEST);
+export function strongestOrders({ order, order_name: names, amplitude_um: amplitudes, amplitude_error_um: errors }, most = STRONGEST) {
+  const lines = order.map((at, k) => ({ order: at, name: names[k], amplitude: amplitudes[k], error: errors?.[k] ?? null })).filter((line) => line.order < HIGHEST);
   return lines.sort((one, other) => other.amplitude - one.amplitude).slice(0, most);
 }
 

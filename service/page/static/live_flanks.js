@@ -8,6 +8,7 @@ import { figureBlock, plot } from "./plots.js";
 const FACE = "face position, mm (0 = mid-face of the pinion)";
 const ROLL = "roll length, mm (of the pinion)";
 const ISOLINES = 6;
+const [PRESSURE, LOAD] = ["Pressure over the driving gear's flank", "Load over the face"];
 
 /** @typedef {import("./live_figures.js").Shown} Shown */
 
@@ -57,13 +58,14 @@ export const liveBlock = (key, title, caption) => (
 /** What the pressure and the face load are now, and what they were. */
 export class LiveFlanks {
   constructor() {
-    this.pressure = liveBlock("live_pressure", "Pressure over the driving gear's flank", "Hertz pressure that passes over each point, root below. At a tip edge the true pressure is singular. No error is stated.");
-    this.load = liveBlock("live_face_load", "Load over the face", "All pairs together: averaged over the positions, whose largest over mean is K_Hbeta, and at the position of the largest load. No error is stated.");
+    this.pressure = liveBlock("live_pressure", PRESSURE, "Hertz pressure that passes over each point, root below. At a tip edge the true pressure is singular. No error is stated.");
+    this.load = liveBlock("live_face_load", LOAD, "All pairs together: averaged over the positions, whose largest over mean is K_Hbeta, and at the position of the largest load. No error is stated.");
     this.blocks = [this.pressure.block, this.load.block];
   }
 
-  /** @param {Shown[]} shown */
-  async draw(shown) {
+  /** @param {Shown[]} shown @param {string} point */
+  async draw(shown, point) {
+    for (const [{ block }, title] of [[this.pressure, PRESSURE], [this.load, LOAD]]) block.querySelector("h3").textContent = `${title}, ${point}`;
     const now = shown.at(-1).curve.flanks;
     const facing = shown.filter(({ curve }) => overFace(curve.flanks));
     this.load.block.hidden = !overFace(now);

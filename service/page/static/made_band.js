@@ -1,7 +1,7 @@
 /** What pairs within a tolerance class have, as a band behind the ripple; drawn at the service when the sliders rest. */
 
 import { Problem, ask } from "./api.js";
-import { plusMinus, toError } from "./digits.js";
+import { withError } from "./digits.js";
 import { make } from "./elements.js";
 import { band } from "./lines.js";
 import { over } from "./live_figures.js";
@@ -69,7 +69,7 @@ export class MadeBand {
   }
 
   said(name, { tolerance_class: chosen, pairs, of, peak_to_peak: ripple, first_harmonic: tone }) {
-    const ends = ({ low_um: low, high_um: high, error_um: error }) => `${toError(low, error)} to ${toError(high, error)} µm (${plusMinus(error, high)})`;
+    const ends = ({ low_um: low, high_um: high, error_um: error }) => `${withError(low, error)} to ${withError(high, error, "µm")}`;
     const why = chosen === this.stated ? ", that of the case," : !this.stated && chosen === USUAL ? ", as the case states none," : "";
     return `${name}: nine of ten pairs within class ${chosen}${why} have ${ends(ripple)} peak to peak, ${ends(tone)} in the first `
       + `harmonic; ${pairs} drawn, ${of} of them solved.`;

@@ -13,7 +13,7 @@ export function showPlan(found) {
     ["model", choice.model, passes.map(({ level }) => level).join(", then ")],
     ["time", duration(seconds), "of one processor"],
     ["memory", `${Math.round(Math.max(...passes.map(({ cost }) => cost.memory_bytes)) / 2 ** 20)} MiB`],
-    ["expected error", `${percent(error.numerical)} %`, `numerical; ${error.bias ? "" : `plane ${percent(error.plane)} %, `}method ${percent(error.method)} %`],
+    expectation(error),
   ]);
   const stages = Object.keys(found.levels[0].cost.stages);
   const levels = {
@@ -38,6 +38,17 @@ export function showPlan(found) {
     folded("Effect ledger: which physics is in, why, and its influence", dataTable(ledger(found.effect_ledger))),
   );
   return seconds;
+}
+
+/** The error that a run is expected to state, before it is begun: the largest over its loads. */
+function expectation({ mean_um: mean, peak_to_peak_um: ripple, numerical, plane, bias }) {
+  const of = (what, value, unit) => ({ text: `${number(value, 2)} ${unit}`, data: { "data-subject": `expected error of ${what}; most over all loads`, "data-value": value, "data-unit": unit } });
+  if (ripple === null) {
+    const worse = of("mean or peak to peak", 100 * Math.hypot(numerical, bias ? 0 : plane), "%");
+    return ["error to expect", worse.text, ["of mean or peak to peak, whichever is worse, over all loads"], worse.data];
+  }
+  const [first, second] = [of("peak to peak", ripple, "µm"), of("mean", mean, "µm")];
+  return ["error to expect, peak to peak", `± ${first.text}`, [{ ...second, text: `mean ± ${second.text}` }, "the most over all loads"], first.data];
 }
 
 function ledger(entries) {

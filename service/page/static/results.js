@@ -104,7 +104,7 @@ export class Results {
     const long = facts.period > LONGEST;
     const circles = await circlesOf(facts.case);
     if (signal.aborted) return;
-    const known = { key, case: facts.case, circles, torques, torque: torques[Math.floor(torques.length / 2)], plane, long };
+    const known = { key, case: facts.case, circles, torques, plane, long };
     byId("results-none").hidden = true;
     const report = await reported;
     if (signal.aborted) return;
@@ -136,7 +136,7 @@ export class Results {
     byId("dock-words").textContent = `${title}. It came with the program; Analyze computes it here and frees the sliders.`;
     this.key = ""; // it has none
     this.note.of(content);
-    await this.live.still(curve, outline);
+    await this.live.still(curve, outline, content);
   }
 
   unreport() {

@@ -126,6 +126,20 @@ export class Sliders {
     for (const { knob: { key, value }, put } of this.controls) put(at(moved, key.split(".")) ?? value);
   }
 
+  /** Let another value be the usual one, and stand there. @param {string} key @param {number} value @param {boolean} now */
+  stand(key, value, now) {
+    const { knob, put } = this.controls.find((control) => control.knob.key === key);
+    knob.value = value;
+    if (now) put(value);
+  }
+
+  /** Move a slider. @param {string} key @param {number} value */
+  put(key, value) {
+    this.controls.find((control) => control.knob.key === key).put(value);
+    document.dispatchEvent(new Event("typed"));
+    this.changed();
+  }
+
   /** Say the values anew, which were put there from outside. */
   told() {
     for (const { told } of this.controls) told();

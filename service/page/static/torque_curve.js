@@ -16,8 +16,8 @@ const THUMB = 8; // half of that of a slider, px: it stands over its torque
 /** @typedef {{torque: number, ripple: number, error: number}[]} Rows */
 
 export class TorqueCurve {
-  /** @param {number} highest torque of the slider @param {string} caller @param {() => void} seen called when it comes into sight after it was left out */
-  constructor(highest, caller, seen) {
+  /** @param {number} highest torque of the slider @param {string} caller @param {() => void} seen called when it comes into sight after it was left out @param {(torque: number) => void} choose takes a torque that is clicked */
+  constructor(highest, caller, seen, choose) {
     Object.assign(this, { highest, caller });
     this.loads = Array.from({ length: LOADS }, (_, k) => Number((highest * ((k + 1) / LOADS) ** CLOSER).toPrecision(5)));
     this.loads[LOADS - 1] = highest;
@@ -32,6 +32,10 @@ export class TorqueCurve {
       seen();
     });
     this.sight.observe(this.node);
+    this.node.addEventListener("click", ({ offsetX }) => {
+      const torque = (highest * (offsetX - THUMB)) / (this.node.clientWidth - 2 * THUMB);
+      if (torque > 0) choose(Number(Math.min(torque, highest).toPrecision(2)));
+    });
   }
 
   get visible() {
@@ -111,7 +115,7 @@ export class TorqueCurve {
   words(pairs) {
     const said = pairs.map(({ name, rows }) => {
       const least = rows.reduce((one, other) => (other.ripple < one.ripple ? other : one));
-      return `${name} least ${withError(least.ripple, least.error, "µm")} at ${number(least.torque, 3)} N m, ${number(rows.at(-1).ripple, 3)} µm at ${number(rows.at(-1).torque, 3)} N m`;
+      return `${name} least ${withError(least.ripple, least.error, "µm")} at ${number(least.torque, 3)} N m, ${withError(rows.at(-1).ripple, rows.at(-1).error, "µm")} at ${number(rows.at(-1).torque, 3)} N m`;
     });
     this.node.setAttribute("aria-label", `Peak to peak over torque: ${said.join("; ")}.`);
   }

@@ -58,3 +58,38 @@ def test_a_live_answer_names_the_tooth_that_is_early(tmp_path: Path) -> None:
     assert curve.period == 17 and curve.order_name is not None and curve.order_name[0] == "pinion 1"
     assert curve.tooth_loads is not None and list(curve.tooth_loads) == ["pinion"]
     assert curve.tooth_loads["pinion"].most_loaded == [EARLY]
+
+
+@pytest.mark.usefixtures("coarse_sectors")
+def test_an_answer_at_a_load_of_the_table_states_the_numbers_of_the_table(tmp_path: Path) -> None:
+    gear = {"teeth": 20, "face_width_mm": 4.0, "bore_diameter_mm": 10.0}
+    content = {
+        "pair": {"normal_module_mm": 1.0, "center_distance_mm": 20.0, "pinion": gear, "wheel": gear},
+        "load": {"torque_n_m": [0.5, 1.0]},
+    }
+    case = Case.model_validate_json(json.dumps(content))
+    table = analyze(
+        gear_pair(case), torques=[0.5, 1.0], level="draft", model="plane_strain", positions=16, cache=tmp_path
+    )
+    table = replace(table, metadata=replace(table.metadata, case=json.loads(json.dumps(case_json(case)))))
+    file = tmp_path / "table.nc"
+    table.to_netcdf(file)
+    condensed = condensed_of(file, tmp_path)
+    (stored, between), (moved,) = (
+        live_curves(condensed, LiveInput.model_validate(question))["curves"]
+        for question in (
+            {"torque_n_m": (0.5, 0.7)},
+            {"torque_n_m": (0.5,), "pinion": {"tip_relief_um": 0.01, "tip_relief_length_mm": 0.3}},
+        )
+    )
+    of_table = table.curve(torque=0.5)
+    for estimate, name in ((of_table.mean, "mean"), (of_table.peak_to_peak, "peak_to_peak")):
+        assert stored[f"{name}_um"] == 1e6 * estimate.value
+        assert stored[f"{name}_error_um"] == pytest.approx(1e6 * estimate.error, rel=1e-12)
+        by_source = [errors[name] for errors in stored["error_by_source_um"].values()]
+        assert stored[f"{name}_error_um"] == pytest.approx(np.linalg.norm(by_source), rel=1e-9)
+    assert len(stored["position"]) == len(moved["position"]) > of_table.position.size
+    ripple = table.curve(torque=0.7).peak_to_peak
+    for solved, known in ((between, ripple), (moved, of_table.peak_to_peak)):
+        difference = abs(solved["peak_to_peak_um"] - 1e6 * known.value)
+        assert 0.0 < difference < solved["peak_to_peak_error_um"] + 1e6 * known.error, "solved anew"
