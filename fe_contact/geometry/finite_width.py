@@ -12,6 +12,17 @@ TOOTH_DECAY, BODY_DECAY = 3.2, 0.42
 """Face width in modules at which half is left: of teeth; of teeth with bodies over z^0.75, z the geometric
 mean of the teeth."""
 
+CORRECTION_ERROR, INTERNAL_CORRECTION_ERROR = 0.03, 0.05
+"""Error of the correction of STE that is computed for a finite width, over the correction: of external and of
+internal pairs. The largest seen of mean, peak-to-peak and harmonics of external pairs (docs/lab/index.md,
+"Constants") is 0.033, of peak-to-peak at a face of 1.2 modules, of which the mesh covers its part. A coarse
+mesh and the even load make the correction of an internal pair of 5 modules 0.02 to 0.042 too small."""
+
+
+def correction_error(pair: ParallelAxes) -> float:
+    """Return the error of the correction of a pair for its finite width, over the correction."""
+    return INTERNAL_CORRECTION_ERROR if pair.internal else CORRECTION_ERROR
+
 
 def finite_width_excess(pair: ParallelAxes) -> tuple[float, float]:
     """Estimate the relative excess of mean and peak-to-peak STE of a spur pair over those in plane strain.

@@ -75,10 +75,6 @@ overlap ratio.
 """
 
 
-CORRECTION = 0.03
-"""Error of the correction for a finite width over the expected correction."""
-
-
 WIDTH_RIPPLE = 0.45
 """Peak-to-peak over mean of usual spur pairs."""
 

@@ -9,10 +9,9 @@ import numpy as np
 
 from bounds import engineering
 from fe_contact.geometry import ParallelAxes
-from fe_contact.geometry.finite_width import finite_width_excess
+from fe_contact.geometry.finite_width import correction_error, finite_width_excess
 from fe_contact.planning.discretization import SLICE_ORDER, FaceDiscretization
 from fe_contact.planning.expected_curves import (
-    CORRECTION,
     FACE_POSITIONS,
     HELICAL,
     HELICAL_SLICES,
@@ -183,7 +182,9 @@ def _parts(pair: ParallelAxes, plan: Plan, known: ExpectedCurves) -> dict[str, F
         part = max(by_overlap * pair.overlap_ratio, SPUR_SLICES)
         slices[1] = part * (SLICES / made.slices) ** SLICE_ORDER * known.added
     elif made.corrected:
-        plane = np.outer(CORRECTION * np.array(finite_width_excess(pair)) * (1.0, WIDTH_RIPPLE), mean)
+        plane = np.outer(
+            correction_error(pair) * np.array(finite_width_excess(pair)) * (1.0, WIDTH_RIPPLE), mean
+        )
     elif bias := plane_bias(pair, made):
         plane = bias.largest(mean, ripple)
     # displacements that are not small have errors that are known only with the curves in m

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fe_contact.analysis.estimates.error_sources import CORRECTION_ERROR, contact_error
+from fe_contact.analysis.estimates.error_sources import contact_error
 from fe_contact.analysis.estimates.half_position_errors import errors_by_halves
 from fe_contact.analysis.estimates.position_errors import PositionErrors
 from fe_contact.analysis.estimates.relieved_helical import has_signed_errors, with_signed_errors
@@ -22,6 +22,7 @@ from fe_contact.analysis.pairs.operating_points import OperatingPoints
 from fe_contact.analysis.request.solved_run import Solved
 from fe_contact.contact import ContactSolution
 from fe_contact.geometry import ParallelAxes
+from fe_contact.geometry.finite_width import correction_error
 from fe_contact.planning.discretization import FaceDiscretization
 from fe_contact.planning.model_error import helical_share, model_errors
 from fe_contact.planning.plan import Plan
@@ -149,7 +150,7 @@ def _measured(
     discretization = plan.discretization
     # on the curve: half the slices may multiply a small ripple, and no part of that is what many change
     many_slices = nested.table + discretization.remaining_slices * (nested.table - nested.sliced)
-    parts = 1.0, left_by_mesh, plan.remaining_patches, 1.0, CORRECTION_ERROR
+    parts = 1.0, left_by_mesh, plan.remaining_patches, 1.0, correction_error(points.nominal.pair)
     return _changes(
         nested.sample,
         (nested.table, nested.patched, nested.plane, nested.table, nested.table),

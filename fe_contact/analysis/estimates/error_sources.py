@@ -20,17 +20,12 @@ from fe_contact.analysis.estimates.table_sample import Nested
 from fe_contact.analysis.pairs.operating_points import OperatingPoints
 from fe_contact.analysis.request.solved_run import Solved
 from fe_contact.contact import ContactSolution
+from fe_contact.geometry.finite_width import correction_error
 from fe_contact.planning.discretization import FaceDiscretization
 from fe_contact.planning.model_error import point_error
 from fe_contact.planning.plan import Plan
 from fe_contact.ste.curve_errors import METHOD, PLANE
 from fe_contact.types import FloatArray, Json, Status
-
-CORRECTION_ERROR = 0.03
-"""Error of the correction for a finite width over the correction itself. The largest measured one of mean,
-peak-to-peak and harmonics (docs/lab/index.md, "Constants") is 0.033: of peak-to-peak at a face of 1.2
-modules,
-where the stated mesh error covers the excess."""
 
 
 @dataclass(frozen=True)
@@ -109,7 +104,7 @@ def estimate_errors(
             positions.band[:, :, None, None], (*positions.band.shape, *points.shape)
         ),
         contact=points.gathered([contact_error(solution) for solution in solutions]),
-        plane=left(nested.table, nested.plane, CORRECTION_ERROR),
+        plane=left(nested.table, nested.plane, correction_error(nominal)),
         method=points.gathered([point_error(nominal, plan.load, lag, over_face=face) for lag in lags])
         + points.gathered([rough_flank_errors(*pair) for pair in solved]),
     )
