@@ -1,9 +1,12 @@
-"""Results that draw themselves with the figures of the report."""
+"""Results that draw themselves with the figures of the report, and give the numbers drawn."""
 
 from __future__ import annotations
 
 import sys
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import pandas
 
 
 class Plottable:
@@ -28,7 +31,22 @@ class Plottable:
         -------
         ndarray of Axes (n,), one for each panel, from top to bottom; or plotly's Figure
         """
-        program = sys.modules.get("lineofaction")
-        if program is None:
-            raise ImportError("plots are drawn by the program: import lineofaction, then call plot again")
-        return program.plot(self, view, axes=axes, interactive=interactive)
+        return _program("plot").plot(self, view, axes=axes, interactive=interactive)
+
+    def to_dataframe(self, view: str = "") -> pandas.DataFrame:
+        """Return the numbers that `plot` draws of a view, one row a point.
+
+        Columns are panel, curve, label of the axis and coordinate in its unit (`x_axis`, `x`, `y_axis`, `y`),
+        `error` (half-height of the band; NaN: none is stated), and of maps what their colors are and their
+        values (`value_of`, `value`). Raises as `plot`.
+        """
+        frame: pandas.DataFrame = _program("to_dataframe").dataframe(self, view)
+        return frame
+
+
+def _program(method: str) -> Any:
+    """Return the program, which has the figures; raises `ImportError` where it is not loaded."""
+    program = sys.modules.get("lineofaction")
+    if program is None:
+        raise ImportError(f"figures are of the program: import lineofaction, then call {method} again")
+    return program

@@ -50,6 +50,7 @@ if TYPE_CHECKING:
     from lineofaction.gearbox.schemas.scene import SceneInput as Scene
     from lineofaction.gearbox.workbench import InputWarning, analyze, open_unit, simulate
     from lineofaction.report.document import facts, write
+    from lineofaction.report.frames import dataframe
     from lineofaction.report.plots import plot
     from lineofaction.report.readers import read
 
@@ -61,6 +62,7 @@ _HOME = {
     "Case": ("lineofaction.gearbox.schemas", "Case"),
     "Client": ("lineofaction.client", "LineOfActionClient"),
     "Estimate": ("fe_contact.types", "Estimate"),
+    "dataframe": ("lineofaction.report.frames", "dataframe"),
     "facts": ("lineofaction.report.document", "facts"),
     "FlankGrid": ("fe_contact", "FlankGrid"),
     "FlankModification": ("fe_contact", "FlankModification"),
@@ -129,6 +131,7 @@ __all__ = [
     "Unit",
     "Wave",
     "analyze",
+    "dataframe",
     "facts",
     "open_unit",
     "plot",

@@ -33,7 +33,7 @@ def plot(result: Any, view: str = "", *, axes: Any = None, interactive: bool = F
 
     Raises `BadInput`: no figure has this name, or there are not as many axes as panels.
     """
-    figure = _named(figures_of(result), view)
+    figure = figure_of(result, view)
     if interactive:
         return _plotly(figure)
     if figure.picture is not None:
@@ -46,6 +46,19 @@ def plot(result: Any, view: str = "", *, axes: Any = None, interactive: bool = F
     if len(handles) > 1:
         drawn_axes[-1].legend(handles.values(), handles.keys(), frameon=False, fontsize=9)
     return np.array(drawn_axes, dtype=object)
+
+
+def figure_of(result: Any, view: str = "", *, with_axes: bool = False) -> Figure:
+    """Return the figure of a view.
+
+    Raises `BadInput`: there is none, or `with_axes` it is a picture.
+    """
+    figure = _named(figures_of(result), view)
+    if with_axes and figure.picture is not None:
+        raise BadInput.of(
+            "view", view, "a figure with axes", "A picture has no numbers; name another figure."
+        )
+    return figure
 
 
 def figures_of(result: Any) -> tuple[Figure, ...]:

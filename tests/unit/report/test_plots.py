@@ -16,6 +16,8 @@ from bounds.plottable import Plottable
 from dynamics.results import RunResult
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.registry import STUDIES
+from lineofaction.report.drawing.figure import HeatMap
+from lineofaction.report.plots import figures_of
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
@@ -80,3 +82,27 @@ def test_a_library_alone_says_what_draws(database: SteDatabase, monkeypatch: pyt
     monkeypatch.delitem(sys.modules, "lineofaction")
     with pytest.raises(ImportError, match="import lineofaction"):
         database.plot()
+
+
+def test_the_numbers_of_a_plot_are_a_table(database: SteDatabase) -> None:
+    frame = database.to_dataframe()
+    curve = database.curve(torque=100.0)
+    drawn = frame[(frame["curve"] == "100 N m") & (frame["y_axis"] == "STE less its mean, µm")]
+    assert np.ptp(drawn["y"]) == pytest.approx(1e6 * curve.peak_to_peak.value, rel=0.01)
+    assert drawn["error"].max() >= 0.0 and (frame["error"].dropna() > 0.0).all()
+    expected = 1e6 * (curve.ste - curve.ste.mean())
+    middle = drawn[(drawn["x"] >= 0.0) & (drawn["x"] < 1.0)]
+    np.testing.assert_allclose(
+        np.interp(curve.position, middle["x"], middle["y"], period=1.0), expected, atol=0.05
+    )
+
+
+def test_the_numbers_of_a_map_have_its_coordinates(database: SteDatabase) -> None:
+    names = [figure.key for figure in figures_of(database) if figure.content and figure.content[0].shade]
+    frame = database.to_dataframe(names[0])
+    shade = next(f for f in figures_of(database) if f.key == names[0]).content[0].shade
+    assert isinstance(shade, HeatMap)
+    cells = frame.dropna(subset=["value"]).pivot(index="y", columns="x", values="value")
+    np.testing.assert_array_equal(cells.to_numpy(), shade.z[:, np.isfinite(shade.z).any(axis=0)])
+    with pytest.raises(loa.BadInput, match="view = 'no such'"):
+        loa.dataframe(database, "no such")
