@@ -77,7 +77,7 @@ def stacked(
 def with_seat(
     grid: SectorGrid, layers: Layers, bodies: Stack, ends: tuple[float, float], elastic: bool
 ) -> Stack:
-    """Add a seat between axial positions `ends` in m: elements on the nodes of the bodies' at the bore."""
+    """Add a seat between axial positions `ends` in m: elements on the nodes of body elements there."""
     batches, elements, position = bodies
     if not elastic:
         return bodies

@@ -22,8 +22,8 @@ from model_studies.stage_clock import StageClock
 from model_studies.workers import InProcess, OrHere, Workers, WorkersLost, divided
 
 REFINED = 4
-"""A further search assesses this part of the designs of the first one, a quarter. It follows where the best
-design exceeds the limits in the full analysis, and adds the positions of that analysis.
+"""Divisor of the number of designs in a further search. Such a search follows where the best design exceeds
+the limits in the full analysis, and adds the positions of that analysis.
 """
 
 

@@ -120,7 +120,7 @@ def force_error(table: SteFields, points: FloatArray, force: FloatArray, stiffne
 def _linear(
     stencils: tuple[Stencil, ...] | list[Stencil], values: FloatArray, rows: tuple[IntArray, ...] = ()
 ) -> FloatArray:
-    """Interpolate values linearly over their first axes, (Q, ...); a NaN has no effect on other knots.
+    """Interpolate values linearly over their first axes, (Q, ...); NaN of one knot leaves the others alone.
 
     `rows`: indices (Q,) of axes before those of the stencils.
     """

@@ -34,7 +34,7 @@ def run_geometry(file: InputFile, output: Path | None, *, as_json: bool) -> None
     """Print the data sheet of a case; draw it if requested."""
     checked = assessed_case(file)
     pair = checked.pair
-    implausible = messages()  # of the page, which has remarks of its own
+    implausible = messages()  # for the page, which has the remarks on the pair already
     warn(pair_remarks(pair))
     if output is not None:
         _write_sheet(pair, checked.case.errors.misalignment_class, output, implausible)

@@ -34,8 +34,8 @@ class _Piece:
 def carrier_body(layout: Layout, rotor: int) -> dict[str, Any]:
     """Return the body of a carrier.
 
-    Its axis is that of the first shaft that is no pin. A piece off the axis adds m r^2 about it, and m r^2 /
-    2 across it, the mean over pieces all around.
+    Its axis is that of the first shaft that is no pin. A piece off the axis adds m r^2 about it and,
+    as the mean over pieces all around, m r^2 / 2 across it.
     """
     pins = {pin.id for planets in layout.rotors.sets for pin in planets.pins}
     shafts = [member for member in layout.rotors.members(rotor) if member in layout.shafts]
