@@ -269,6 +269,17 @@ class FlankTransfer(ArrayFile):
         )
 
 
+def parting_share(least_force: FloatArray, mean_force: FloatArray) -> float:
+    """Return the largest share of the static mesh forces (m,), N, by which flanks pull; 0: none does.
+
+    `least_force` (m,) are the least forces of the linear response, N, negative where flanks would have to
+    pull. Where no static force presses them the share is 1.
+    """
+    pull, static = np.maximum(-least_force, 0.0), np.abs(mean_force)
+    share = np.divide(pull, static, out=np.where(pull > 0.0, 1.0, 0.0), where=static > 0.0)
+    return float(np.max(share, initial=0.0))
+
+
 def flank_transfer(
     system: System,
     speed: FloatArray,

@@ -2,7 +2,7 @@
 
 Results are made by the work of their processes, of inputs at the ends of what these take: names of all
 characters, the shortest run, one position, one torque, no load, no excitation. A new study is among them by
-its row. By day one result of a fifth of the kinds is read, and images are left out; at night 500 are read
+its row. By day one result of a fifth of the kinds is read, and images are left out; at night 250 are read
 with all their images.
 """
 
@@ -187,7 +187,7 @@ READERS: tuple[Callable[[Reading], None], ...] = (
 
 
 PROCESSES = tuple(default_registry())
-FEW, MANY = 1, -(-500 // len(PROCESSES))
+FEW, MANY = 1, -(-250 // len(PROCESSES))
 DRAWS = 40
 """Inputs that are drawn for a result at most: some are refused, as they should be."""
 

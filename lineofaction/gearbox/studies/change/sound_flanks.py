@@ -15,7 +15,7 @@ from dynamics.deflection.loaded_scene import with_loads
 from dynamics.errors import DynamicsError
 from dynamics.linearize import FlankTransfer, OtherFlanks, flank_transfer
 from dynamics.linearize.common_period import common_period
-from dynamics.linearize.transfer import FlankExcitation, transfer_seconds
+from dynamics.linearize.transfer import FlankExcitation, parting_share, transfer_seconds
 from dynamics.noise import (
     BearingForce,
     Quantity,
@@ -100,7 +100,7 @@ class HeardLoad:
     def parting(self, flanks: FlankExcitation) -> float:
         """Return the largest share of the static mesh force by which flanks part; 0: they do not."""
         minimum = self.transfer.response(flanks).least_mesh_force.min(axis=1)
-        return float(np.max(-minimum / np.abs(flanks.mean_force), initial=0.0))
+        return parting_share(minimum, flanks.mean_force)
 
     def levels(self, power: FloatArray, worst_speed: bool) -> FloatArray:
         """Return the levels (K,) of a weighted power (S, H), dB."""

@@ -21,6 +21,7 @@ from dynamics.assembly.assemble import System, assemble
 from dynamics.errors import InputError, SolveError
 from dynamics.influence.neglected_check import response_cost
 from dynamics.linearize import ForcedResponse, ModalAnalysis, forced_response, modal_analysis
+from dynamics.linearize.transfer import parting_share
 from dynamics.mechanism.passing import Passing
 from dynamics.scene import Scene
 from host import cpu_seconds
@@ -269,8 +270,7 @@ def _parting(response: ForcedResponse | None) -> float:
     """Return the share of the mean mesh force by which flanks would pull in a linear response; 0: none."""
     if response is None:
         return 0.0
-    pull = -response.least_mesh_force[:, 0] / np.maximum(np.abs(response.mean_force), 1e-300)
-    return float(np.max(pull, initial=0.0))
+    return parting_share(response.least_mesh_force[:, 0], response.mean_force)
 
 
 def _force(response: ForcedResponse | None, order: float, bearing: str | None) -> OrderForce:

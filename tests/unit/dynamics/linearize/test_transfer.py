@@ -14,7 +14,7 @@ from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.linearize import forced_response, harmonic_response
 from dynamics.linearize.steady_vibration import excited
-from dynamics.linearize.transfer import FlankTransfer, flank_transfer, transfer_seconds
+from dynamics.linearize.transfer import FlankTransfer, flank_transfer, parting_share, transfer_seconds
 
 ORDERS = 4
 
@@ -142,3 +142,17 @@ def test_what_is_predicted_goes_with_the_lines_that_are_solved() -> None:
         seconds.append(transfer_seconds(system, speeds, orders))
     assert counts[1] > 4 * counts[0]
     assert seconds[1] / seconds[0] == pytest.approx(counts[1] / counts[0])
+
+
+@pytest.mark.parametrize(
+    ("least", "mean", "share"),
+    [
+        ((30.0, 5.0), (100.0, -100.0), 0.0),
+        ((-30.0, 5.0), (100.0, -100.0), 0.3),
+        ((-1.0, 0.0), (0.0, 0.0), 1.0),
+        ((0.0, 0.0), (0.0, 50.0), 0.0),
+        ((), (), 0.0),
+    ],
+)
+def test_flanks_part_by_a_share_of_the_static_force_and_wholly_where_none_presses_them(least, mean, share):
+    assert parting_share(np.array(least), np.array(mean)) == pytest.approx(share)
