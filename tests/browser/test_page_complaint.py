@@ -129,11 +129,11 @@ def test_bar_form_undo_address_and_file_have_one_complaint(visit: Visit, browser
     page.get_by_label("Unit of the complaint's frequency").select_option("kHz")
     typed(page, frequency_hz="1,4", speed_rpm="1812", torque_n_m="80")
     assert fields(page) == {"frequency_hz": "1400", "speed_rpm": "1812", "torque_n_m": "80"}
-    said(page, "order 2.02: harmonic 2, off by −0.77 %")
+    said(page, "order 46.36 of the pinion, harmonic 2 (−0.77 %)")
     page.wait_for_timeout(RESTED)
     control(page, "#f-complaint-frequency_hz").fill("1500")
     assert bar(page) == {"frequency_hz": "1.5", "speed_rpm": "1812", "torque_n_m": "80"}
-    said(page, "order 2.16: none within 5 %")
+    said(page, "order 49.67 of the pinion, no harmonic within 5 %")
     page.wait_for_timeout(RESTED)
     page.locator("#undo").press("Enter")
     expect(page.locator("#bar-frequency_hz")).to_have_value("1.4")
@@ -195,7 +195,7 @@ def test_the_complaint_is_typed_by_keyboard_at_any_width(browser: Browser, addre
         stops.append(page.evaluate("document.activeElement.id"))
         page.keyboard.type(text)
     assert [stop for stop in stops if stop] == [f"bar-{name}" for name in FIELDS]
-    said(page, "order 2.02: harmonic 2, off by −0.77 %")
+    said(page, "order 46.36 of the pinion, harmonic 2 (−0.77 %)")
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     edges = page.locator("#complaint > :not([hidden])").evaluate_all(
         "all => all.map((node) => node.getBoundingClientRect().right)"
@@ -479,6 +479,7 @@ def test_what_another_mesh_of_a_unit_makes_is_not_submitted_with_the_open_pair(v
     page = visit.page
     page.locator("#import-file").set_input_files(UNIT)
     expect(page.locator("#f-pair-pinion-teeth")).to_have_value("20")
+    page.locator("#unit button", has_text="cylindrical_stage 21").press("Enter")
     for frequency, submitted in (("1300", False), ("933", True)):  # 20 teeth at 2800 rpm: 933 Hz
         typed(page, frequency_hz=frequency, speed_rpm="2800")
         expect(page.locator("#unit-heard")).to_contain_text(re.compile(rf"^At {frequency}\b"))

@@ -1,16 +1,16 @@
 // @ts-check
 /** The complaint: its frequency, speed and torque in the bar, which are fields of the design, and the order that it is. */
 
-import { button, byId, make, number, signed } from "./elements.js";
+import { button, byId, make, signed } from "./elements.js";
 import { numberIn } from "./field.js";
 import { mark } from "./plots.js";
 import { reveal } from "./tabs.js";
 
-const WITHIN = 5; // per cent, as the service, where the complaint states no tolerance
+export const WITHIN = 5; // per cent, as the service, where the complaint states no tolerance
 const AT = ["tire_radius_mm", "road_speed_km_h"]; // either: the speed is that of the road
 const INSTEAD = { frequency_hz: "order", speed_rpm: "road_speed_km_h", road_speed_km_h: "speed_rpm" };
 
-/** @typedef {{order: number, harmonic: number | null, within: number, mesh: number, driver: number, road: number, torque: number}} Heard */
+/** @typedef {{order: number, harmonic: number | null, within: number, shaft: string, teeth: number, mesh: number, driver: number, road: number, torque: number}} Heard */
 
 /**
  * What a case complains of: its order of the mesh and the nearest harmonic, null where none is within so many per cent; the
@@ -27,14 +27,20 @@ export function heardIn({ complaint = {}, pair = {}, load = {} }) {
   const near = Math.max(Math.round(order), 1);
   const harmonic = 100 * Math.abs(near / order - 1) <= within ? near : null;
   const mesh = (teeth(shaft) * rpm) / 60;
-  return { order, harmonic, within, mesh, driver: (60 * mesh) / teeth("pinion"), road, torque: Number(complaint.torque_n_m ?? load.torque_n_m?.at?.(-1)) };
+  return { order, harmonic, within, shaft, teeth: teeth(shaft), mesh, driver: (60 * mesh) / teeth("pinion"), road, torque: Number(complaint.torque_n_m ?? load.torque_n_m?.at?.(-1)) };
 }
 
-/** @param {Heard} heard */
-function wordsOf({ order, harmonic, within }) {
+/** An order of a shaft in the words of terminal and document: "order 27.0 of the pinion". @param {number} order @param {string} shaft */
+export function orderWords(order, shaft) {
+  const text = String(Number(order.toPrecision(4)));
+  return `order ${/[.e]/.test(text) ? text : `${text}.0`} of ${["pinion", "wheel"].includes(shaft) ? "the " : ""}${shaft}`;
+}
+
+/** The order of the shaft with the harmonic of the mesh. @param {Heard} heard */
+function wordsOf({ order, harmonic, within, shaft, teeth }) {
   if (!Number.isFinite(order)) return "";
-  const near = harmonic ? `harmonic ${harmonic}, off by ${signed(100 * (harmonic / order - 1), 2)} %` : `none within ${within} %`;
-  return `order ${number(order, 3)}: ${near}`;
+  const near = harmonic ? `harmonic ${harmonic} (${signed(100 * (harmonic / order - 1), 2)} %)` : `no harmonic within ${within} %`;
+  return `${orderWords(order * teeth, shaft)}, ${near}`;
 }
 
 /** What it is on the axes of plots, by their labels. @param {Heard} heard @returns {Record<string, number>} */
@@ -115,8 +121,13 @@ export class Complaint {
       view.block.hidden = view.field.name === (road ? "speed_rpm" : "road_speed_km_h");
       view.follow(heard);
     }
-    this.words.textContent = this.words.title = wordsOf(heard);
+    this.say(wordsOf(heard));
     mark(axesOf(heard));
+  }
+
+  /** @param {string} text what the complaint is */
+  say(text) {
+    this.words.textContent = this.words.title = text;
   }
 
   /** Edit the field of a view; what it is an alternative to is left out. @param {View} view */

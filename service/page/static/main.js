@@ -25,11 +25,12 @@ import { showResult, showStudies, studiesOf } from "./studies.js";
 import { Tabs, reveal } from "./tabs.js";
 import { Undo } from "./undo.js";
 import { UnitHeard } from "./unit_heard.js";
+import { OF_UNIT, UnitStudies } from "./unit_studies.js";
 import { Variants } from "./variants.js";
 
 const EXAMPLES = "/v1/examples";
 const STARTS = [EXAMPLES, "/v1/processes/analyze", "/v1/effects", "/v1/processes", "/v1/"];
-const PLACES = ["analyze", "simulate", "modes", "scene", "job"]; // beside the studies
+const PLACES = ["analyze", "simulate", "modes", "scene", "job", ...OF_UNIT.map(({ id }) => id)]; // beside the studies
 const OF_RESULT = { simulate: null, modes: null }; // jobs on a result, which go with it
 const USUAL_TAB = "ripple";
 const MOST = 1_500_000; // characters of a design that an address carries
@@ -55,16 +56,16 @@ class Page {
     this.address = new Address([...PLACES, ...ofCases.map(({ process }) => process)], () => this.typed);
     this.caller = `page-${Math.random().toString(36).slice(2, 12)}`;
     this.design = new Design(analyze.inputs.case.schema, effects, examples, this);
-    new Complaint(this.design);
+    const complaint = new Complaint(this.design);
     const scene = (name, unit) => this.scenes.take(name, unit);
     const slide = (part, position) => this.scenes.slide(part, position);
     this.files = new CaseFiles(this.design, { scene, slide, go: (views) => this.go(views) });
-    new UnitHeard(this.design, this.files.unit);
+    new UnitHeard(this.design, this.files.unit, complaint);
     /** @type {Map<string, Slot>} */
     this.slots = new Map();
     this.parts(ofCases, studies);
     this.nodes = new Tabs(byId("tree"), byId("fields"));
-    this.tabs = layOut((id) => this.address.look("tab", id === USUAL_TAB ? null : id));
+    this.tabs = layOut((id) => this.address.look("tab", id === this.usualTab ? null : id));
     this.keepTyped();
     addEventListener("popstate", () => {
       this.address.read();
@@ -88,6 +89,8 @@ class Page {
     showStudies(ofCases, page);
     const dynamics = new Dynamics(studies.find(({ process }) => process === "modes"), page);
     this.scenes = new SceneEditor(studies, page);
+    new UnitStudies(studies, page, this.scenes);
+    document.addEventListener("subject", () => this.tabs?.of(document.body.dataset.subject, this.usualTab));
     this.variants = new Variants(this, () => this.render());
     const live = new Live(this, { take, inThreeDimensions: () => this.inThreeDimensions() });
     this.results = new Results(this, live, [dynamics, this.scenes]);
@@ -102,6 +105,10 @@ class Page {
     this.jobs.refresh();
     this.design.settled = () => this.carry();
     this.design.left = () => this.unit();
+  }
+
+  get usualTab() {
+    return this.files.unit.isSeen ? OF_UNIT[0].id : USUAL_TAB;
   }
 
   slot(name, parts, show) {
@@ -138,7 +145,7 @@ class Page {
     const [newest] = [...this.address.names.keys()].reverse();
     if (views.has("tab")) this.tabs.select(views.get("tab"));
     else if (newest && newest !== "database") reveal(this.slots.get(newest).result);
-    else this.tabs.select(USUAL_TAB);
+    else this.tabs.select(this.usualTab);
     await this.results.show(this.address.get("database"));
     if (turn !== this.turn) return;
     this.fill(orders.filter(({ name }) => name in OF_RESULT)); // showing a result resets them

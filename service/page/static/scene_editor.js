@@ -348,7 +348,7 @@ export class SceneEditor {
       inputs: async () => {
         const scene = await this.current();
         if (process === "listen") return { scene, run: this.run, microphone_mm: microphone };
-        return { scene, ...this.varied(process, scene, evenly(from, to, count)) };
+        return { scene, ...this.varied(process, scene, { from, to, count }) };
       },
     };
   }
@@ -370,8 +370,9 @@ export class SceneEditor {
   }
 
   /** What a process varies of a scene; a study runs it at each speed of its first drive. */
-  varied(process, scene, speeds) {
-    const loads = this.cases.length ? { load_cases: this.cases } : {};
+  varied(process, scene, { from, to, count }, cases = this.cases) {
+    const speeds = evenly(from, to, count);
+    const loads = cases.length ? { load_cases: cases } : {};
     if (process === "optimize") return { heard: { ...loads, mesh: this.meshOf(scene), speed_rpm: speeds } };
     if (this.whole.has(process)) return {};
     if (process === "deflect") return loads;

@@ -31,7 +31,7 @@ export class Tabs {
     const id = `${panel.id}-tab`;
     panel.setAttribute("role", "tabpanel");
     panel.setAttribute("aria-labelledby", id);
-    const facts = { role: "tab", id, "aria-controls": panel.id, "data-level": panel.dataset.level };
+    const facts = { role: "tab", id, "aria-controls": panel.id, "data-level": panel.dataset.level, "data-of": panel.dataset.of };
     return button(panel.dataset.title, () => this.select(panel.id), facts);
   }
 
@@ -48,11 +48,17 @@ export class Tabs {
     if (before && before !== id) this.chosen(id);
   }
 
+  /** Leave a tab that the subject does not have. @param {string} subject @param {string} usual */
+  of(subject, usual) {
+    const { of = subject } = this.tabs.get(this.shown).panel.dataset;
+    if (of !== subject) this.select(usual);
+  }
+
   /** @param {KeyboardEvent} event */
   key(event) {
     if (!(event.key in STEPS)) return;
     event.preventDefault();
-    const names = [...this.tabs.keys()];
+    const names = [...this.tabs].filter(([, { tab }]) => tab.offsetWidth).map(([name]) => name);
     const at = Math.min(Math.max(names.indexOf(this.shown) + STEPS[event.key], 0), names.length - 1);
     this.select(names[at]);
     this.tabs.get(names[at]).tab.focus();

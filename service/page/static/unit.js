@@ -7,6 +7,7 @@ import { sayMissing } from "./notice.js";
 import { MOST, base64, packedFile, unpackedFile } from "./packed.js";
 import { saveScene } from "./scene.js";
 import { same } from "./schema.js";
+import { translated } from "./unit_heard.js";
 import { isSolid } from "./view_housing.js";
 
 const FATES = ["taken", "assumed", "derived", "defaulted", "ignored", "refused"];
@@ -32,6 +33,7 @@ export class OpenedUnit {
     this.word = null;
     this.unit = null;
     this.place = byId("unit");
+    this.seen = () => {}; // called when the unit or its pair is seen
   }
 
   /** @param {File} file */
@@ -69,6 +71,26 @@ export class OpenedUnit {
     return scene ? (scene.meshes ?? []).filter((mesh) => mesh.case) : cases;
   }
 
+  /** Whether the unit is what the page is about: not a pair of it. */
+  get isSeen() {
+    return Boolean(this.part) && !this.place.hidden && Boolean(this.unit?.scene);
+  }
+
+  /** The mesh whose pair is typed, else the first. */
+  get openedMesh() {
+    const { pair } = this.design.case;
+    const alike = ({ case: { pair: own } }) => own.center_distance_mm === pair?.center_distance_mm && ["pinion", "wheel"].every((gear) => own[gear].teeth === pair?.[gear]?.teeth);
+    return this.meshes.find(alike) ?? this.meshes[0];
+  }
+
+  /** Let results stand at their meshes in the tree. @param {Map<string, import("./digits.js").Printed[]>} notes */
+  note(notes) {
+    for (const node of this.place.querySelectorAll("[data-mesh]")) {
+      const parts = notes.get(node.dataset.mesh) ?? [];
+      node.replaceChildren(...parts.flatMap(({ text, data }, k) => [k ? ", K_Hbeta " : " ", make("span", data, text)]));
+    }
+  }
+
   /** By which its scene is known; null: none is shown. */
   get mark() {
     return this.place.hidden || !this.unit?.scene ? null : this.word.slice(-MARK);
@@ -88,6 +110,7 @@ export class OpenedUnit {
   see(part) {
     this.part = part === OWN ? undefined : part;
     this.say();
+    this.seen();
     if (part === OWN) return; // the editor shows it
     const scene = part && !this.place.hidden ? this.unit.scene : null;
     this.design.view.motions?.leave();
@@ -109,8 +132,10 @@ export class OpenedUnit {
     this.see(part);
   }
 
+  /** Open the pair of a mesh, with what is complained of at its speed and torque. */
   openMesh(mesh) {
-    this.design.goTo(mesh.case, `${this.name}, ${mesh.name}`);
+    const complaint = translated(this, mesh);
+    this.design.goTo(complaint ? { ...mesh.case, complaint } : mesh.case, `${this.name}, ${mesh.name}`);
   }
 
   /** The parts of the scene and the meshes. */
@@ -124,7 +149,7 @@ export class OpenedUnit {
     };
     const tree = scene ? [shown(name, WHOLE), make("li", {}, ...branches(scene, part))] : [];
     const meshes = this.meshes.map((mesh) => (
-      make("li", {}, button(`${mesh.name}, ${teeth(mesh.case)}`, () => this.openMesh(mesh), { class: "part" }))));
+      make("li", {}, button(`${mesh.name}, ${teeth(mesh.case)}`, () => this.openMesh(mesh), { class: "part" }), make("small", { "data-mesh": mesh.name }))));
     return make("ul", { class: "parts" }, ...tree, make("li", {}, branch("Meshes", meshes)));
   }
 
