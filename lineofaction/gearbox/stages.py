@@ -6,12 +6,15 @@ A pass is one computation of a table with all its stages; under a tolerance, pas
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from datetime import timedelta
 from typing import NamedTuple
 
 from model_studies.progress import Progress, by_cost, silent, stage_name
 
 _PACE_KNOWN = 0.1
 """Fraction of a stage from which on its pace alone predicts its time."""
+PACE_OF_WHOLE = 0.02
+"""Fraction of the whole from which on what is left is told."""
 _PASS_SHARE = 0.8
 """Share of the remaining fraction that a pass counts if another one may follow. It is large because most
 passes are the last.
@@ -85,6 +88,31 @@ class PacedFraction:
         total_s = (1.0 - weight) * max(usual_s, stage_s) + (weight * stage_s / fraction if fraction else 0.0)
         later_s = ahead * (past_s + total_s) / (before + share)
         return (past_s + stage_s) / (past_s + total_s + later_s)
+
+
+class TimeLeft:
+    """What is left of work, as text: by the times of its stages so far, or by the pace of one bar.
+
+    `stages` as those of `PacedFraction`; empty: each stage alone. `begun_s`: time of the clock at the begin.
+    """
+
+    def __init__(self, stages: Iterable[tuple[str, float]], begun_s: float) -> None:
+        known = tuple(stages)
+        self._whole = PacedFraction(known) if known else None
+        self._begun_s, self._stage_begun_s = begun_s, dict[str, float]()
+
+    def text(self, stage: str, fraction: float, now_s: float) -> str:
+        """Return "0:01:20 left" at a fraction of a stage; empty: not known yet, or nothing is left."""
+        begun_s, done = self._begun_s, None
+        if self._whole is not None:
+            done = self._whole.at(stage, fraction, now_s)
+        else:
+            begun_s = self._stage_begun_s.setdefault(stage, now_s)
+            done = fraction
+        if done is None or not PACE_OF_WHOLE <= done < 1.0:
+            return ""
+        seconds = max((now_s - begun_s) * (1.0 - done) / done, 1.0)
+        return f"{timedelta(seconds=round(seconds))} left"
 
 
 class TableFraction:

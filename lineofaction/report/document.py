@@ -218,7 +218,7 @@ def _page_of(read: Inputs) -> Page:
     alarms: list[str] = []
     if database is not None:
         results = static_results(database, nominal_force(read))
-        sections += (*_marked_table(results, database, read), *static_making(database))
+        sections += (*_marked_table(results, read), *static_making(database))
         alarms += static_alarms(database)
     for study in read.pages.values():
         sections += study.sections
@@ -233,7 +233,16 @@ def _page_of(read: Inputs) -> Page:
         parts += [page.lead for page in read.pages.values() if page.lead]
     if read.run is not None:
         parts.append(f"{read.run.time[-1]:.6g} s of motion at {read.run.sample_rate:.6g} samples per second")
-    return Page(_title(read), "; ".join(parts), headlines_of(read), tuple(sections), tuple(alarms))
+    lead = "; ".join(parts)
+    if (marks := _complaint_of(read)) is not None:
+        lead = " ".join(filter(None, (lead and f"{lead}.", f"Complaint: {marks['words']}.")))
+    return Page(_title(read), lead, headlines_of(read), tuple(sections), tuple(alarms))
+
+
+def _complaint_of(read: Inputs) -> Marks | None:
+    """Return the complaint of the table's case, or of the run's scene."""
+    of_case = None if read.database is None else marks_of_case(read.database.metadata.case)
+    return of_case or read.marks
 
 
 def _marked_results(run: RunResult, read: Inputs) -> tuple[Section, ...]:
@@ -243,9 +252,9 @@ def _marked_results(run: RunResult, read: Inputs) -> tuple[Section, ...]:
     return results if read.marks is None else marked_sections(results, of_run(read.marks, mesh))
 
 
-def _marked_table(results: tuple[Section, ...], database: SteDatabase, read: Inputs) -> tuple[Section, ...]:
+def _marked_table(results: tuple[Section, ...], read: Inputs) -> tuple[Section, ...]:
     """Return the results of a table with the complaint of its case, or of a run's scene, in the plots."""
-    marks = marks_of_case(database.metadata.case) or read.marks
+    marks = _complaint_of(read)
     if marks is None:
         return results
     mesh = read.view.mesh or next(iter(marks["meshes"]), "")

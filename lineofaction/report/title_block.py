@@ -5,12 +5,15 @@ A requirement names a main result of the report, a limit and its unit.
 
 from __future__ import annotations
 
+import hashlib
+import json
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from datetime import date
 from pathlib import Path
+from typing import Any
 
 from fe_contact.solver_version import software_versions
 from lineofaction.gearbox.problems import BadInput
@@ -18,6 +21,9 @@ from lineofaction.gearbox.schemas.reading import read_table, validated
 from lineofaction.gearbox.schemas.report import ReportInput, Requirement
 from lineofaction.report.drawing.page import Headline, Page, TitleBlock
 
+HASH_DIGITS = 12
+"""Digits of a hash that tell two reports apart."""
+_BLANK = "-"
 _NUMBER = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
 _VALUE = re.compile(rf"({_NUMBER}) ?(.*)")
 _BAND = re.compile(rf"± ({_NUMBER})|({_NUMBER}|none) to ({_NUMBER}|none)")
@@ -32,21 +38,24 @@ def about_of(file: Path) -> ReportInput:
 
 
 def titled(page: Page, about: ReportInput | None) -> Page:
-    """Return a page under its title block; without one, the page itself.
+    """Return a page under its title block: date, program, hash of the results; None: by these alone.
 
-    A requirement that names no main result of the page becomes an alarm.
+    A requirement of no main result is an alarm. Without requirements the main result stands as a sentence.
     """
-    if about is None:
-        return page
+    about = ReportInput() if about is None else about
     fields = {name: getattr(about, name) for name in ("project", "number", "revision", "author")}
     rows = {("drawing" if name == "number" else name): text for name, text in fields.items() if text}
+    rows |= {"author": about.author or _BLANK}
     rows |= {
         "date": date.today().isoformat(),
         "made with": f"lineofaction {software_versions()['lineofaction']}",
     }
+    if page.records:
+        rows["hash"] = hash_of(page.records)
     parsed = (Requirement.of(line) for line in about.requirements)
     requirements = [requirement for requirement in parsed if requirement is not None]
     verdicts = tuple(line for required in requirements for line in _verdicts(required, page.headlines))
+    verdicts = verdicts or _main_result(page.headlines)
     unmet = tuple(
         f"Required, but no main result of this report: {required.text}"
         for required in requirements
@@ -55,6 +64,24 @@ def titled(page: Page, about: ReportInput | None) -> Page:
     corner = " ".join(text for text in (about.number, about.revision) if text)
     block = TitleBlock(tuple(rows.items()), verdicts, corner)
     return replace(page, title=about.title or page.title, alarms=(*unmet, *page.alarms), block=block)
+
+
+def hash_of(records: Mapping[str, Any]) -> str:
+    """Return the first digits of the SHA-256 of what the files of a report say of their making."""
+    content = json.dumps(records, sort_keys=True, default=str).encode("utf-8")
+    return hashlib.sha256(content).hexdigest()[:HASH_DIGITS]
+
+
+def _main_result(headlines: Sequence[Headline]) -> tuple[str, ...]:
+    """Return the first main result with a number as a sentence, for a report without requirements."""
+    for headline in headlines:
+        if (match := _VALUE.match(headline.value)) is not None:
+            _, _, band = _band(headline, float(match[1]))
+            size = headline.value.removesuffix(match[2]).strip()
+            result = f"{size}{band} {match[2]}".rstrip()
+            name = f"{headline.name[:1].upper()}{headline.name[1:]}"
+            return (f"{name} is {result}; no requirement is stated.",)
+    return ()
 
 
 def _meant(required: Requirement, headlines: Sequence[Headline]) -> list[tuple[Headline, float]]:
@@ -75,6 +102,8 @@ def _verdicts(required: Requirement, headlines: Sequence[Headline]) -> list[str]
         low, high, band = _band(headline, value)
         is_met = value <= required.limit if required.maximum else value >= required.limit
         verdict = "Open within the error" if low < required.limit < high else "Met" if is_met else "Not met"
+        if is_met and not band:
+            verdict = "Open, no error is stated"
         limit = f"{'at most' if required.maximum else 'at least'} {required.limit:g} {required.unit}".rstrip()
         result = f"{headline.value.removesuffix(required.unit).strip()}{band} {required.unit}".rstrip()
         verdicts.append(f"{verdict}: {headline.name} is {result}; required is {limit}.")

@@ -21,6 +21,8 @@ from service.store.results import results
 Json = dict[str, Any]
 ENDED = ("successful", "failed", "dismissed")
 """States in which nothing more happens."""
+LEAST_LEFT = 0.5
+"""Part of what was left at the last report below which it does not fall without another."""
 _PACE_KNOWN = 0.02  # share of the work after which the pace is known
 _AS_STORED = (
     *("process", "stage", "stage_fraction", "fraction", "attempts", "started", "reference", "inputs"),
@@ -106,7 +108,7 @@ class Job:
         updated = datetime.fromisoformat(self.updated)
         spent = (updated - datetime.fromisoformat(self.started)).total_seconds()
         seconds = spent * (1.0 - self.fraction) / self.fraction
-        return max(seconds - (instant - updated).total_seconds(), 0.0)
+        return max(seconds - (instant - updated).total_seconds(), LEAST_LEFT * seconds)
 
 
 def job_state() -> ColumnElement[Any]:

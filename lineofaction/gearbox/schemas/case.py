@@ -45,6 +45,16 @@ class PairInput(_PairFigures):
     pinion: GearInput = Field(description="The driving gear")
     wheel: WheelInput = Field(description="The driven gear, external or a ring gear")
 
+    @model_validator(mode="before")
+    @classmethod
+    def _positive_center_distance(cls, data: Any) -> Any:
+        """Take the center distance of a ring gear as ISO 21771-1 writes it, with negative teeth: negative."""
+        if isinstance(data, dict) and isinstance(data.get("wheel"), dict):
+            teeth, distance = data["wheel"].get("teeth"), data.get("center_distance_mm")
+            if isinstance(teeth, int) and teeth < 0 and isinstance(distance, int | float) and distance < 0:
+                return {**data, "center_distance_mm": -distance}
+        return data
+
 
 class LoadInput(BoundaryModel):
     """Loads of the table: torques on the driving gear or normal forces."""

@@ -22,6 +22,8 @@ _DEFAULTS = {
 }
 _RING_ONLY = tuple(figure for figure in RING if figure.name not in declarations(Gear))
 _GEAR_ONLY = tuple(figure for figure in figures(Gear) if figure.name not in declarations(RingGear))
+_NEGATIVE = ("teeth", "tip_diameter_mm", "rim_diameter_mm")
+"""Fields of a ring gear that are negative in ISO 21771-1."""
 _IS_RING = {"required": ["internal"], "properties": {"internal": {"const": True}}}
 _RING_HAS = both(required("rim_diameter_mm"), absent("bore_diameter_mm", "blank", "seat", "sector_teeth"))
 _GEAR_HAS = both(required("bore_diameter_mm"), absent(*(figure.field for figure in _RING_ONLY)))
@@ -32,6 +34,21 @@ def _of_either_kind(schema: dict[str, Any]) -> None:
     schema |= all_of({"if": _IS_RING, "then": _RING_HAS, "else": _GEAR_HAS})
     for name, value in _DEFAULTS.items():
         schema["properties"][name]["x-usual"] = {"value": value, "with": ["internal"]}
+
+
+def _of_positive_counts(data: Any) -> Any:
+    """Return a ring gear that has negative teeth and diameters, as ISO 21771-1 writes it, with positive ones.
+
+    The profile shift has the sign of the standard in either form.
+    """
+    if not isinstance(data, dict) or not _is_negative(data.get("teeth")):
+        return data
+    sizes = {name: -value for name, value in data.items() if name in _NEGATIVE and _is_negative(value)}
+    return {**data, "internal": True, **sizes}
+
+
+def _is_negative(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and value < 0
 
 
 @with_fields(as_fields(replace(figure, default=None) for figure in (*_GEAR_ONLY, *_RING_ONLY)))
@@ -50,6 +67,7 @@ class WheelInput(ToothingInput):
     @classmethod
     def _ring_defaults(cls, data: Any) -> Any:
         """Fill in the defaults of a ring gear, so that the echo has them."""
+        data = _of_positive_counts(data)
         if isinstance(data, dict) and data.get("internal") is True:
             return _DEFAULTS | {name: value for name, value in data.items() if value is not None}
         return data

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from bounds import leftover
 from bounds.error_digits import with_error
 from bounds.types import BoolArray, Json
 from dynamics.deflection import CAUSES, CaseDeflection, MeshAlignment
@@ -270,8 +269,10 @@ def agreement(result: GearboxDeflection) -> str:
         return "Nothing meshes."
     if not any(np.isfinite(part.face_load_factor) for part in result.flanks):
         return "The meshes press evenly over their faces: no table in three dimensions."
-    change = leftover(result.change)
-    return f"Mesh loads and deflections agree to {change} of the misalignments after {result.passes} passes."
+    passes = f"{result.passes} pass{'es' if result.passes > 1 else ''}"
+    if not result.agreed:
+        return f"Not converged in {passes}."
+    return f"Converged in {passes}."
 
 
 def _alarms(result: GearboxDeflection) -> tuple[str, ...]:

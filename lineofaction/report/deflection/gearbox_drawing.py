@@ -24,7 +24,7 @@ DRAWN = 0.1
 STEPS = (1.0, 2.0, 5.0, 10.0)
 ALONG = (
     "From the side: shafts outlined, gears as boxes of their operating pitch diameter, bearings as "
-    "triangles, the bent axes in red."
+    "triangles, the bent axes in orange."
 )
 AGAINST = " Against z: operating pitch circles, and where the center of each gear moves."
 NEAR = 0.04

@@ -58,7 +58,7 @@ def verdicts(*requirements: str) -> tuple[str, ...]:
         ("peak-to-peak STE at most 0.44 µm", "Open within the error: "),
         ("peak-to-peak STE at most 0.43 µm", "Open within the error: "),
         ("peak-to-peak STE at most 0.4 µm", "Not met: "),
-        ("Largest pressure at 120 N m at most 1366 MPa", "Met: "),
+        ("Largest pressure at 120 N m at most 1366 MPa", "Open, no error is stated: "),
         ("largest pressure at least 1400 MPa", "Not met: "),
         ("95 % of all pairs below at most 0.72 µm", "Met: "),
         ("95 % of all pairs below at most 0.65 µm", "Open within the error: "),
@@ -75,6 +75,17 @@ def test_a_limit_is_met_only_by_more_than_the_error(requirement: str, verdict: s
 def test_a_verdict_is_one_sentence_with_value_error_and_limit() -> None:
     (said,) = verdicts("peak-to-peak STE at most 0.5 µm")
     assert said == "Met: peak-to-peak STE at 120 N m is 0.436 ± 0.020 µm; required is at most 0.5 µm."
+
+
+@pytest.mark.law
+def test_every_document_names_date_program_hash_author_and_main_result() -> None:
+    page = titled(replace(PAGE, records={"ste.nc": {"content_hash": "3f2a"}}), None)
+    assert page.block is not None
+    rows = dict(page.block.rows)
+    assert set(rows) == {"author", "date", "made with", "hash"}
+    assert page.block.verdicts == ("Mean STE at 120 N m is 16.65 ± 0.088 µm; no requirement is stated.",)
+    other = titled(replace(PAGE, records={"ste.nc": {"content_hash": "3f2b"}}), None).block
+    assert other is not None and dict(other.rows)["hash"] != rows["hash"]
 
 
 def test_a_requirement_of_nothing_shown_is_an_alarm() -> None:
@@ -260,6 +271,5 @@ def test_a_file_in_a_pdf_is_found_by_its_table_and_comes_back_as_it_was() -> Non
         attached(whole, "again.json", content)
 
 
-def test_a_page_is_as_it_is_without_a_title_block() -> None:
-    assert titled(PAGE, None) is PAGE
+def test_a_page_that_is_no_document_has_no_title_block() -> None:
     assert "drawing</dt>" not in html(replace(PAGE, lead=""), {}, still=True)

@@ -165,7 +165,7 @@ def test_the_remaining_time_follows_the_pace_and_falls_between_reports(machine: 
     seen = replace(seen, started=instant(begun), updated=instant(updated))
     assert seen.remaining_s(updated) == pytest.approx(30.0, rel=1e-3)  # three times what a quarter took
     assert seen.remaining_s(updated + timedelta(seconds=4)) == pytest.approx(26.0, rel=1e-3)
-    assert seen.remaining_s(updated + timedelta(seconds=99)) == 0.0
+    assert seen.remaining_s(updated + timedelta(seconds=99)) == pytest.approx(15.0, rel=1e-3)
     assert replace(seen, fraction=0.0).remaining_s(updated) is None
     assert replace(seen, attempts=2).remaining_s(updated) is None
     machine.claims.succeed(claim)
