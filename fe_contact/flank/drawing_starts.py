@@ -124,6 +124,24 @@ class DrawingStarts:
         return {by_field[field]: value for field, value in starts.items()}
 
 
+def relief_length(gear: Tooth, field: str, start: float) -> float:
+    """Return the length along the radius, m, of a relief that starts where a field of `DrawingStarts` says.
+
+    Raises `InputError`: the start is beside the involute.
+    """
+    return _along_radius(gear, field, start)
+
+
+def relief_start(gear: Tooth, field: str, length: float) -> float:
+    """Return the value of a field of `DrawingStarts`, SI, where a relief of a length, m, starts."""
+    end, other = (gear.tip_radius, gear.form_radius)
+    if not field.startswith("tip"):
+        end, other = other, end
+    radius = end + math.copysign(min(length, abs(other - end)), other - end)
+    way = WAYS[field.partition("_relief_")[2]]
+    return way.of_roll_length(gear.base_radius, roll_length_at_radius(gear.base_radius, radius))
+
+
 def _along_radius(gear: Tooth, field: str, value: float) -> float:
     """Return the length in m along the radius of a relief that starts where a field states it."""
     at_tip = field.startswith("tip")

@@ -12,9 +12,10 @@ from fe_contact.microgeometry.confirmation import ConfirmedDesign, confirm
 from fe_contact.microgeometry.design_memory import DesignMemory
 from fe_contact.microgeometry.design_problem import SLACK, DesignProblem
 from fe_contact.microgeometry.design_study import DesignStudy
+from fe_contact.microgeometry.drawing_grid import best_on_grid
 from fe_contact.microgeometry.optimization import OptimizationRequest, Perturbation
 from fe_contact.microgeometry.scatter import Scatter
-from fe_contact.microgeometry.search import Search, SearchRun, search_from
+from fe_contact.microgeometry.search import SearchRun, search_from
 from fe_contact.microgeometry.search_methods import Cancel, SequentialLinearProgramming
 from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.options import Run
@@ -91,7 +92,7 @@ def choose(
     for _ in range(ROUNDS):
         if choice.optimum.violation <= SLACK or choice.run.assessed.violation > SLACK or cancel():
             break
-        choice = _refined(choice, request.search, study, clock, run, cancel)
+        choice = _refined(choice, request, study, clock, run, cancel)
     return choice
 
 
@@ -104,9 +105,15 @@ def _confirmed(
 
 
 def _refined(
-    choice: Choice, search: Search, study: DesignStudy, clock: StageClock, run: Run, cancel: Cancel
+    choice: Choice,
+    request: OptimizationRequest,
+    study: DesignStudy,
+    clock: StageClock,
+    run: Run,
+    cancel: Cancel,
 ) -> Choice:
     """Search on from a design that exceeds the limits between the positions of the search."""
+    search = request.search
     shorter = replace(
         search,
         method=SequentialLinearProgramming(sample=0),
@@ -118,6 +125,7 @@ def _refined(
     with clock.stage("search"):
         best, workers = choice.run.coordinates, run.workers
         further = search_from(problem, shorter, best, search.starts, cancel=cancel, workers=workers)
+        further = best_on_grid(problem, further, request.grid, cancel)
     with clock.stage("confirmation"):
         optimum = confirm(problem, problem.values(further.coordinates), study, run.cache)
     return Choice(problem, choice.start, optimum, (*choice.runs, further), len(choice.runs))
@@ -132,7 +140,7 @@ def perturbation(best: tuple[DesignProblem, SearchRun, Scatter], variable: Desig
     changes = []
     for end in ends:
         evaluation = problem.evaluator.evaluate(values | {variable.name: end})
-        changes.append(problem.objective.of(problem.evaluator.expected(evaluation)) - run.assessed.objective)
+        changes.append(problem.objective_of(evaluation) - run.assessed.objective)
     return Perturbation(variable.name, *ends, *changes)
 
 

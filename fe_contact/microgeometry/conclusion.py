@@ -8,14 +8,23 @@ from __future__ import annotations
 
 import numpy as np
 
-from bounds import engineering
+from bounds import engineering, order_words
+from bounds.error_digits import NO_CHANGE, error_text, to_error, with_error
 from fe_contact.microgeometry.best_design import Choice
 from fe_contact.microgeometry.confirmation import rising
 from fe_contact.microgeometry.design_study import DesignStudy
-from fe_contact.microgeometry.optimization import OptimizationRequest, Outcome, excess, gain_of, outcome_of
+from fe_contact.microgeometry.optimization import (
+    OptimizationRequest,
+    Outcome,
+    excess,
+    gain_of,
+    level_gain,
+    outcome_of,
+)
 from fe_contact.microgeometry.scatter import MISALIGNMENT
 from fe_contact.microgeometry.search import Ended
 from fe_contact.microgeometry.variables import GEARS, LENGTHS, QUANTITIES
+from fe_contact.types import Estimate
 
 AT_BOUND = 1e-3
 """Distance from a bound, over the range of the variable, up to which the variable lies on the bound."""
@@ -30,15 +39,39 @@ def outcome_and_reason(choice: Choice, request: OptimizationRequest) -> tuple[Ou
         return outcome, f"the best design exceeds the limits by {excess(choice.optimum)}{rise}; {end}"
     gain = gain_of(choice.start, choice.optimum)
     trend = "falls" if gain.value >= 0.0 else "rises"
-    change = (
-        f"expected peak-to-peak {trend} by {1e6 * abs(gain.value):.3g} µm, errors "
-        f"{engineering(1e6 * gain.error, 2)} µm{rise}"
-    )
+    if (harmonic := request.objective.harmonic) is not None:
+        change = f"{_harmonic_change(choice, request, harmonic)}{rise}"
+    else:
+        change = (
+            f"expected peak-to-peak {trend} by {1e6 * abs(gain.value):.3g} µm, errors "
+            f"{engineering(1e6 * gain.error, 2)} µm{rise}"
+        )
     if outcome is Outcome.IMPROVED:
         return outcome, f"{change}; {end}"
     if outcome is Outcome.LIMITS_MET:
         return outcome, f"the limits are kept, which the start exceeds; {change}; {end}"
     return outcome, f"{change}; {_reason_without_gain(choice, request, gain.error)}{end}"
+
+
+def _harmonic_change(choice: Choice, request: OptimizationRequest, harmonic: int) -> str:
+    """Return the change of a harmonic in words: the fall of its level, and amplitudes with errors.
+
+    Of one that falls below its error only the least fall is known.
+    """
+    before, after = (design.objective for design in (choice.start, choice.optimum))
+    sizes = " to ".join(with_error(1e6 * one.value, 1e6 * one.error, "µm") for one in (before, after))
+    teeth = request.pair.pinion.teeth
+    torques = ", ".join(engineering(float(torque), 4) for torque in np.atleast_1d(request.torques))
+    name = f"{order_words(harmonic * teeth, 'pinion', f'harmonic {harmonic}')}, at {torques} N m"
+    gain = level_gain(before, after)
+    if abs(before.value - after.value) <= before.error + after.error:
+        return f"{name}: {NO_CHANGE} beyond the errors, {sizes}"
+    if after.value <= after.error:
+        least = level_gain(before, Estimate(after.value + after.error, 0.0, after.unit))
+        return f"{name}: falls by at least {engineering(least.value - least.error, 2)} dB, {sizes}"
+    verb = "falls" if gain.value > 0.0 else "rises"
+    size = f"{to_error(abs(gain.value), gain.error)} ± {error_text(gain.value, gain.error)} dB"
+    return f"{name}: {verb} by {size}, {sizes}"
 
 
 def _rise_by_torque(choice: Choice) -> str:

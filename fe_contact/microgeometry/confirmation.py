@@ -7,7 +7,7 @@ are the design torques, of which the objective is made; further torques are for 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache as cached
 from pathlib import Path
@@ -28,7 +28,7 @@ from fe_contact.microgeometry.evaluator import Evaluation, Evaluator
 from fe_contact.microgeometry.scatter import ONE_NODE
 from fe_contact.microgeometry.variables import modified
 from fe_contact.options import Run
-from fe_contact.ste import SteDatabase
+from fe_contact.ste import Curve, SteDatabase
 from fe_contact.types import Estimate, FloatArray, IntArray
 from model_studies import NOT_STORED, in_unit
 
@@ -120,10 +120,29 @@ def confirm(
     )
     counted_figures = figures.at_loads(counted)
     scatter_error = _scatter_error(problem, values)
-    map_error = problem.objective.of(harris.expected_error[counted])
-    objective = Estimate(problem.objective.of(harris.expected[counted]), map_error + scatter_error, "m")
+    value, map_error = _objective(problem, values, table, harris, counted)
+    objective = Estimate(value, map_error + scatter_error, "m")
     violation = counted_figures.violation(problem.limits)
     return ConfirmedDesign(dict(values), harris, counted_figures, objective, scatter_error, violation, table)
+
+
+def _objective(
+    problem: DesignProblem,
+    values: Mapping[str, float],
+    table: SteDatabase,
+    harris: HarrisMap,
+    counted: IntArray,
+) -> tuple[float, float]:
+    """Return the objective of a design, and its error by the table, m.
+
+    The positions of a search, evenly spaced, resolve a harmonic; the table has its error.
+    """
+    objective, search = problem.objective, problem.evaluator
+    harmonic = objective.harmonic
+    if harmonic is None:
+        return objective.of(harris.expected[counted]), objective.of(harris.expected_error[counted])
+    errors = _errors(table, search, lambda curve: curve.harmonics[harmonic - 1])
+    return problem.objective_of(search.evaluate(values)), objective.of(search.nodes.weight @ errors)
 
 
 def full_table(
@@ -146,10 +165,15 @@ def full_table(
 
 def ripple_errors(table: SteDatabase, fine: Evaluator) -> FloatArray:
     """Return the errors of peak-to-peak (S, T), m, of the table at the nodes and loads of an evaluator."""
+    return _errors(table, fine, lambda curve: curve.peak_to_peak)
+
+
+def _errors(table: SteDatabase, fine: Evaluator, figure: Callable[[Curve], Estimate]) -> FloatArray:
+    """Return the errors of a figure of the curves (S, T), m, at the nodes and loads of an evaluator."""
 
     @cached
     def error(load: float, skew: float) -> float:
-        return table.peak_to_peak(force=load, misalignment=skew).error
+        return figure(table.curve(force=load, misalignment=skew)).error
 
     rows = snapped_to_axis(table.misalignment, fine.misalignments).tolist()
     return np.array([[error(*point) for point in zip(fine.load.tolist(), row, strict=True)] for row in rows])
@@ -163,7 +187,7 @@ def _scatter_error(problem: DesignProblem, values: Mapping[str, float]) -> float
         return 0.0
     other = replace(search, nodes=finer)
     value, refined = (
-        problem.objective.of(evaluator.expected(evaluator.evaluate(values))) for evaluator in (search, other)
+        problem.objective_of(evaluator.evaluate(values), evaluator) for evaluator in (search, other)
     )
     return abs(refined - value)
 

@@ -158,9 +158,10 @@ class DesignProblem(SearchProblem):
         executor = workers if len(tasks) > 1 else InProcess()
         design = joined(self.evaluator, [*chain(*executor.run(_linearized_nodes, self, tasks))])
         objective, violation = self._assessed(design.evaluation)
+        position = self.evaluator.position
         merit = LinearMerit(
-            curves=design.evaluation.ste / self.scale,
-            by=design.curves * (self.ranges / self.scale),
+            curves=self.objective.counted(design.evaluation.ste, position) / self.scale,
+            by=self.objective.counted(design.curves, position) * (self.ranges / self.scale),
             node_weight=self.evaluator.nodes.weight,
             load_weight=self.objective.rows(self.evaluator.load.size),
             limits=tuple((value, by * self.ranges) for value, by in design.limits),
@@ -176,9 +177,15 @@ class DesignProblem(SearchProblem):
         """Return the objective over the scale."""
         return objective / self.scale
 
+    def objective_of(self, evaluated: Evaluation, evaluator: Evaluator | None = None) -> float:
+        """Return the objective in m of a design that an evaluator, by default that of the problem, solved."""
+        solver = evaluator or self.evaluator
+        counted = self.objective.counted(evaluated.ste, solver.position)
+        return self.objective.of(solver.nodes.weight @ np.ptp(counted, axis=1))
+
     def _assessed(self, evaluated: Evaluation) -> tuple[float, float]:
         """Return objective in m and violation of an evaluated design."""
-        objective = self.objective.of(self.evaluator.expected(evaluated))
+        objective = self.objective_of(evaluated)
         return objective, evaluated.violation(self.limits) if math.isfinite(objective) else math.inf
 
 

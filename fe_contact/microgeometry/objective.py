@@ -1,4 +1,4 @@
-"""The objective of a design: expected peak-to-peak over the loads, and limits it has to keep."""
+"""The objective of a design: expected peak-to-peak, or one harmonic, over the loads; and limits to keep."""
 
 from __future__ import annotations
 
@@ -8,15 +8,31 @@ from typing import Protocol
 import numpy as np
 
 from bounds import Bound, SiNote, above, at_least
-from fe_contact.errors import InputError, finite, positive
+from fe_contact.errors import InputError, finite, integer, positive
 from fe_contact.types import FloatArray, Json
 
+MAX_HARMONIC = 20
+"""Highest harmonic that curves have."""
 Rows = tuple[FloatArray, FloatArray]
 """Values (R,) and their derivatives (R, d)."""
 
 
+PHASES = 64
+"""Phases of a harmonic at which its curve is taken: their extremes are within 0.12 % of its own."""
+
+
 class Objective(Protocol):
-    """One number of the expected peak-to-peak STE at all loads."""
+    """One number of the expected peak-to-peak STE at all loads, or of the peak-to-peak of parts of it."""
+
+    @property
+    def harmonic(self) -> int | None:
+        """The mesh harmonic whose amplitude counts in place of the peak-to-peak; None: all of the curve."""
+
+    def counted(self, ste: FloatArray, position: FloatArray) -> FloatArray:
+        """Return the curves (S, R, L, ...) whose peak-to-peak counts.
+
+        `ste` (S, period x P, L, ...) are curves, m, at positions (P,) of one base pitch after the other.
+        """
 
     def check(self, loads: int) -> None:
         """Raise `InputError` if it is not for that many loads."""
@@ -31,8 +47,21 @@ class Objective(Protocol):
         """Return plain JSON."""
 
 
+class _WholeCurve:
+    """An objective of the whole curve."""
+
+    @property
+    def harmonic(self) -> int | None:
+        """None: all of the curve."""
+        return None
+
+    def counted(self, ste: FloatArray, position: FloatArray) -> FloatArray:
+        """Return the curves as they are."""
+        return ste
+
+
 @dataclass(frozen=True)
-class WeightedMean:
+class WeightedMean(_WholeCurve):
     """Mean over the loads; `weights` (L,) >= 0 need not sum to 1, none are equal ones."""
 
     weights: tuple[float, ...] = ()
@@ -63,7 +92,7 @@ class WeightedMean:
 
 
 @dataclass(frozen=True)
-class Worst:
+class Worst(_WholeCurve):
     """The load with the largest expectation."""
 
     def check(self, loads: int) -> None:
@@ -80,6 +109,47 @@ class Worst:
     def to_json(self) -> Json:
         """Return plain JSON."""
         return {"objective": "worst"}
+
+
+@dataclass(frozen=True)
+class HarmonicAmplitude:
+    """Amplitude of one mesh harmonic, over the loads as another objective takes their peak-to-peak."""
+
+    harmonic: int
+    """Multiple of the mesh frequency, from 1."""
+    over_loads: WeightedMean | Worst = WeightedMean()
+
+    def check(self, loads: int) -> None:
+        """Refuse a harmonic that the positions of a search do not resolve."""
+        integer("objective.harmonic", self.harmonic, 1, MAX_HARMONIC)
+        self.over_loads.check(loads)
+
+    def of(self, expected: FloatArray) -> float:
+        """Return the number of the expected amplitudes."""
+        return self.over_loads.of(expected)
+
+    def rows(self, loads: int) -> FloatArray:
+        """Return the weights of the loads."""
+        return self.over_loads.rows(loads)
+
+    def counted(self, ste: FloatArray, position: FloatArray) -> FloatArray:
+        """Return half the harmonic's own curve at `PHASES`: its peak-to-peak is the amplitude.
+
+        With c = 2 / period times the integral of ste(x) exp(-2 pi i n x), the curve is Re(c exp(i phi)) / 2.
+        """
+        periods = ste.shape[1] // position.size
+        places = (position + np.arange(periods)[:, None]).ravel()
+        ahead = np.append(places[1:], places[0] + periods) - places
+        weight = (ahead + np.roll(ahead, 1)) / periods  # twice the trapezoidal rule
+        phase = 2.0 * np.pi * np.arange(PHASES) / PHASES
+        turned = np.cos(phase[:, None] - 2.0 * np.pi * self.harmonic * places)
+        rows = 0.5 * turned * weight
+        rows -= rows.sum(axis=1, keepdims=True) * weight / weight.sum()  # unevenly spaced rows see no mean
+        return np.moveaxis(np.tensordot(rows, ste, (1, 1)), 0, 1)
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        return {**self.over_loads.to_json(), "harmonic": self.harmonic}
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,8 @@ for the objective; Harris maps show T torques, the L design torques and further 
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cached_property
@@ -65,6 +67,9 @@ class OptimizationRequest:
     once, for the design with every variable at the middle of its bounds and the scattered misalignment, and
     for the design with the least removed: all designs are assessed by one model.
     """
+    grid: Mapping[str, FloatArray] = field(default_factory=dict)
+    """Values that a drawing may state, m, increasing, by the name of the variable; a variable without is
+    free."""
     map_torques: Levels | None = None
     """Further torques of the Harris maps, N m; default: up to 1.25 times the largest design torque."""
 
@@ -152,6 +157,15 @@ def gain_of(start: _Confirmed, optimum: _Confirmed) -> Estimate:
     """Return the reduction of the objective; the errors are added, although both designs have one mesh."""
     before, after = start.objective, optimum.objective
     return Estimate(before.value - after.value, before.error + after.error, before.unit)
+
+
+def level_gain(before: Estimate, after: Estimate) -> Estimate:
+    """Return the fall of the level of an amplitude, dB; both relative errors are added."""
+    decibels = 20.0 / math.log(10.0)
+    smallest = np.finfo(float).tiny
+    sizes = [max(one.value, smallest) for one in (before, after)]
+    error = sum(one.error / size for one, size in zip((before, after), sizes, strict=True))
+    return Estimate(decibels * math.log(sizes[0] / sizes[1]), decibels * error, "dB")
 
 
 def outcome_of(start: _Confirmed, optimum: _Confirmed) -> Outcome:

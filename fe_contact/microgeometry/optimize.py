@@ -13,6 +13,7 @@ from fe_contact.microgeometry.conclusion import outcome_and_reason, untried_step
 from fe_contact.microgeometry.counted_merit import Cancelled
 from fe_contact.microgeometry.design_problem import SearchProblem
 from fe_contact.microgeometry.design_study import DesignStudy, design_study
+from fe_contact.microgeometry.drawing_grid import best_on_grid
 from fe_contact.microgeometry.optimization import (
     Optimization,
     OptimizationRequest,
@@ -144,6 +145,7 @@ def optimize(
     with clock.stage("search"):
         problem = posed(study, request, memory)
         runs = search_all(problem, request.search, request.start_design, run, cancel)
+        runs = tuple(best_on_grid(problem, part, request.grid, cancel) for part in runs)
     choice = choose(problem, runs, request, study, clock, run, cancel)
     run.progress("confirmation", 1.0)
     with clock.stage("sensitivity"):

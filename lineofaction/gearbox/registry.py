@@ -85,7 +85,7 @@ def _as(call: Callable[P, None], work: Callable[[], _Work[Q, T, F]]) -> Takes[P,
     return Takes(name, work, from_file=True, bare=file.default is not Parameter.empty)
 
 
-def _either_and_file(case_or_scene: CaseLike | SceneLike, study: StudyLike) -> None: ...
+def _either_perhaps_file(case_or_scene: CaseLike | SceneLike, study: StudyLike = ...) -> None: ...
 
 
 def _scene_and_file(scene: SceneLike, study: StudyLike) -> None: ...
@@ -160,7 +160,7 @@ class Studies:
         aliases=("--image",),
     )
     optimize = StudyOf(
-        _as(_either_and_file, lambda: computations.OPTIMIZE),
+        _as(_either_perhaps_file, lambda: computations.OPTIMIZE),
         "Optimize the flanks",
         "Search better flanks",
         "Choose flank modifications: of a case for the least peak-to-peak STE over torques and scatter, of a "
@@ -177,7 +177,7 @@ class Studies:
             ("search", 0.5),
             ("confirmation", 0.15),
         ),
-        version="7",
+        version="8",
         folder="optimum",
         further=(".toml",),
     )

@@ -239,6 +239,13 @@ class Inputs(BoundaryModel):
             description="Weights of weighted_mean, one for each torque",
             examples=[[1.0, 2.0]],
         )
+        harmonic: Annotated[int, Field(ge=1, le=20)] | None = Field(
+            default=None,
+            description="Harmonic of the mesh whose amplitude counts in place of the peak-to-peak; left out: "
+            "that of the complaint of the case, where it has one and no objective is given",
+            examples=[1],
+            exclude_if=lambda value: value is None,
+        )
 
     class LimitsInput(BoundaryModel):
         """Limits that a design keeps at every torque and deviation."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -14,7 +15,13 @@ from bounds import engineering
 from bounds.types import Json
 from fe_contact.analysis.run_plan import predicted_designs
 from fe_contact.microgeometry.confirmation import HarrisMap
-from fe_contact.microgeometry.objective import Limits, WeightedMean, Worst
+from fe_contact.microgeometry.objective import (
+    HarmonicAmplitude,
+    Limits,
+    Objective,
+    WeightedMean,
+    Worst,
+)
 from fe_contact.microgeometry.optimization import Optimization, OptimizationRequest
 from fe_contact.microgeometry.optimize import optimize
 from fe_contact.microgeometry.scatter import GaussHermite, Scatter, SobolSample
@@ -36,6 +43,7 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.gear import with_figures
 from lineofaction.gearbox.schemas.meshes import MeshInput
+from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.toml import toml_text
 from lineofaction.gearbox.studies.change.question import check_driving, check_receiver, flank_mesh
@@ -52,6 +60,8 @@ from lineofaction.gearbox.studies.optimize import (
     ScatterInput,
     SearchInput,
 )
+from lineofaction.gearbox.studies.optimize.complained import has_cases, of_case, of_scene
+from lineofaction.gearbox.studies.optimize.drawing import as_typed, drawing_grid
 from lineofaction.gearbox.studies.optimize.result import HeardOptimization
 from lineofaction.gearbox.studies.optimize.sound_search import sound_cost, sound_optimum
 from lineofaction.gearbox.units import UM, factor, in_um
@@ -70,9 +80,9 @@ def _write_case(
         if isinstance(checked, CheckedCase)
         else copy.deepcopy(getattr(result, "case", {}))
     )
-    for gear, fields in _at_boundary(result.optimum.values).items():
-        best = {name: float(f"{value:.6g}") for name, value in fields.items()}
-        content["pair"][gear] = with_figures(content["pair"][gear], best)
+    checked_case = checked if isinstance(checked, CheckedCase) else CheckedCase(validated(Case, content))
+    for gear, fields in as_typed(checked_case.case, checked_case.pair, result.optimum.values).items():
+        content["pair"][gear] = with_figures(content["pair"][gear], fields)
     target.write_text(f"# {result.reason}\n\n{toml_text(content)}", encoding="utf-8")
 
 
@@ -98,6 +108,8 @@ class _OptimizeStudy(
             with boundary_errors():
                 _ = subject.request(_library_request, study).checked
             return
+        if study.heard is None and subject.complaint is not None and not has_cases(subject):
+            return  # the complaint names the mesh once the cases are read
         question, mesh = _question_of(subject, study)
         check_receiver(subject, question)
         if mesh.case is not None:
@@ -111,9 +123,8 @@ class _OptimizeStudy(
         if isinstance(subject, SceneInput):
             question, mesh = _question_of(subject, study)
             check_receiver(subject, question)
-            assert mesh.case is not None  # cases are written out
             with boundary_errors():
-                return sound_cost(subject, mesh, question, request_of(mesh.case, study), cache)
+                return sound_cost(subject, mesh, question, _mesh_request(subject, mesh, study), cache)
         with boundary_errors():
             request = subject.request(_library_request, study)
             predicted = predicted_designs(request.checked, cache)
@@ -127,7 +138,12 @@ class _OptimizeStudy(
 
     def normalized(self, subject: CheckedCase | SceneInput, study: Inputs) -> Json:
         """Return all inputs, with the usual variables if none are named."""
-        case = subject.case if isinstance(subject, CheckedCase) else _question_of(subject, study)[1].case
+        case: Case | None
+        if isinstance(subject, CheckedCase):
+            case, study = subject.case, of_case(subject.case, study)
+        else:
+            study = of_scene(subject, study)
+            case = _question_of(subject, study)[1].case
         return super().normalized(subject, study if case is None else _with_variables(case, study))
 
     def compute(
@@ -140,8 +156,8 @@ class _OptimizeStudy(
         with boundary_errors():
             if isinstance(subject, TabledScene):
                 question, mesh = _question_of(subject.inputs, study)
-                assert mesh.case is not None  # a scene with its tables has its cases written out
-                return sound_optimum(subject, mesh, question, request_of(mesh.case, study), means)
+                request = _mesh_request(subject.inputs, mesh, study)
+                return sound_optimum(subject, mesh, question, request, means)
             return optimize(
                 subject.request(_library_request, study),
                 means.analysis,
@@ -196,7 +212,11 @@ class _OptimizeStudy(
 
 
 def _question_of(scene: SceneInput, study: Inputs) -> tuple[HeardObjectiveInput, MeshInput]:
-    """Return the objective on the sound of a scene, and the mesh; raises `BadInput`."""
+    """Return the objective on the sound of a scene, by default its complaint, and the mesh.
+
+    Raises `BadInput`.
+    """
+    study = of_scene(scene, study)
     if study.heard is None:
         remedy = "For example heard = { speed_rpm = [1000, 2000, 3000] }."
         raise BadInput.of("heard", None, "given with a scene", remedy)
@@ -214,6 +234,18 @@ def request_of(case: Case, study: Inputs) -> OptimizationRequest:
     """Return the request of the flanks of a mesh; raises `BadInput`."""
     request: OptimizationRequest = CheckedCase(case).request(_library_request, study)
     return request
+
+
+def _mesh_request(scene: SceneInput, mesh: MeshInput, study: Inputs) -> OptimizationRequest:
+    """Return the request of the flanks of a mesh whose case is written out.
+
+    Flanks that answer a complaint end on the grid of the drawing.
+    """
+    assert mesh.case is not None
+    request = request_of(mesh.case, study)
+    if scene.complaint is None:
+        return request
+    return replace(request, grid=drawing_grid(mesh.case, request.pair, request.variables))
 
 
 def _sound_figures(result: HeardOptimization) -> Json:
@@ -271,11 +303,12 @@ def _with_variables(case: Case, study: Inputs) -> Inputs:
 
 def _library_request(checked: CheckedCase, study: Inputs) -> OptimizationRequest:
     pair, case = checked.pair, checked.case
-    study = _with_variables(case, study)
+    study = _with_variables(case, of_case(case, study))
+    complained = study.objective.harmonic is not None
     torques = study.torque_n_m or case.load.torque_n_m
     if torques is None:
         torques = tuple(float(pair.torque(force)) for force in case.load.normal_force_n or ())
-    objective = WeightedMean(study.objective.weights) if study.objective.kind == "weighted_mean" else Worst()
+    objective = _objective(study)
     gears = {"pinion": study.variables.pinion, "wheel": study.variables.wheel}
     variables = [
         DesignVariable(name, *(end * unit for end in ends))
@@ -300,7 +333,14 @@ def _library_request(checked: CheckedCase, study: Inputs) -> OptimizationRequest
         limits,
         _search(study.search, of_sound=study.heard is not None),
         checked.options,
+        grid=drawing_grid(case, pair, variables) if complained else {},
     )
+
+
+def _objective(study: Inputs) -> Objective:
+    given = study.objective
+    over_loads = WeightedMean(given.weights) if given.kind == "weighted_mean" else Worst()
+    return over_loads if given.harmonic is None else HarmonicAmplitude(given.harmonic, over_loads)
 
 
 def _si(value: float | None, unit: float) -> float | None:

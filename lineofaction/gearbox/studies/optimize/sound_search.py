@@ -27,6 +27,7 @@ from fe_contact.errors import InputError, SolveError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.confirmed_figures import confirmed_figures
 from fe_contact.microgeometry.design_study import DesignSpace, design_study
+from fe_contact.microgeometry.drawing_grid import best_on_grid
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.optimization import OptimizationRequest
 from fe_contact.microgeometry.optimize import search_all
@@ -115,6 +116,7 @@ def sound_optimum(
         expected, cancel = _expected_seconds(problem, start, request.search), means.cancel or never
         announce(means.report, "search", expected)
         runs = search_all(problem, request.search, request.start_design, run, cancel)
+        runs = tuple(best_on_grid(problem, part, request.grid, cancel) for part in runs)
     best = min(range(len(runs)), key=lambda i: runs[i].assessed.order)
     designs = start, problem.values(runs[best].coordinates)
     with clock.stage("confirmation"):
