@@ -36,7 +36,7 @@ from bounds.declared import (
     required,
     written,
 )
-from bounds.order_names import order_name
+from bounds.order_names import order_name, order_words, shaft_words
 from bounds.plausibility import Check, Checklist, Finding, PlausibilityWarning, finding_of, warn_of
 from bounds.text import FieldName, Quantity, Reader, SiNote, Text, Wording
 from bounds.unit import Unit, engineering, leftover
@@ -81,7 +81,9 @@ __all__ = [
     "leftover",
     "one_of",
     "order_name",
+    "order_words",
     "required",
+    "shaft_words",
     "up_to",
     "warn_of",
     "written",

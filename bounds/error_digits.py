@@ -17,6 +17,8 @@ DIGITS_WITHOUT_ERROR = 4
 """Significant digits of a number whose error is not known."""
 NONE = "none"
 """Text of a number that is none (NaN, infinite)."""
+NO_CHANGE = "no change"
+"""Text of a change that is below its error."""
 MAX_PLACE = 9
 """Decimal places up to which a number is written plainly; smaller ones have an exponent."""
 
@@ -56,6 +58,21 @@ def to_error(value: float, error: float, sign: str = "") -> str:
     if error == 0.0:
         return engineering(value, MAX_DIGITS, sign)
     return _fixed(value, _last_place(value, error), sign)
+
+
+def change_text(change: float, error: float) -> str:
+    """Write a change with its sign, up to its error; one below its error is none.
+
+    Parameters
+    ----------
+    change, error : float
+        As `value` and `error` of `with_error`.
+    """
+    if not math.isfinite(change):
+        return NONE
+    if change == 0.0 or (math.isfinite(error) and abs(change) <= error):
+        return NO_CHANGE
+    return to_error(change, error, "+")
 
 
 def error_text(value: float, error: float) -> str:

@@ -4,10 +4,38 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from bounds.unit import engineering
+
 SIDEBANDS = 3
 """Orders of a shaft beside a mesh order that count as its sidebands: eccentricity, ovality, three lobes."""
+GEARS_OF_A_PAIR = ("pinion", "wheel")
+"""Names of shafts that are common nouns: they have an article."""
 TOLERANCE = 1e-6
 """Largest distance of an order from a multiple of another, relative to that multiple."""
+
+
+def order_words(order: float, shaft: str, harmonic: str = "") -> str:
+    """Return an order of a shaft with the harmonic that it is: "order 27.0 of the pinion, harmonic 1".
+
+    Terminal, document and page name orders in these words alone.
+
+    Parameters
+    ----------
+    order : float
+        Per revolution of the shaft.
+    shaft : str
+        Name of the shaft.
+    harmonic : str
+        The harmonic in words, as "harmonic 1", or what else has this order; empty: not known.
+    """
+    number = engineering(order, 4)
+    number += "" if "." in number or "e" in number else ".0"
+    return ", ".join(filter(None, (f"order {number} of {shaft_words(shaft)}", harmonic)))
+
+
+def shaft_words(shaft: str) -> str:
+    """Return the name of a shaft as it stands in a sentence: "the pinion", "shaft 3"."""
+    return f"the {shaft}" if shaft in GEARS_OF_A_PAIR else shaft
 
 
 def order_name(order: float, mesh: Mapping[str, float], shaft: Mapping[str, float]) -> str:

@@ -67,7 +67,8 @@ def run_analyze(
         print_json(summary)
     else:
         print_headlines(static_headlines(database))
-        _show(summary)
+        several = max(database.misalignment.size, database.center_distance_change.size) > 1
+        _show(summary, several_alignments=several)
         print_written([output])
     if database.n_failed:
         raise JobFailed(f"{database.failure_message()}. The table in {output} holds NaN there.")
@@ -82,7 +83,7 @@ def _computed(case: CheckedCase, executor: tuple[int, str | None]) -> SteDatabas
         return CachedTables(lambda _: computed_table(case, report, workers)).table(case.case)
 
 
-def _show(summary: dict[str, Any]) -> None:
+def _show(summary: dict[str, Any], *, several_alignments: bool) -> None:
     out = console()
     names = [f"harm. {n} µm" for n in range(1, _MAX_HARMONICS + 1)]
     rows = [_row(load) for load in summary["loads"]]
@@ -94,7 +95,8 @@ def _show(summary: dict[str, Any]) -> None:
     if sources := source_rows(receipt, -1):
         rows = [[name, *(engineering(error / UM, 2) for error in errors)] for name, *errors in sources]
         head = ["source", "mean µm", "p-p µm", "harm. 1 µm"]
-        out.print(table(head, rows, f"Errors by source at {load['torque_n_m']:.6g} N m"))
+        where = ", the largest over the alignments" if several_alignments else ""
+        out.print(table(head, rows, f"Errors by source at {load['torque_n_m']:.6g} N m{where}"))
     show_effects(out, summary["effect_ledger"])
     for line in assumption_lines(receipt):
         out.print(line)
@@ -192,4 +194,4 @@ def _row(load: dict[str, Any]) -> list[str]:
     if "mean_error_um" in load:
         errors = [load["mean_error_um"], load["peak_to_peak_error_um"], *load["harmonics_error_um"]]
     figures = [with_error(value, error) for value, error in zip(values, errors, strict=False)]
-    return [f"{load['torque_n_m']:.6g}", f"{load['normal_force_n']:.6g}", *figures]
+    return [f"{load['torque_n_m']:.6g}", engineering(load["normal_force_n"], 4), *figures]

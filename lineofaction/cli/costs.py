@@ -30,8 +30,12 @@ def study_cost(
     study: Study, subject: CheckedCase | SceneInput, folder: Path, inputs: Any
 ) -> StudyCost | None:
     """Return the predicted cost of a study, without the tables of a scene; None: not predicted."""
-    written = with_inline_cases(subject, folder) if isinstance(subject, SceneInput) else subject
-    return study.run.predicted(written, inputs, cache_home() / "compliance")
+    return study.run.predicted(written_out(subject, folder), inputs, cache_home() / "compliance")
+
+
+def written_out(subject: CheckedCase | SceneInput, folder: Path) -> CheckedCase | SceneInput:
+    """Return a scene with its cases in place of their files, relative to `folder`; a case as it is."""
+    return with_inline_cases(subject, folder) if isinstance(subject, SceneInput) else subject
 
 
 def table_cost(case: Case) -> StudyCost:

@@ -14,7 +14,7 @@ from bounds import engineering
 from bounds.types import Json
 from host import cpu_seconds
 from host.directories import cache_home
-from lineofaction.cli.costs import announce_cost, study_cost, tables_cost
+from lineofaction.cli.costs import announce_cost, study_cost, tables_cost, written_out
 from lineofaction.cli.interrupts import until_interrupted
 from lineofaction.cli.output import (
     Report,
@@ -30,7 +30,7 @@ from lineofaction.cli.output import (
 from lineofaction.cli.scene_tables import tabled_scene
 from lineofaction.cli.study_cache import cached_workers
 from lineofaction.cli.subjects import assessed_scene, inputs_of_study
-from lineofaction.cli.verb_warnings import messages, warn, warnings_so_far
+from lineofaction.cli.verb_warnings import in_lines, messages, warn, warnings_so_far
 from lineofaction.gearbox.convert.case import case_json
 from lineofaction.gearbox.convert.case_plausibility import case_warnings
 from lineofaction.gearbox.convert.checked_case import CheckedCase
@@ -86,7 +86,7 @@ def run_study(study: Study, options: Json) -> None:
         open_executor(options["workers"], options["scheduler"]) as others,
         _announced_cost(study, subjects, inputs, options),
         cached_workers(study, fields, inputs, others) as workers,
-        progress_bar() as report,
+        progress_bar(study.stages) as report,
         interrupts() as cancel,
     ):
         means = Means(cache_home(), report, workers, cancel, runs, run)
@@ -112,8 +112,11 @@ def run_study(study: Study, options: Json) -> None:
 
 @contextmanager
 def _announced_cost(study: Study, subjects: Sequence[Any], inputs: Any, options: Json) -> Iterator[None]:
-    """Print the predicted cost of the study on standard error, if it is known and more than a moment."""
+    """Print on standard error what is known beforehand, and the cost if it is more than a moment."""
     if not options["json"]:
+        for subject, folder in subjects:
+            if known := study.run.known_before(written_out(subject, folder), inputs):
+                sys.stderr.write(in_lines(known, sys.stderr) + "\n")
         costs = [study_cost(study, subject, folder, inputs) for subject, folder in subjects]
         if study.run.tables and options.get("service") is None:
             costs += [tables_cost(*case) for case in subjects if isinstance(case[0], SceneInput)]
@@ -260,6 +263,8 @@ def _csv(study: Study, result: Any) -> str:
 def _show(study: Study, result: Any, targets: list[Path], remote_seconds: float) -> None:
     """Print the main results, tables and lines, and the whole cost: tables, workers, other children."""
     presentation = presentation_of(study)
+    if point := presentation.point(result):
+        console().print(point, soft_wrap=True)
     parts = list(presentation.text(result))
     first = {part for part in parts[:_FIRST_LINES] if isinstance(part, str)}
     headlines = presentation.page(result).headlines

@@ -10,15 +10,17 @@ from typing import Any
 
 import numpy as np
 
-from bounds import engineering
-from bounds.error_digits import with_error
+from bounds import engineering, order_words
+from bounds.error_digits import error_text, to_error, with_error
 from fe_contact.ste import SteDatabase
 from lineofaction.cli.output import EMPHASIS, aligned, console, csv_text, print_json, table
 from lineofaction.cli.verb_warnings import warn
 from lineofaction.gearbox.convert.answers import curve_json, teeth_text
+from lineofaction.gearbox.convert.operating_point import pair_point
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import only, tables_in
 from lineofaction.gearbox.schemas import Case, read_model
+from lineofaction.gearbox.units import MM, UM
 
 _FARTHEST = 1e6
 """Largest position that ``--at`` accepts, base pitches."""
@@ -82,7 +84,9 @@ def _show(
     elif as_csv:
         sys.stdout.write(csv_text(_columns(curve), _rows(curve)))
     elif as_table or at is not None:
-        console().print(table(_columns(curve), [_typed(row) for row in _rows(curve)]))
+        console().print(
+            table(_columns(curve), [_typed(row, with_error="error_um" in curve) for row in _rows(curve)])
+        )
     else:
         for number, line in enumerate(_answer(database, following, curve)):
             console().print(line, soft_wrap=True, style=None if number else EMPHASIS)
@@ -135,8 +139,14 @@ def _rows(curve: dict[str, Any]) -> list[list[str]]:
     return [[repr(x), f"{ste:.9g}", *row, *band] for x, ste, row, band in lines]
 
 
-def _typed(row: list[str]) -> list[str]:
-    return [f"{float(row[0]):.5f}", f"{float(row[1]):.4f}", *row[2:]]
+def _typed(row: list[str], *, with_error: bool) -> list[str]:
+    """Return a row of the printed table: the STE up to its error, shares of three digits."""
+    position, ste, *shares = map(float, row)
+    cells = [f"{position:.5f}"]
+    if with_error:
+        *shares, error = shares
+        return [*cells, to_error(ste, error), *map(engineering, shares), error_text(ste, error)]
+    return [*cells, engineering(ste, 4), *map(engineering, shares)]
 
 
 def _columns(curve: dict[str, Any]) -> list[str]:
@@ -147,7 +157,9 @@ def _columns(curve: dict[str, Any]) -> list[str]:
 def _answer(database: SteDatabase, following: str, curve: dict[str, Any]) -> Iterator[str]:
     """Yield the lines of a curve: figures with errors, harmonics, load sharing, the next verb."""
     one, other = database.geometry.teeth
-    yield f"gear pair {one}/{other} at {curve['torque_n_m']:.6g} N m ({curve['normal_force_n']:.0f} N)"
+    yield f"gear pair {one}/{other} {_point(curve)}"
+    if curve["period"] == 1:
+        yield f"harmonic 1 is {order_words(one, 'pinion')}"
     yield ""
     figures = [
         ("mean", *_with_error(curve, "mean_um")),
@@ -183,6 +195,12 @@ def _answer(database: SteDatabase, following: str, curve: dict[str, Any]) -> Ite
             yield f"  {gear}: largest pressure on {teeth_text(worst)}, {loads['pressure_mpa']:.0f} MPa"
     yield ""
     yield f"next: loa {following}     all positions: --table, --csv"
+
+
+def _point(curve: dict[str, Any]) -> str:
+    """Return the operating point of a curve in words."""
+    change = curve.get("center_distance_change_mm", 0.0) * MM
+    return pair_point(curve["torque_n_m"], curve["normal_force_n"], curve["misalignment_um"] * UM, change)
 
 
 def _bands(curve: dict[str, Any]) -> Iterator[str]:

@@ -14,6 +14,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from bounds import Direction
+from bounds.error_digits import MAX_DIGITS
 from fe_contact.geometry import (
     BoreSeat,
     FlankGrid,
@@ -485,7 +486,10 @@ def data_sheet_json(pair: ParallelAxes) -> Json:
 
 def _text(value: float, unit: str) -> str:
     """Write a value with the decimals of its unit; numbers of teeth are whole."""
-    return f"{value:.0f}" if not unit and value.is_integer() else f"{value:.{_DECIMALS[unit]}f}"
+    if not unit and value.is_integer():
+        return f"{value:.0f}"
+    before = len(f"{abs(value):.0f}")
+    return f"{value:.{min(_DECIMALS[unit], max(MAX_DIGITS - before, 0))}f}"
 
 
 def _ratio(value: float) -> str:

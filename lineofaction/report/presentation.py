@@ -15,6 +15,7 @@ from typing import Any
 
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.effects import run_lines
+from lineofaction.gearbox.convert.operating_point import OPERATING_POINT
 from lineofaction.gearbox.convert.scene_effects import assumed_lines, beyond_lines, scene_table
 from lineofaction.gearbox.loading import LOADING, load
 from lineofaction.gearbox.studies.bodies import UNIT
@@ -26,6 +27,12 @@ from lineofaction.report.drawing.marks import marked, marked_page, marks_of
 from lineofaction.report.drawing.page import Headline, Page, Part, Section
 from lineofaction.report.drawing.tables import cost_tables, ledger_section
 from lineofaction.report.unit_picture import with_picture
+
+
+def scene_point_of(result: Any) -> str:
+    """Return the operating point of the result of a scene in words; empty: its file knows none."""
+    return str(metadata_of(result).get(OPERATING_POINT, ""))
+
 
 _SUBJECTS = [entry.name for entry in iter_modules([str(Path(__file__).parent)]) if entry.ispkg]
 """Folders of the report, in which the modules of studies are."""
@@ -45,6 +52,8 @@ class Presentation:
     """Numbers of the plot, which are written as CSV; None: no CSV."""
     with_database: Callable[[Any, SteDatabase], Page] | None = None
     """Report of a result together with its STE database; None: the report is `page`."""
+    point: Callable[[Any], str] = scene_point_of
+    """Operating point in words, which stands at the head; empty: the tables name theirs."""
 
 
 def presentation_of(study: Study) -> Presentation:
@@ -67,10 +76,18 @@ def _of_its_unit(presentation: Presentation) -> Presentation:
 
     def page(result: Any) -> Page:
         marks, plain = marks_of(result), presentation.page(result)
+        plain = at_point(plain, presentation.point(result))
         complete = plain if marks is None else marked_page(plain, marks)
         return with_picture(complete, metadata_of(result).get(UNIT))
 
     return replace(presentation, figure=figure, page=page)
+
+
+def at_point(page: Page, point: str) -> Page:
+    """Return a page whose lead begins with the operating point."""
+    named = f"{point[:1].upper()}{point[1:]}." if point else ""
+    lead = page.lead and f"{page.lead[0].upper()}{page.lead[1:]}"
+    return replace(page, lead=" ".join(filter(None, (named, lead)))) if named else page
 
 
 def dynamics_presentation(

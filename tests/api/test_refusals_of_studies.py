@@ -306,7 +306,10 @@ SAID: dict[str, list[tuple[list[str], str]]] = {
     "modes": [(["--speed-rpm", text], "--speed-rpm") for text in ("x", "0:1", "10:1:1", "0:1:-1", "0:1e6:1")],
     "response": [(["--speed-rpm", "0:100:50"], "speed_rpm[0]"), (["--speed-rpm", "1:x"], "--speed-rpm")],
     "complaint": [
-        (["--frequency-hz", "300", "--speed-rpm", "1200"], 'nearest: harmonic 1 of mesh "pair" at 400 Hz'),
+        (
+            ["--frequency-hz", "300", "--speed-rpm", "1200"],
+            "nearest: order 20.0 of the pinion, harmonic 1, at 400 Hz",
+        ),
         (["--frequency-hz", "1.4", "--speed-rpm", "1200"], "In kHz? Then write 1400."),
     ],
     "steady": [(["--speed-rpm", "0:100:50"], "speed_rpm[0]"), (["--speed-rpm", "a"], "--speed-rpm")],

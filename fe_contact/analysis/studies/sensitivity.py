@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -38,6 +39,14 @@ class RippleCurve:
         """Change over the value without deviation (N,): 1 is twice as large."""
         nominal = float(self.peak_to_peak[self.deviation == 0.0][0])
         return self.peak_to_peak / nominal - 1.0
+
+    @property
+    def change_error(self) -> FloatArray:
+        """Error of the relative change (N,): both errors as independent ones; 0 without deviation."""
+        none = self.deviation == 0.0
+        nominal, error = float(self.peak_to_peak[none][0]), float(self.error[none][0])
+        both = np.hypot(self.error, error * (1.0 + self.relative_change)) / nominal
+        return np.where(none, 0.0, both)
 
 
 @brief
@@ -99,13 +108,19 @@ def _sensitivity(checked: Checked, run: Run, *, corner_contact: bool) -> Sensiti
     changes = np.union1d(zero, base.center_distance_change)
     misaligned = replace(request, misalignment=misalignments, center_distance_change=zero)
     displaced = replace(request, misalignment=zero, center_distance_change=changes)
-    return Sensitivity(
-        corner_contact=corner_contact,
-        misalignment=_ripple(analyze(checked_request(misaligned), run=run), "misalignment"),
-        center_distance_change=_ripple(
-            analyze(checked_request(displaced), run=run), "center_distance_change"
-        ),
-    )
+    skewed = _ripple(analyze(checked_request(misaligned), run=run), "misalignment")
+    moved = _ripple(analyze(checked_request(displaced), run=run), "center_distance_change")
+    return Sensitivity(corner_contact, *_with_one_nominal(skewed, moved))
+
+
+def _with_one_nominal(*curves: RippleCurve) -> Iterator[RippleCurve]:
+    """Yield curves whose undeviated pair, which is one, has one error: the least of its estimates.
+
+    Estimates that a table makes for all its deviations together are larger than those of its nominal point.
+    """
+    least = min(float(curve.error[curve.deviation == 0.0][0]) for curve in curves)
+    for curve in curves:
+        yield replace(curve, error=np.where(curve.deviation == 0.0, least, curve.error))
 
 
 def _ripple(table: SteDatabase, axis: str) -> RippleCurve:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any
 
-from bounds import engineering
+from bounds import engineering, order_words, shaft_words
 from bounds.types import Json
 from dynamics.mechanism.kinematics import solve_kinematics
 from dynamics.mechanism.passing import (
@@ -42,6 +42,8 @@ EXCITATION, HARMONIC = "excitation", "harmonic number"
 """Grounds on which harmonics near a complaint are ranked: by the force that excites, or, where no force is
 known, as if the force fell with the number of the harmonic.
 """
+PAIR = "pair"
+"""Name of the mesh of a case, which has no other."""
 _SURFACE = "Give a housing by step_file, mesh_file or modes_file, or leave the microphone out."
 _SEVERAL = {MESH: "meshes", SIDEBAND: "meshes", SHAFT: "shafts", BEARING: "bearings"}
 
@@ -189,7 +191,7 @@ def complaint_of_case(case: Case) -> Complaint:
         fields, named_shaft, final, {name: teeth[named_shaft] / z for name, z in teeth.items()}
     )
     turns = {name: teeth[shaft] / z for name, z in teeth.items()}
-    mesh = Excitation(MESH, "pair", "", float(teeth[shaft]), _harmonics(fields))
+    mesh = Excitation(MESH, PAIR, "", float(teeth[shaft]), _harmonics(fields))
     parts = [mesh, *(Excitation(SHAFT, name, "", turn, TURNS) for name, turn in turns.items())]
     highest = None if case.load.torque_n_m is None else case.load.torque_n_m[-1]
     torque = highest if fields.torque_n_m is None else fields.torque_n_m
@@ -199,10 +201,10 @@ def complaint_of_case(case: Case) -> Complaint:
         shaft,
         speed,
         turns=turns,
-        drivers={"pair": ("pinion", mesh.rate)},
+        drivers={PAIR: ("pinion", mesh.rate)},
         per_pitch=1.0 / mesh.rate,
         levels={},
-        torques={} if torque is None else {"pair": torque},
+        torques={} if torque is None else {PAIR: torque},
     )
 
 
@@ -310,7 +312,8 @@ def _nothing_passes(complaint: Complaint, fields: ComplaintInput) -> BadInput:
     name = "frequency_hz" if fields.order is None else "order"
     meshes = [line for line in complaint.passing if line.excitation.kind == MESH] or complaint.passing
     nearest = "; ".join(
-        f"{harmonic_label(alike)} {offset_text(complaint, alike[0])}" for alike in grouped(meshes)[:NAMED]
+        f"{cause_words(complaint, alike)}, {offset_text(complaint, alike[0])}"
+        for alike in grouped(meshes)[:NAMED]
     )
     share = engineering(100.0 * complaint.tolerance, 3)
     bound = f"within {share} % of what passes; nearest: {nearest}"
@@ -321,11 +324,16 @@ def _nothing_passes(complaint: Complaint, fields: ComplaintInput) -> BadInput:
 def sentence(complaint: Complaint) -> str:
     """Return a sentence on the sound and its likely cause."""
     first = grouped(complaint.within)[0]
-    subject = f"order {engineering(complaint.order, 4)} of {complaint.shaft}"
+    subject = order_words(complaint.order, complaint.shaft)
     if complaint.speed is not None and complaint.frequency is not None:
         speed = f"{engineering(complaint.speed / RPM, 4)} rpm"
-        subject = f"{engineering(complaint.frequency, 4)} Hz at {speed} of {complaint.shaft}"
-    return f"{subject} is {harmonic_label(first)} {offset_text(complaint, first[0])}"
+        subject = f"{engineering(complaint.frequency, 4)} Hz at {speed} of {shaft_words(complaint.shaft)}"
+    return f"{subject} is {cause_words(complaint, first)}, {offset_text(complaint, first[0])}"
+
+
+def cause_words(complaint: Complaint, alike: Sequence[Passing]) -> str:
+    """Return the order of the complaint's shaft and the harmonic together, of what `grouped` returns."""
+    return order_words(alike[0].order, complaint.shaft, harmonic_label(alike))
 
 
 def grouped(every: Iterable[Passing]) -> list[tuple[Passing, ...]]:
@@ -341,6 +349,8 @@ def grouped(every: Iterable[Passing]) -> list[tuple[Passing, ...]]:
 def harmonic_label(alike: Sequence[Passing]) -> str:
     """Name a harmonic of one part, or of several as `grouped` returns them."""
     of = alike[0].excitation
+    if of.kind == MESH and of.name == PAIR:
+        return f"harmonic {alike[0].harmonic}"
     kind = _SEVERAL[of.kind]
     if len(alike) == 1:
         kind = MESH if of.kind == SIDEBAND else of.kind
@@ -352,13 +362,11 @@ def harmonic_label(alike: Sequence[Passing]) -> str:
 
 
 def offset_text(complaint: Complaint, line: Passing) -> str:
-    """Return the order of a harmonic and its distance from the complaint, as text."""
-    hertz = complaint.hertz(line.order)
-    if hertz is None or complaint.frequency is None:
-        at, offset = f"order {engineering(line.order, 4)} of {complaint.shaft}", ""
-    else:
+    """Return the frequency of a harmonic, at any speed nothing, and its distance from the complaint."""
+    hertz, at, offset = complaint.hertz(line.order), "", ""
+    if hertz is not None and complaint.frequency is not None:
         off = engineering(hertz - complaint.frequency, 2, "+")
-        at, offset = f"{engineering(hertz, 4)} Hz", f" or {off} Hz"
+        at, offset = f"at {engineering(hertz, 4)} Hz, ", f" or {off} Hz"
     if abs(line.distance) < SAME:
-        return f"at {at}, exactly"
-    return f"at {at}, off by {engineering(100.0 * line.distance, 2, '+')} %{offset}"
+        return f"{at}exactly"
+    return f"{at}off by {engineering(100.0 * line.distance, 2, '+')} %{offset}"

@@ -52,7 +52,7 @@ def scene_effects(ledger: Json) -> tuple[list[SceneEffect], list[SceneEffect]]:
     main, trifles = list[SceneEffect](), list[SceneEffect]()
     for name, entries in effects.items():
         size, estimate = effect_size(ledger, name), estimates.get(name)
-        freedoms = f"{estimate['freedoms']:+d}" if estimate else ""
+        freedoms = f"{estimate['freedoms']:+d}".replace("+0", "0") if estimate else ""
         listed = trifles if _is_trifle(entries, size, estimate) else main
         if estimate and estimate.get("level"):
             size = size.partition(", ")[0]  # the text begins with the level, which is enough

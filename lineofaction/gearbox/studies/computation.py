@@ -134,6 +134,13 @@ class Computation(ABC, Generic[Written, Subject, Inputs, Answer, Result]):
         """
         return None
 
+    def known_before(self, _subject: Written, _inputs: Inputs) -> str:
+        """Return what is known of the result in words before anything is computed; empty: nothing.
+
+        The cases of a scene are written out.
+        """
+        return ""
+
     def normalized(self, _subject: Written, inputs: Inputs) -> Json:
         """Return the inputs of a job as JSON, alike for equal questions; may raise `BadInput`."""
         return inputs.model_dump(mode="json")

@@ -11,13 +11,15 @@ import numpy as np
 from bounds import order_name
 from bounds.types import FloatArray, Json
 from dynamics.assembly.assemble import System, assemble
+from dynamics.errors import InputError
 from dynamics.linearize import HarmonicResponse
 from dynamics.linearize.operating_speeds import mesh_frequencies
-from dynamics.mechanism.kinematics import solve_kinematics
-from dynamics.mechanism.passing import turning_orders
+from dynamics.mechanism.kinematics import Kinematics, solve_kinematics
+from dynamics.mechanism.passing import MESH, excitations, turning_orders
 from fe_contact.analysis.estimates.excitation_errors import excitation_errors
 from fe_contact.ste import SteDatabase
-from lineofaction.gearbox.convert.complaint import Complaint, complaint_of
+from lineofaction.gearbox.convert.complaint import Complaint, complaint_of, leading_shaft
+from lineofaction.gearbox.convert.operating_point import OPERATING_POINT, scene_point
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.studies.bodies import UNIT
 from lineofaction.gearbox.studies.excitation import Excitation
@@ -26,6 +28,8 @@ from lineofaction.gearbox.studies.unit_bodies import bodies_of
 Result = TypeVar("Result")
 OFF_MESH = 6
 """Number of orders between the mesh orders that are listed for a mesh."""
+LEADING = "leading"
+"""Name among the facts of a result of the shaft whose orders are named."""
 
 
 def excitations_of(response: HarmonicResponse, system: System, subject: TabledScene) -> list[Excitation]:
@@ -123,14 +127,28 @@ def scene_metadata(subject: TabledScene) -> Json:
     scene with one its `complaint`, as plots mark it.
     """
     costs = {name: asdict(body.cost) for name, body in subject.housings.items() if body.cost is not None}
+    kinematics = solve_kinematics(subject.scene)
     known = {
         "reduction_cost": costs,
-        "turning": turning_orders(subject.scene, solve_kinematics(subject.scene)),
+        "turning": turning_orders(subject.scene, kinematics),
+        LEADING: _leading(subject, kinematics),
+        OPERATING_POINT: scene_point(subject.inputs),
         UNIT: bodies_of(subject),
     }
     if subject.inputs.complaint is None:
         return known
     return known | {"complaint": complaint_at_loads(assemble(subject.scene), subject).marks}
+
+
+def _leading(subject: TabledScene, kinematics: Kinematics) -> Json:
+    """Return the shaft whose orders are named, and the first mesh's order of it, 0: none of both turns."""
+    complaint = subject.inputs.complaint
+    shaft = (complaint and complaint.shaft) or leading_shaft(subject.scene)
+    try:
+        parts = excitations(subject.scene, kinematics, shaft, 1)
+    except InputError:  # the shaft is at rest
+        parts = ()
+    return {"shaft": shaft, "mesh_order": next((part.rate for part in parts if part.kind == MESH), 0.0)}
 
 
 def order_names(order: FloatArray, metadata: Json) -> list[str]:

@@ -6,11 +6,13 @@ import math
 from collections.abc import Callable, Sequence
 from itertools import chain
 
-from bounds.error_digits import error_text, to_error
+from bounds import engineering
+from bounds.error_digits import NO_CHANGE, change_text, error_text, to_error
 from fe_contact.analysis.studies.sensitivity import RippleCurve, Sensitivity
+from lineofaction.gearbox.convert.operating_point import typed
 from lineofaction.gearbox.studies.sensitivity.run import PairStudy
 from lineofaction.report.drawing import palette
-from lineofaction.report.drawing.figure import Axis, Dash, Figure, FloatArray, Line, Panel, Table, number
+from lineofaction.report.drawing.figure import Axis, Dash, Figure, FloatArray, Line, Panel, Table
 from lineofaction.report.drawing.page import Headline, Page, Section
 from lineofaction.report.presentation import Presentation
 
@@ -80,10 +82,16 @@ def _panels(
 
 def _rows(curve: Curve, label: str) -> list[tuple[str, ...]]:
     at, ripple = curve
-    columns = (1e6 * ripple.peak_to_peak, 1e6 * ripple.error, 100.0 * ripple.relative_change)
+    changes = 100.0 * ripple.relative_change, 100.0 * ripple.change_error
+    columns = (1e6 * ripple.peak_to_peak, 1e6 * ripple.error, *changes)
     return [
-        (label.format(f"{round(float(x), 9):g}"), number(size), number(error, 2), f"{change:+.1f}")
-        for x, size, error, change in zip(at, *columns, strict=True)
+        (
+            label.format(f"{round(float(x), 9):g}"),
+            to_error(size, error),
+            error_text(size, error),
+            change_text(change, band),
+        )
+        for x, size, error, change, band in zip(at, *columns, strict=True)
     ]
 
 
@@ -92,12 +100,18 @@ def _alternative(studies: Sequence[PairStudy]) -> str:
     for study in studies:
         for curves in study.curves:
             skew, distance = (
-                100.0 * float(curve.relative_change[abs(curve.relative_change).argmax()])
+                _change(curve, int(abs(curve.relative_change).argmax()))
                 for curve in (curves.misalignment, curves.center_distance_change)
             )
             preposition = "with" if curves.corner_contact else "without"
-            parts.append(f"{study.name} {preposition} corner contact {skew:+.0f} % and {distance:+.0f} %")
+            parts.append(f"{study.name} {preposition} corner contact {skew} and {distance}")
     return f"Largest change with misalignment and with center distance: {'; '.join(parts)}."
+
+
+def _change(curve: RippleCurve, index: int) -> str:
+    change, error = (100.0 * float(x[index]) for x in (curve.relative_change, curve.change_error))
+    text = change_text(change, error)
+    return text if text == NO_CHANGE else f"{text} %"
 
 
 def _reasons(studies: Sequence[PairStudy]) -> list[str]:
@@ -112,12 +126,12 @@ def _reason(study: PairStudy, curves: Sensitivity) -> str:
     before, after = float(curve.carrying[curve.deviation == 0.0][0]), float(curve.carrying[maximum])
     preposition = "with" if curves.corner_contact else "without"
     deviation = f"{round(float(at[maximum]), 9):+g} % of center distance"
+    name = f"{study.name} {preposition} corner contact"
+    size = _change(curve, maximum)
+    if size == NO_CHANGE:
+        return f"{name}: {deviation} changes the ripple by less than the errors of both."
     verb = "lowers" if change < 0.0 else "raises"
-    return (
-        f"{study.name} {preposition} corner contact: {deviation} {verb} the ripple by "
-        f"{100.0 * abs(change):.0f} %, "
-        f"{_by_pairs(before, after, change)}."
-    )
+    return f"{name}: {deviation} {verb} the ripple by {size[1:]}, {_by_pairs(before, after, change)}."
 
 
 def _by_pairs(before: float, after: float, change: float) -> str:
@@ -155,10 +169,22 @@ def _largest(
     name, at, curve = max(named, key=lambda entry: float(entry[2].peak_to_peak.max()))
     k = int(curve.peak_to_peak.argmax())
     ripple, error = 1e6 * float(curve.peak_to_peak[k]), 1e6 * float(curve.error[k])
-    change = 100.0 * float(curve.relative_change[k])
-    where = f"{round(float(at[k]), 9):g} {unit}, {name}: {change:+.0f} % of the undeviated pair's"
+    change = _change(curve, k)
+    against = f"{change} {'from' if change == NO_CHANGE else 'of'} the undeviated pair's"
+    where = f"{round(float(at[k]), 9):g} {unit}, {name}: {against}"
     band = f"± {error_text(ripple, error)} µm at {where}"
     return Headline(f"largest peak-to-peak STE over {over}", f"{to_error(ripple, error)} µm", band)
+
+
+def _point(studies: Sequence[PairStudy]) -> str:
+    """Return the load of the curves, of several pairs each by its name."""
+    points = [f"{_load(study)}{f' of {study.name}' if len(studies) > 1 else ''}" for study in studies]
+    return f"at {', '.join(points)}; misalignment and center distance one at a time"
+
+
+def _load(study: PairStudy) -> str:
+    force = f"{engineering(study.normal_force, 4)} N"
+    return force if math.isnan(study.torque) else f"{typed(study.torque)} N m ({force})"
 
 
 PAGE = Presentation(
@@ -166,4 +192,5 @@ PAGE = Presentation(
     _page,
     lambda studies: (_sensitivity_table(studies), *_reasons(studies)),
     series=_sensitivity_table,
+    point=_point,
 )

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from bounds import engineering, order_name
+from bounds import engineering, order_name, order_words
 from lineofaction.gearbox.studies.figures import metadata_of
 from lineofaction.report.drawing.figure import (
     Axis,
@@ -66,6 +66,21 @@ def order_label(order: float, metadata: Mapping[str, Any]) -> str:
         return text
     name = order_name(order, unit_orders["mesh"], unit_orders["shaft"])
     return f"{text} ({name})" if name else text
+
+
+def words_of_order(order: float, metadata: Mapping[str, Any]) -> str:
+    """Return an order as a sentence names it: "order 20.0 of input, harmonic 1 of first stage".
+
+    Orders of results count by the first mesh. Files of earlier versions do not know its order of a shaft.
+    """
+    leading, turning = metadata.get("leading"), metadata.get("turning")
+    if not leading or not turning or not leading["mesh_order"]:
+        return f"order {order_label(order, metadata)}"
+    meshes = turning["mesh"]
+    fitting = [name for name, rate in meshes.items() if np.isclose(order / rate, round(order / rate) or 1)]
+    named = ", ".join(f"harmonic {round(order / meshes[name])} of {name}" for name in fitting)
+    part = named or order_name(order, meshes, turning["shaft"])
+    return order_words(order * leading["mesh_order"], leading["shaft"], part)
 
 
 def drawn_orders(order: FloatArray, sizes: FloatArray, count: int, metadata: Mapping[str, Any]) -> list[int]:

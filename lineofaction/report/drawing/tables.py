@@ -6,6 +6,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from bounds import engineering, leftover
+from bounds.unit import MIN_LEFTOVER
 from lineofaction.gearbox.convert.effects import trifles_title
 from lineofaction.gearbox.convert.scene_effects import scene_effects
 from lineofaction.gearbox.units import UNITS, ending_of
@@ -14,6 +16,9 @@ from lineofaction.report.drawing.page import Part, Section
 
 _SYMBOLS = str.maketrans({"^": "", "2": "²", "3": "³"})
 """Powers of units as they are printed."""
+LARGE = 10**7
+"""Integer from which on only `_DIGITS` of its digits are written: bytes and operations."""
+_DIGITS = 4
 _DEGREE = {"deg": "°", "degC": "°C"}
 EffectRow = tuple[str, str, bool, str, str]
 """An effect: its name, its part, whether it is simulated, its influence in words, and the reason."""
@@ -70,12 +75,12 @@ def _column_title(name: str) -> str:
 
 
 def _cell(value: object) -> str:
-    if value is None:
-        return "none"
-    if isinstance(value, bool):
-        return "yes" if value else "no"
+    if value is None or isinstance(value, bool):
+        return "none" if value is None else "yes" if value else "no"
     if isinstance(value, float):
-        return f"{value:.6g}"
+        return leftover(value) if 0.0 < abs(value) < MIN_LEFTOVER else f"{value + 0.0:.6g}"
+    if isinstance(value, int) and abs(value) >= LARGE:
+        return engineering(float(value), _DIGITS)
     if isinstance(value, Mapping):
         return ", ".join(f"{_column_title(str(k))} {_cell(v)}" for k, v in value.items())
     if isinstance(value, Sequence) and not isinstance(value, str):

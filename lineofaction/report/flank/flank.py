@@ -15,7 +15,8 @@ from fe_contact.analysis.flanks.pressure_map import pressure_map
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate, IntArray
 from lineofaction.gearbox.convert.effects import assumption_lines
-from lineofaction.gearbox.units import MPA, UM, boundary_ledger
+from lineofaction.gearbox.convert.operating_point import pair_point
+from lineofaction.gearbox.units import MPA, boundary_ledger
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (
     Axis,
@@ -77,7 +78,7 @@ def contact_lines(flanks: LoadDistribution) -> Figure:
         "(A) to its tip (E). Color and thickness: line load; thin gray: flanks that could touch "
         "but carry no load. "
         f"One stroke is {number(1e3 * flanks.slice_width, 2)} mm of the face, its color the mean there.",
-        alternative=f"At most {number(1e-3 * flanks.line_load.max(), 4)} N/mm; at position {at}, the "
+        alternative=f"At most {_to_error(flanks.largest_line_load, N_PER_MM)} N/mm; at position {at}, the "
         f"one of the largest pressure, tooth pairs that carry load: {_carrying(flanks, worst)}.",
         content=(
             Panel(x, y, (), _marks(flanks), f"line load at {chosen.size} positions of the cycle", load),
@@ -130,9 +131,13 @@ def _table(flanks: LoadDistribution, chosen: IntArray) -> Table:
     columns = {
         "position, base pitches": lambda k: f"{flanks.position[k]:.4g}",
         "pairs that carry": lambda k: str(_carrying(flanks, int(k))),
-        "largest line load, N/mm": lambda k: number(1e-3 * float(flanks.line_load[k].max())),
+        "largest line load, N/mm": lambda k: _as_exact_as(
+            flanks.largest_line_load, float(flanks.line_load[k].max()), N_PER_MM
+        ),
         "over its mean": lambda k: number(float(flanks.line_load_factor[k]), 3),
-        "largest pressure, MPa": lambda k: number(1e-6 * float(flanks.pressure[k].max())),
+        "largest pressure, MPa": lambda k: _as_exact_as(
+            flanks.largest_pressure, float(flanks.pressure[k].max()), MPA
+        ),
     }
     return Table.of("Contact lines by position", chosen, columns)
 
@@ -147,7 +152,7 @@ def contact_pattern_figure(flanks: LoadDistribution) -> Figure:
     stretches = f" and {count} stretches of the face; blank: nothing touches" if count > 1 else ""
     return Figure(
         key="contact_pattern",
-        title=f"Contact pattern, {teeth}, {_operating_point(flanks)}",
+        title=f"Contact pattern, {teeth}, {_point(flanks).removeprefix('at ')}",
         caption="The Hertz pressure that passes over each point of the unrolled flanks, interpolated between "
         f"{flanks.position.size} positions{stretches}. At a tip edge the true pressure is "
         "singular, and this a measure only. Roll length: distance to the base circle along the "
@@ -230,7 +235,7 @@ def _alternative(flanks: LoadDistribution) -> str:
     worst = np.unravel_index(int(flanks.clear_pressure.argmax()), flanks.pressure.shape)
     _, _, width_slice = worst
     roll, face = (1e3 * float(v) for v in (flanks.roll_length_1[worst], flanks.face_position[width_slice]))
-    largest = number(1e-6 * float(flanks.pressure[worst]), 4)
+    largest = _as_exact_as(flanks.largest_pressure, float(flanks.pressure[worst]), MPA)
     where = f"at roll length {number(roll, 3)} mm of the pinion"
     if flanks.face_position.size == 1:
         return f"The largest pressure is {largest} MPa, {where}."
@@ -344,11 +349,11 @@ def _gap(flanks: LoadDistribution, position: int) -> FloatArray:
 
 
 def _face_table(flanks: LoadDistribution, mean: FloatArray) -> Table:
-    largest = 1e-3 * flanks.line_load.max(axis=(0, 1))
+    largest, load = 1e-3 * flanks.line_load.max(axis=(0, 1)), flanks.largest_line_load
     columns = {
         "face position, mm": lambda k: number(1e3 * float(flanks.face_position[k]), 4),
-        "mean load per face width, N/mm": lambda k: number(float(mean[k])),
-        "largest line load, N/mm": lambda k: number(largest[k]),
+        "mean load per face width, N/mm": lambda k: _as_exact_as(load, float(mean[k]) * N_PER_MM, N_PER_MM),
+        "largest line load, N/mm": lambda k: _as_exact_as(load, float(largest[k]) * N_PER_MM, N_PER_MM),
     }
     return Table.of("Load over the face", range(mean.size), columns)
 
@@ -358,6 +363,11 @@ def error_or_reason(estimate: Estimate, unit: str, scale: float, reason: str) ->
     if math.isnan(estimate.error):
         return f"error not estimated: {reason}"
     return f"± {error_text(estimate.value / scale, estimate.error / scale)} {unit}".rstrip()
+
+
+def _as_exact_as(largest: Estimate, value: float, scale: float) -> str:
+    """Write a value, in SI, to the digits that the error of the largest of its kind leaves."""
+    return to_error(value / scale, largest.error / scale)
 
 
 def _to_error(estimate: Estimate, scale: float = 1.0) -> str:
@@ -375,17 +385,17 @@ def _page(flanks: LoadDistribution, database: SteDatabase | None = None) -> Page
 
 def _headlines(flanks: LoadDistribution) -> Iterator[Headline]:
     """Yield the largest pressure and line load, and K_Hbeta, each with its error or why it has none."""
-    operating_point, reason = _operating_point(flanks), flanks.errors.reason
+    reason = flanks.errors.reason
     pressure, load = flanks.largest_pressure, flanks.largest_line_load
     band = error_or_reason(pressure, "MPa", MPA, reason)
-    remark = f"{band}{_kink_text(flanks)}; {operating_point}{edge_text(flanks.edge_pressure)}"
+    remark = f"{band}{_kink_text(flanks)}{edge_text(flanks.edge_pressure)}"
     yield Headline("largest flank pressure", f"{_to_error(pressure, MPA)} MPa", remark)
     band = error_or_reason(load, "N/mm", N_PER_MM, reason)
-    remark = f"{band}{_length_text(flanks)}; {operating_point}{_edge_load(flanks)}"
+    remark = f"{band}{_length_text(flanks)}{_edge_load(flanks)}"
     yield Headline("largest line load", f"{_to_error(load, N_PER_MM)} N/mm", remark)
     if flanks.face_position.size > 1:
         factor = flanks.cycle_face_load_factor
-        remark = f"{error_or_reason(factor, '', 1.0, reason)}{_length_text(flanks)}; {operating_point}"
+        remark = f"{error_or_reason(factor, '', 1.0, reason)}{_length_text(flanks)}"
         yield Headline("K_Hbeta over the cycle", _to_error(factor), remark)
 
 
@@ -418,7 +428,7 @@ def _length_text(flanks: LoadDistribution) -> str:
 def _results(flanks: LoadDistribution) -> tuple[Section, ...]:
     """Return the section of the flanks; a plane model, of one slice, has no plots over the face."""
     figures: tuple[Figure, ...] = (contact_pattern_figure(flanks),)
-    text = f"At {_operating_point(flanks)}, {flanks.position.size} positions of the mesh cycle."
+    text = f"{flanks.position.size} positions of the mesh cycle."
     if flanks.face_position.size > 1:
         figures += (contact_lines(flanks), line_load_figure(flanks), load_centroid_figure(flanks))
     else:
@@ -457,22 +467,13 @@ def _alarms(flanks: LoadDistribution, database: SteDatabase | None) -> tuple[str
     return () if same else ("The flank results and the STE database are of different gear pairs.",)
 
 
-def _operating_point(flanks: LoadDistribution) -> str:
+def _point(flanks: LoadDistribution) -> str:
     scene = flanks.scene
-    parts = [f"{number(scene.torque, 4)} N m"]
-    if scene.misalignment:
-        parts.append(f"misalignment {number(1e6 * scene.misalignment, 3)} µm")
-    if scene.center_distance_change:
-        parts.append(f"center distance {engineering(1e3 * scene.center_distance_change, 3, '+')} mm")
-    return ", ".join(parts)
+    return pair_point(scene.torque, scene.normal_force, scene.misalignment, scene.center_distance_change)
 
 
 def _text(flanks: LoadDistribution) -> Iterator[str]:
-    scene, receipt = flanks.scene, flanks.metadata.receipt
-    yield (
-        f"torque {scene.torque:.6g} N m, normal force {scene.normal_force:.6g} N, "
-        f"misalignment {scene.misalignment / UM:.4g} µm"
-    )
+    receipt = flanks.metadata.receipt
     load, reason = flanks.largest_line_load, flanks.errors.reason
     band = error_or_reason(load, "N/mm", N_PER_MM, reason)
     remark = f"{band}{_length_text(flanks)}{_edge_load(flanks)}"
@@ -488,4 +489,4 @@ def _text(flanks: LoadDistribution) -> Iterator[str]:
     yield from assumption_lines(receipt)
 
 
-PAGE = Presentation(contact_pattern_figure, _page, _text, with_database=_page)
+PAGE = Presentation(contact_pattern_figure, _page, _text, with_database=_page, point=_point)

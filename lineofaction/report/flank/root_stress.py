@@ -10,7 +10,9 @@ import numpy as np
 from bounds.error_digits import error_text, to_error, with_error
 from bounds.types import Json
 from lineofaction.gearbox.convert.effects import assumption_lines
+from lineofaction.gearbox.convert.operating_point import pair_point
 from lineofaction.gearbox.studies.root_stress.run import GEARS, RUN, Roots
+from lineofaction.gearbox.units import UM
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Reference, Table, number
 from lineofaction.report.drawing.page import Headline, Page, Part, Section
@@ -97,7 +99,7 @@ def _page(stresses: Json) -> Page:
         Section("Tooth roots", "", (_root_stress_figure(stresses),), (_peak_table(stresses),)),
         Section("Receipt of the root stress", tables=(settings_table("Cost", cost),), part=Part.RECEIPT),
     )
-    return Page("Tooth-root stress", _point(stresses), heads, sections)
+    return Page("Tooth-root stress", "", heads, sections)
 
 
 def _headline(gear: str, peak: Json) -> Headline:
@@ -107,15 +109,11 @@ def _headline(gear: str, peak: Json) -> Headline:
 
 
 def _point(stresses: Json) -> str:
-    return (
-        f"torque {stresses['torque_n_m']:.6g} N m, normal force {stresses['normal_force_n']:.6g} N, "
-        f"misalignment {stresses['misalignment_um']:.4g} µm"
-    )
+    return pair_point(stresses["torque_n_m"], stresses["normal_force_n"], stresses["misalignment_um"] * UM)
 
 
 def _text(stresses: Json) -> Iterator[Table | str]:
     yield _peak_table(stresses)
-    yield f"\n{_point(stresses)}"
     yield from assumption_lines(stresses["receipt"])
 
 
@@ -128,4 +126,5 @@ PAGE = Presentation(
     _of_figures(_page),
     _of_figures(_text),
     series=_of_figures(_passage_table),
+    point=_of_figures(_point),
 )

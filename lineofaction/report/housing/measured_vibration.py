@@ -17,7 +17,7 @@ from lineofaction.gearbox.studies.vibration.run import MM_PER_S
 from lineofaction.gearbox.units import RPM
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Table, number
-from lineofaction.report.drawing.marks import drawn_orders, order_label
+from lineofaction.report.drawing.marks import drawn_orders, order_label, words_of_order
 from lineofaction.report.drawing.page import Headline, Page, Part, Section
 from lineofaction.report.housing.forces import force_rows, row_axis
 from lineofaction.report.housing.shares import share_panel, share_rows, velocity_text
@@ -70,7 +70,7 @@ def _panel(result: MeasuredHousingVibration, name: str, rms: FloatArray) -> Pane
 def _where(result: MeasuredHousingVibration) -> str:
     vibration, s, h = result.vibration, result.at_speed, result.at_order
     speed, hertz = number(float(vibration.speed[s]) / RPM, 4), number(vibration.frequency[s, h], 4)
-    return f"order {order_label(vibration.order[h], result.metadata)} at {speed} rpm, {hertz} Hz"
+    return f"{words_of_order(vibration.order[h], result.metadata)}, at {speed} rpm, {hertz} Hz"
 
 
 def _largest_table(result: MeasuredHousingVibration) -> Table:

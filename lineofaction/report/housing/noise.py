@@ -30,7 +30,7 @@ from lineofaction.report.drawing.figure import (
     shaded_levels,
     step_line,
 )
-from lineofaction.report.drawing.marks import drawn_orders, order_label
+from lineofaction.report.drawing.marks import drawn_orders, order_label, words_of_order
 from lineofaction.report.drawing.page import Headline, Page, Part, Section
 from lineofaction.report.drawing.surface_view import surface_panels
 from lineofaction.report.drawing.tables import amount, gigabytes
@@ -250,7 +250,7 @@ def _sentences(sound: RadiatedSound) -> tuple[str, ...]:
 
 def _where(point: LoudPoint, metadata: Json) -> str:
     speed, hertz = number(point.speed / RPM, 4), number(point.frequency, 4)
-    return f"order {order_label(point.order, metadata)} at {speed} rpm, {hertz} Hz"
+    return f"{words_of_order(point.order, metadata)}, at {speed} rpm, {hertz} Hz"
 
 
 def _headlines(sound: RadiatedSound) -> tuple[Headline, ...]:
@@ -285,7 +285,7 @@ def _pressure_headline(pressure: Json, metadata: Json) -> Headline:
     complaint_order = metadata.get("complaint", {}).get("order", np.nan)
     marked = [row for row in pressure["orders"] if np.isclose(row["order"], complaint_order, rtol=1e-6)]
     row = marked[0] if marked else max(pressure["orders"], key=lambda row: row["level_db_a"])
-    remark = f"order {order_label(row['order'], metadata)} at {number(row['speed_rpm'], 4)} rpm"
+    remark = f"{words_of_order(row['order'], metadata)}, at {number(row['speed_rpm'], 4)} rpm"
     if row["low_db_a"] is not None:
         remark += f"; {row['low_db_a']:.1f} to {row['high_db_a']:.1f}, the band of its sound power"
     name = f"sound pressure level at {_microphone(pressure)}"

@@ -28,7 +28,7 @@ from lineofaction.report.drawing.figure import (
     category_lines,
     number,
 )
-from lineofaction.report.drawing.marks import drawn_orders, order_label
+from lineofaction.report.drawing.marks import drawn_orders, order_label, words_of_order
 from lineofaction.report.drawing.page import Headline, Page, Part, Section
 from lineofaction.report.drawing.surface_view import shape_figure
 from lineofaction.report.housing.forces import force_rows, row_axis
@@ -54,7 +54,7 @@ MAX_ORDERS, MAX_POINTS, MAX_SEATS = 6, 3, 4
 def _where(analysis: VibrationAnalysis) -> str:
     vibration, s, h = analysis.vibration, analysis.at_speed, analysis.at_order
     speed, hertz = number(float(vibration.speed[s]) / RPM, 4), number(vibration.frequency[s, h], 4)
-    return f"order {order_label(vibration.order[h], analysis.metadata)} at {speed} rpm, {hertz} Hz"
+    return f"{words_of_order(vibration.order[h], analysis.metadata)}, at {speed} rpm, {hertz} Hz"
 
 
 def _largest_table(result: HousingVibrationResult) -> Table:

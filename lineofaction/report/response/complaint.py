@@ -15,7 +15,14 @@ import numpy as np
 
 from bounds import engineering
 from dynamics.mechanism.passing import MESH, SAME, Passing
-from lineofaction.gearbox.convert.complaint import Complaint, grouped, harmonic_label, offset_text, sentence
+from lineofaction.gearbox.convert.complaint import (
+    Complaint,
+    cause_words,
+    grouped,
+    harmonic_label,
+    offset_text,
+    sentence,
+)
 from lineofaction.gearbox.studies.complaint.run import AnsweredComplaint
 from lineofaction.gearbox.units import RPM
 from lineofaction.report.drawing import palette
@@ -167,16 +174,24 @@ def _headlines(answer: AnsweredComplaint) -> tuple[Headline, ...]:
     first, *others = grouped(complaint.within)
     several = any(group[0].excitation.kind == MESH for group in others)
     ranked = f"; the likeliest by distance and {complaint.ranked_by}" if several else ""
-    headlines = [Headline("complaint", harmonic_label(first), offset_text(complaint, first[0]) + ranked)]
+    headlines = [
+        Headline("complaint", cause_words(complaint, first), offset_text(complaint, first[0]) + ranked)
+    ]
     if others:
-        names = "; ".join(f"{harmonic_label(group)} {offset_text(complaint, group[0])}" for group in others)
+        names = "; ".join(
+            f"{cause_words(complaint, group)}, {offset_text(complaint, group[0])}" for group in others
+        )
         headlines.append(
             Headline("passes there too", names, _resolution(first[0], [group[0] for group in others]))
         )
     nearest = grouped(candidate for candidate in complaint.passing if candidate.excitation.kind == MESH)
     if first[0].excitation.kind != MESH and nearest:
         headlines.append(
-            Headline("nearest mesh order", harmonic_label(nearest[0]), offset_text(complaint, nearest[0][0]))
+            Headline(
+                "nearest mesh order",
+                cause_words(complaint, nearest[0]),
+                offset_text(complaint, nearest[0][0]),
+            )
         )
     if answer.modes:
         mode = answer.modes[0]
@@ -200,7 +215,7 @@ def _text(answer: AnsweredComplaint) -> Iterator[Table | str]:
     complaint = answer.complaint
     yield _passing_table(answer)
     for mesh, torque in complaint.torques.items():
-        yield f'load: {number(torque, 4)} N m on the driving gear of "{mesh}"'
+        yield f'load: {engineering(torque, 4)} N m on the driving gear of "{mesh}"'
     if answer.modes:
         yield ""
         yield _mode_table(answer)

@@ -30,6 +30,8 @@ class _Quantity(NamedTuple):
     def cell(self, row: Excitation) -> str:
         value, error = self.amplitude(row)
         value *= self.scale
+        if value == 0.0 and not error:
+            return "0"
         return number(value, 3) if error is None else with_error(value, self.scale * error)
 
 
@@ -51,7 +53,7 @@ def excitation_table(metadata: Mapping[str, Any]) -> Table | None:
     cells = tuple(
         (
             row.mesh,
-            number(row.torque, 4),
+            engineering(row.torque, 4),
             "" if row.harmonic is None else str(row.harmonic),
             order_label(row.order, metadata),
             *(quantity.cell(row) for quantity in _QUANTITIES),

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from bounds import leftover
+from bounds import engineering
 from dynamics.linearize import ModalAnalysis
 from dynamics.linearize.modal_analysis import LARGE
 from dynamics.linearize.mode_energy import freedom_parts
@@ -264,8 +264,8 @@ def _least_damped(modes: ModalAnalysis) -> Headline:
 
 def _text(modes: ModalAnalysis) -> Iterator[Table | str]:
     start = modes.metadata["equilibrium"]
-    forces = ", ".join(f"{name} {force:.5g} N" for name, force in start["mesh_force"].items())
-    yield f"static equilibrium {start['status'].lower()}, {leftover(start['residual'])} N left; {forces}"
+    forces = ", ".join(f"{name} {engineering(force, 4)} N" for name, force in start["mesh_force"].items())
+    yield f"static equilibrium {start['status'].lower()}: {forces}"
     yield _modes_table(modes, PRINTED_MODES)
     if (more := modes.natural_frequency.size - PRINTED_MODES) > 0:
         highest = number(1e-3 * float(modes.natural_frequency[-1]), 3)

@@ -22,7 +22,7 @@ from lineofaction.report.drawing.figure import (
     category_lines,
     number,
 )
-from lineofaction.report.drawing.marks import drawn_orders, order_label
+from lineofaction.report.drawing.marks import drawn_orders, order_label, words_of_order
 from lineofaction.report.drawing.page import Headline
 from lineofaction.report.presentation import dynamics_presentation
 from lineofaction.report.response.excitations import excitation_figures, excitation_table, omitted_orders
@@ -189,8 +189,8 @@ def _largest(quantity: str, names: Sequence[str], size: FloatArray, response: Fo
 
 
 def _at(response: ForcedResponse, speed: int, order: int) -> str:
-    label = order_label(response.order[order], response.metadata)
-    return f"order {label} at {number(float(response.speed[speed]) / RPM, 4)} rpm"
+    words = words_of_order(response.order[order], response.metadata)
+    return f"{words}, at {engineering(float(response.speed[speed]) / RPM, 4)} rpm"
 
 
 def _figures(response: ForcedResponse) -> tuple[Figure, ...]:

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bounds.error_digits import error_text, to_error, with_error
+from bounds.error_digits import change_text, error_text, to_error, with_error
 
 numbers = st.floats(1e-3, 1e6).flatmap(lambda size: st.sampled_from([size, -size]))
 
@@ -44,3 +44,19 @@ def test_both_texts_end_at_one_place_and_read_back(value: float, share: float) -
 def test_a_number_has_no_more_than_seven_digits(value: float) -> None:
     digits = to_error(value, abs(value) * 1e-12).lstrip("-").replace(".", "").lstrip("0")
     assert len(digits.partition("e")[0]) <= 7
+
+
+@pytest.mark.law
+@pytest.mark.parametrize(
+    ("change", "error", "written"),
+    [
+        (0.048, 0.059, "no change"),
+        (-0.048, 0.0059, "-0.0480"),
+        (12.34, 1.2, "+12.3"),
+        (0.0, math.nan, "no change"),
+        (0.5, math.nan, "+0.5000"),
+        (math.nan, 1.0, "none"),
+    ],
+)
+def test_a_change_below_its_error_is_none(change: float, error: float, written: str) -> None:
+    assert change_text(change, error) == written

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from bounds import order_name
+from bounds import order_name, order_words
 
 PAIR = {"mesh": 1.0}, {"pinion": 1 / 23, "wheel": 1 / 67}
 STAGES = {"first": 1.0, "second": 20 / 61}, {"input": 1 / 23, "middle": 1 / 61, "output": 20 / 61 / 59}
@@ -38,3 +38,19 @@ def test_orders_of_a_pair(order: float, named: str) -> None:
 )
 def test_orders_of_two_stages(order: float, named: str) -> None:
     assert order_name(order, *STAGES) == named
+
+
+@pytest.mark.law
+@pytest.mark.parametrize(
+    ("order", "shaft", "harmonic", "words"),
+    [
+        (27.0, "pinion", "harmonic 1", "order 27.0 of the pinion, harmonic 1"),
+        (80.0 / 3.0, "shaft 3", "harmonic 4 of second", "order 26.67 of shaft 3, harmonic 4 of second"),
+        (0.5, "wheel", "", "order 0.5 of the wheel"),
+        (1234.0, "input", "", "order 1234.0 of input"),
+    ],
+)
+def test_an_order_is_named_by_its_shaft_and_its_harmonic(
+    order: float, shaft: str, harmonic: str, words: str
+) -> None:
+    assert order_words(order, shaft, harmonic) == words

@@ -177,7 +177,8 @@ def test_boundary_elements_check_the_loudest_point_that_the_mesh_resolves(
     report = tmp_path / "noise.html"
     result = loa("noise", scene, *speeds, "-o", report)
     assert result.exit_code == 0, result.stderr
-    assert "order 1 at 5700 rpm" in result.stdout and "without boundary" not in result.stdout
+    assert re.search(r"order [\d.]+ of \S+, harmonic 1 of \S+, at 5700 rpm", result.stdout)
+    assert "without boundary" not in result.stdout
     caption = "Radiation models of case at order 2, 1750 rpm"
     assert caption in result.stdout and caption in report.read_text("utf-8")
     names = ("equivalent radiated power", "monopoles", "estimate", "boundary elements")

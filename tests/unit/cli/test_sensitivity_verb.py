@@ -131,7 +131,7 @@ def test_the_figure_has_a_line_per_pair_and_model_in_four_panels() -> None:
     assert relative.lines[0].y == pytest.approx([0.0, 150.0])
     assert absolute.lines[2].y == pytest.approx([4.0, 10.0])
     assert absolute.lines[2].x == pytest.approx([0.0, 30.0])
-    assert "pair b without corner contact +150 % and -50 %" in figure.alternative
+    assert "pair b without corner contact +150.0 % and -50.0 %" in figure.alternative
 
 
 def test_a_sentence_says_why_the_center_distance_changes_the_ripple() -> None:
@@ -161,8 +161,8 @@ def test_a_sentence_says_why_the_center_distance_changes_the_ripple() -> None:
 
 def test_the_table_has_every_point() -> None:
     rows = PAGE.series([study()]).rows
-    assert rows[1] == ("pair a", "off", "misalignment 30 µm", "5.000", "0.20", "+150.0")
-    assert rows[2] == ("pair a", "off", "center distance -0.1 %", "1.000", "0.30", "-50.0")
+    assert rows[1] == ("pair a", "off", "misalignment 30 µm", "5.00", "0.20", "+150")
+    assert rows[2] == ("pair a", "off", "center distance -0.1 %", "1.00", "0.30", "-50")
     assert len(rows) == 8
 
 
@@ -281,5 +281,5 @@ def test_a_study_is_on_the_report_page(tmp_path: Path) -> None:
 def test_its_headlines_are_the_largest_ripples() -> None:
     skew, distance = PAGE.page((study(), study("pair b", 2.0))).headlines
     assert (skew.name, skew.value) == ("largest peak-to-peak STE over misalignment", "10.00 µm")
-    assert skew.remark == "± 0.20 µm at 30 µm, pair b: +150 % of the undeviated pair's"
+    assert skew.remark == "± 0.20 µm at 30 µm, pair b: +150.0 % of the undeviated pair's"
     assert (distance.value, distance.remark[:15]) == ("4.00 µm", "± 0.40 µm at 0 ")

@@ -323,7 +323,7 @@ REFUSED: tuple[tuple[Json, str, str], ...] = (
     ({"order": 0.0}, "complaint.order", "above 0"),
     # 416.67 and 833.33 Hz pass: 550 is 24 % and 52 % off
     ({"frequency_hz": 550.0, "speed_rpm": 1000.0}, "complaint.frequency_hz", "416.7 Hz, off by -24 %"),
-    ({"order": 33.0}, "complaint.order", 'harmonic 1 of mesh "mesh 0" at order 25'),
+    ({"order": 33.0}, "complaint.order", 'order 25.0 of shaft 0, harmonic 1 of mesh "mesh 0"'),
     (
         {"frequency_hz": 417.0, "speed_rpm": 1000.0, "microphone_mm": [0.0, 0.0, 1000.0]},
         "complaint.microphone_mm",

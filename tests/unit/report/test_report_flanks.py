@@ -193,7 +193,9 @@ def test_every_figure_is_drawn_both_ways(flanks: LoadDistribution) -> None:
 
 def test_load_and_alignment_are_said(flanks: LoadDistribution) -> None:
     torque = flanks.scene.torque
-    assert PAGE.figure(flanks).title == f"Contact pattern, 19/26, {torque:.2f} N m, misalignment 30.0 µm"
+    assert (
+        PAGE.figure(flanks).title == f"Contact pattern, 19/26, {torque:.2f} N m (1000 N), misalignment 30 µm"
+    )
     headlines = PAGE.page(flanks).headlines
     values = 1e-6 * flanks.pressure.max(), 1e-3 * flanks.line_load.max(), flanks.mean_face_load_factor
     for headline, value, unit in zip(headlines, values, (" MPa", " N/mm", ""), strict=True):

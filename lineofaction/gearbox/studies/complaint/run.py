@@ -160,6 +160,14 @@ class _ComplaintStudy(
                 cost += StudyCost((Work("lines", lines),))
         return cost
 
+    def known_before(self, subject: CheckedCase | SceneInput, _inputs: Inputs) -> str:
+        """Return the mesh and the harmonic of the complaint of a scene, which turns on teeth alone."""
+        if isinstance(subject, CheckedCase):
+            return ""
+        with boundary_errors():
+            before = scene_before_tables(subject)
+        return "" if before is None else f"{sentence(complaint_of(subject, before))}."
+
     def compute(self, made: CheckedCase | TabledScene, _inputs: Inputs, means: Means) -> AnsweredComplaint:
         if isinstance(made, CheckedCase):
             return _of_pair(made.case, means)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -56,6 +57,8 @@ class PairStudy:
     """`normal_force`, `center_distance`: Normal force of the curves, N; center distance, m."""
     curves: tuple[Sensitivity, ...]
     """Curves over each deviation, without and with corner contact."""
+    torque: float = field(default=math.nan, metadata=in_unit("n_m"))
+    """Torque on the driving gear, N m; NaN in files of earlier versions."""
 
 
 Studies = tuple[PairStudy, ...]
@@ -120,7 +123,9 @@ class _SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
         with boundary_errors():
             curves = study_sensitivity(checked, run=run)
         name = f"{gears.pinion.teeth}/{gears.wheel.teeth}"
-        return (PairStudy(name, float(checked.request.load[0]), case.pair.center_distance, curves),)
+        force = float(checked.request.load[0])
+        torque = float(case.pair.torque(force))
+        return (PairStudy(name, force, case.pair.center_distance, curves, torque),)
 
     def joined(self, studies: Mapping[str, Studies]) -> Studies:
         """Return the studies of several cases as one, under the names of their files."""
