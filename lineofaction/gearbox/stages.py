@@ -91,7 +91,7 @@ class PacedFraction:
 
 
 class TimeLeft:
-    """What is left of work, as text: by the times of its stages so far, or by the pace of one bar.
+    """The time that work still takes, as text: by its stages so far, or by the pace of one bar.
 
     `stages` as those of `PacedFraction`; empty: each stage alone. `begun_s`: time of the clock at the begin.
     """

@@ -29,13 +29,13 @@ from lineofaction.report.drawing.tables import cost_tables, ledger_section
 from lineofaction.report.unit_picture import with_picture
 
 
+_SUBJECTS = [entry.name for entry in iter_modules([str(Path(__file__).parent)]) if entry.ispkg]
+"""Folders of the report, in which the modules of studies are."""
+
+
 def scene_point_of(result: Any) -> str:
     """Return the operating point of the result of a scene in words; empty: its file knows none."""
     return str(metadata_of(result).get(OPERATING_POINT, ""))
-
-
-_SUBJECTS = [entry.name for entry in iter_modules([str(Path(__file__).parent)]) if entry.ispkg]
-"""Folders of the report, in which the modules of studies are."""
 
 
 @dataclass(frozen=True)
