@@ -28,7 +28,6 @@ from lineofaction.report.drawing.page import Headline, Page, Part, Section
 from lineofaction.report.drawing.tables import cost_tables, ledger_section
 from lineofaction.report.unit_picture import with_picture
 
-
 _SUBJECTS = [entry.name for entry in iter_modules([str(Path(__file__).parent)]) if entry.ispkg]
 """Folders of the report, in which the modules of studies are."""
 
