@@ -51,6 +51,9 @@ from model_studies.stage_clock import StageClock, TimeTaken
 
 CHECKPOINT_EVERY = 5.0  # s of wall time
 
+EffectChoice = Callable[[Scene], Decision]
+"""Decides the effects of a scene: `decide_effects`, or a decision that a study took before."""
+
 
 @dataclass(frozen=True)
 class _MadeRun:
@@ -183,9 +186,10 @@ def run_scene(
     progress: Progress | None = None,
     cancel: Cancel | None = None,
     describe: Description = described,
+    decide: EffectChoice | None = None,
 ) -> RunResult:
     """Run `scene` as `simulate` does; implausible values are in the result alone, if `describe`d."""
-    decision, before = decide_effects(scene), FIRST
+    decision, before = (decide or decide_effects)(scene), FIRST
     run = _run(decision, before, None, progress, cancel, describe)
     while needed := _needed_effects(scene, run.result.effect_ledger, run.result):
         before = before.then(needed, sum(run.result.receipt["seconds"].values()))
@@ -407,6 +411,7 @@ def simulate_to_file(
     progress: Progress | None = None,
     cancel: Cancel | None = None,
     checkpoint_every: float = CHECKPOINT_EVERY,
+    decide: EffectChoice | None = None,
 ) -> RunStatus:
     """Run `scene` as `simulate` does, with memory independent of its duration.
 
@@ -426,6 +431,8 @@ def simulate_to_file(
         As in `simulate`.
     checkpoint_every : float
         s of wall time between checkpoints.
+    decide : callable, optional
+        Decides the effects of the scene in place of its own tolerance.
 
     Returns
     -------
@@ -447,7 +454,7 @@ def simulate_to_file(
     going = (progress, cancel, checkpoint_every)
     before = EarlierRun.read(folder) if resume else FIRST
     warn_of(scene_findings(scene))
-    decision = decide_effects(scene)
+    decision = (decide or decide_effects)(scene)
     run = _run_to_file(before.of(decision), path, before, going, resume=resume)
     while run.status.usable and (needed := _needed_effects(scene, run.ledger, file=path)):
         before = before.then(needed, run.seconds)

@@ -2,7 +2,7 @@
 
 from dynamics.study.design import Design, Factor, Levels, Listed, Normal, Uniform
 from dynamics.study.responses import QUANTITIES, Response, responses_of
-from dynamics.study.run_study import Study, StudyTask, keep_runs, study
+from dynamics.study.run_study import Study, StudyTask, keep_runs, study, with_effects
 
 __all__ = [
     "QUANTITIES",
@@ -18,4 +18,5 @@ __all__ = [
     "keep_runs",
     "responses_of",
     "study",
+    "with_effects",
 ]

@@ -131,6 +131,11 @@ class Design:
         return tuple(self.factors)
 
     @property
+    def kinds(self) -> tuple[str, ...]:
+        """Kinds of the factors."""
+        return tuple(factor.kind for factor in self.factors.values())
+
+    @property
     def shape(self) -> tuple[int, ...]:
         """Number of levels of each factor of the grid."""
         return tuple(len(f.values) for f in self.factors.values() if isinstance(f, Levels))

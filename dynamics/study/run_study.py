@@ -19,10 +19,12 @@ from bounds.brief import brief
 from bounds.plottable import Plottable
 from dynamics.checks import integer, within
 from dynamics.errors import DynamicsError, InputError
+from dynamics.influence import Decision, decide_effects
 from dynamics.results.array_file import ArrayFile, stored
 from dynamics.scene import Scene
 from dynamics.simulation import run_scene, simulate_to_file, undescribed
 from dynamics.study.design import Design
+from dynamics.study.effect_decision import PointDecision, StudyEffects, decision_points
 from dynamics.study.responses import Response, responses_of
 from dynamics.types import FloatArray, IntArray, Json
 from host import keep_freed_memory
@@ -94,7 +96,7 @@ class Study(ArrayFile, Plottable):
     worst: IntArray = field(metadata=stored("", "points kept as full runs", "kept"))
     """Points whose first response is largest, which are kept as full runs. Shape (k,)."""
     metadata: Json = field(metadata=under_key("facts"))
-    """Plain JSON: design, start, receipt, and the work that the runs leave out."""
+    """Plain JSON: design, start, receipt, the work that the runs leave out, and the decision on effects."""
 
     SCHEMA: ClassVar[str] = "lineofaction study"
 
@@ -188,10 +190,22 @@ class StudyTask:
     """Time from which on responses are taken, s."""
     receipt: str = "minimal"
     """Receipt of each run; "full" measures its errors."""
+    effects: StudyEffects | None = None
+    """Decision on effects for all runs; None: it is taken before them."""
 
     def scene(self, values: tuple[float, ...]) -> Scene:
         """Return the scene at a point, as it is run on its own."""
         return self.scenes.scene(dict(zip(self.factors, values, strict=True)))
+
+    def lean_scene(self, values: tuple[float, ...]) -> Scene:
+        """Return the scene at a point with the outputs that the responses need."""
+        scene = self.scene(values)
+        stored = {"energy_audit": False, "displacements": False, "accelerations": False}
+        return replace(scene, outputs=replace(scene.outputs, receipt=self.receipt, **stored))
+
+    def decide(self, scene: Scene) -> Decision:
+        """Return the decision on the effects of a run."""
+        return decide_effects(scene) if self.effects is None else self.effects.decision(scene)
 
 
 @dataclass(frozen=True)
@@ -232,10 +246,7 @@ def _run_point(task: StudyTask, values: tuple[float, ...]) -> _PointResult:
     """Run one point; a run that fails is a marked point with its reason."""
     began, integration, none = task_cpu_seconds(), NAN, [NAN] * len(task.responses)
     try:
-        scene = task.scene(values)
-        stored = {"energy_audit": False, "displacements": False, "accelerations": False}
-        lean = replace(scene, outputs=replace(scene.outputs, receipt=task.receipt, **stored))
-        run = run_scene(lean, describe=undescribed)
+        run = run_scene(task.lean_scene(values), describe=undescribed, decide=task.decide)
         integration = float(run.receipt["seconds"]["integration"])
         figures, errors = responses_of(run, task.responses, task.start)
         reason = ""
@@ -244,6 +255,37 @@ def _run_point(task: StudyTask, values: tuple[float, ...]) -> _PointResult:
     except MemoryError:
         figures, errors, reason = none, none, "out of memory"
     return _PointResult(figures, errors, reason, [task_cpu_seconds() - began, integration])
+
+
+def _decide_point(task: StudyTask, values: tuple[float, ...]) -> PointDecision | None:
+    """Decide the effects at one point; None: there is no such scene."""
+    began = task_cpu_seconds()
+    try:
+        decision = PointDecision.of(task.lean_scene(values))
+        return replace(decision, seconds=task_cpu_seconds() - began)
+    except (LeftOut, DynamicsError):
+        return None
+
+
+def with_effects(
+    task: StudyTask,
+    values: FloatArray,
+    kinds: Sequence[str],
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
+    progress: Progress = silent,
+) -> StudyTask:
+    """Return the task with the decision on effects for its runs at `values` (N, f) of factors of `kinds` (f).
+
+    A task that has one keeps it.
+    """
+    if task.effects is not None:
+        return task
+    points = [tuple(map(float, row)) for row in decision_points(values, kinds)]
+    decisions = []
+    for count, decision in enumerate(workers.run(_decide_point, task, points)):
+        decisions.append(decision)
+        progress("effects", (count + 1) / len(points))
+    return replace(task, effects=StudyEffects.of([each for each in decisions if each is not None]))
 
 
 def study(
@@ -257,9 +299,10 @@ def study(
 ) -> Study:
     """Run all points of a design and take the responses of each.
 
-    Figures are those of `dynamics.simulate` of each scene alone, to the last bit, whoever does the tasks.
-    Runs themselves are not kept: memory does not grow with their length. Raises `InputError`: a design that
-    is not of these factors, or figures out of bounds.
+    Effects are decided once for all runs, by `with_effects`. Figures are those of `dynamics.simulate` of each
+    scene alone with these effects, to the last bit, whoever does the tasks. Runs themselves are not kept:
+    memory does not grow with their length. Raises `InputError`: a design that is not of these factors, or
+    figures out of bounds.
 
     Parameters
     ----------
@@ -269,7 +312,7 @@ def study(
     workers : Workers
         Who does the batches: this process, an executor of threads or processes, a cluster.
     progress : callable
-        Called as progress("runs", fraction).
+        Called as progress("effects", fraction), then as progress("runs", fraction).
     confidence : float
         Confidence of the bounds of quantiles.
     keep_worst : int
@@ -280,6 +323,7 @@ def study(
     within("confidence", confidence, 0.5, 0.9999)
     count = len(design.points)
     integer("keep_worst", keep_worst, 0, count)
+    task = with_effects(task, design.points, design.kinds, workers, progress)
     results: list[_PointResult | None] = [None] * count
     parts = list(_batches(design, task.scenes))
     done, batch_results = 0, workers.run(_run_batch, task, [values for _, values in parts])
@@ -294,14 +338,17 @@ def study(
 def keep_runs(task: StudyTask, study: Study, folder: Path, progress: Progress = silent) -> list[Path]:
     """Run the worst points of a study again as the scene asks, with all its checks; return their files.
 
-    A run that all its checks refuse, such as the energy audit, leaves the file that `simulate_to_file` does.
+    Their effects are those of the study. A run that all its checks refuse, such as the energy audit, leaves
+    the file that `simulate_to_file` does.
     """
     folder.mkdir(parents=True, exist_ok=True)
+    if study.worst.size:
+        task = with_effects(task, study.value, study.kind)
     files = []
     for count, index in enumerate(study.worst):
         file = folder / f"point_{int(index)}.nc"
         with suppress(DynamicsError):
-            simulate_to_file(task.scene(tuple(map(float, study.value[index]))), file)
+            simulate_to_file(task.scene(tuple(map(float, study.value[index]))), file, decide=task.decide)
         if file.is_file():
             files.append(file)
         progress("worst cases", (count + 1) / len(study.worst))
@@ -316,7 +363,7 @@ def _result(
     worst = usable[np.argsort(-figure[usable, 0], kind="stable")][:keep_worst]
     return Study(
         design.names,
-        tuple(factor.kind for factor in design.factors.values()),
+        design.kinds,
         tuple(response.title for response in task.responses),
         tuple(response.kind.unit for response in task.responses),
         design.points,
@@ -332,5 +379,6 @@ def _result(
             "start": task.start,
             "receipt": task.receipt,
             "neglected": ("energy audit", *(() if task.receipt == "full" else NEGLECTED)),
+            "effects": None if task.effects is None else task.effects.to_json(),
         },
     )

@@ -284,7 +284,24 @@ def _page(study: Study) -> Page:
     samples = f" {study.samples} samples of each combination." if study.samples > 1 else ""
     over = ", ".join(study.factor[k] for k in _varied(study))
     lead = f"{len(study.reason)} runs over {over}.{samples} Neglected in the runs: {without}."
+    lead = " ".join([lead, *(f"{_sentence(line)}." for line in _effect_lines(study))])
     return Page("Many scenes", lead, heads, sections)
+
+
+def _effect_lines(study: Study) -> Iterator[str]:
+    """Yield what was decided on effects for all runs; nothing of a file of a version without it."""
+    effects = study.metadata.get("effects")
+    if not effects or not effects["points"]:
+        return
+    names = ", ".join(name.replace("_", " ") for name in effects["neglected"]) or "none of known influence"
+    yield f"effects decided once for all runs, at {effects['points']} points; off: {names}"
+    if largest := effects["largest"]:
+        size = f"{engineering(largest['decibels'], 2)} {largest['unit']}"
+        yield f"largest influence of an effect that is off: {size} by {largest['effect'].replace('_', ' ')}"
+
+
+def _sentence(line: str) -> str:
+    return line[:1].upper() + line[1:]
 
 
 def _text(study: Study) -> Iterator[Table | str]:
@@ -293,6 +310,7 @@ def _text(study: Study) -> Iterator[Table | str]:
     if study.usable < len(study.reason):
         yield _failed_table(study)
     yield f"neglected in the runs: {', '.join(study.metadata['neglected'])}"
+    yield from _effect_lines(study)
     yield f"cost {engineering(1e3 * float(study.seconds[:, 0].mean()), 3)} ms CPU a run"
 
 

@@ -274,6 +274,10 @@ class StudyFigures(Figures):
     receipt: str
     neglected: Any
     """Names of the checks that the runs do without, a list."""
+    effects: Json | None = None
+    """Decision on effects for all runs: effects that are on, influences of the neglected ones, the largest of
+    them, number of points and CPU time of the decision.
+    """
     design: Json
     """Inputs of the study, as JSON."""
     runs: dict[str, str]

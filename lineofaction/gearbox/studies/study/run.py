@@ -15,7 +15,9 @@ from dynamics.study import (
     StudyTask,
     keep_runs,
     study,
+    with_effects,
 )
+from dynamics.study.effect_decision import decision_points
 from fe_contact.analysis.run_plan import predicted_designs
 from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
@@ -80,6 +82,7 @@ class _ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):
             written = tabled.inputs.model_dump_json()
             scenes = VariedScene(written, tabled.databases, places, str(means.home))
             task = StudyTask(scenes, design.names, responses_of(inputs), inputs.start_s, inputs.receipt)
+            task = with_effects(task, design.points, design.kinds, means.workers, means.report)
             result = study(
                 task,
                 design,
@@ -108,6 +111,7 @@ class _ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):
             ],
             "failed": [{"point": k, "values": _values(result, k), "reason": reason} for k, reason in failed],
             "cpu_seconds": {"mean": float(np.mean(result.seconds[:, 0])), "integration_mean": integration},
+            "effects": result.metadata.get("effects"),
         }
 
     def stored_runs(self, result: Study, means: Means) -> Mapping[str, Path]:
@@ -128,7 +132,8 @@ def _flank_tables(
     columns = [k for k, name in enumerate(design.names) if meshes[name]]
     if not columns:
         return StudyCost(())
-    different = len(np.unique(design.points[:, columns], axis=0))
+    of_runs, of_decision = design.points, decision_points(design.points, design.kinds)
+    different = len(np.unique(np.vstack([of_runs, of_decision])[:, columns], axis=0))
     cost = StudyCost(())
     for index in sorted({index for indices in meshes.values() for index in indices if index is not None}):
         case = scene.meshes[index].case

@@ -43,6 +43,7 @@ _EVERY = "*"
 """Name in a path that stands for every part of a kind."""
 _SLACK = 1.0 + 1e-9
 """Factor for the rounding of a largest load."""
+TABLES = 8  # values of flanks whose tables stay in memory
 _LENGTH_IN_FLANKS = 6
 """Length of a location of flanks: meshes, index, case, pair, pinion or wheel, field."""
 _ENTRY = re.compile(r"^(\w+)(?:\[(\d+)\])?$")
@@ -216,6 +217,11 @@ class VariedScene:
         """The parts, tables and housings made last, each with the key of the inputs it was made from."""
         return {}
 
+    @cached_property
+    def _tables(self) -> dict[tuple[tuple[str, float], ...], Mapping[str, SteDatabase]]:
+        """Tables by the values of the flanks that were used last: effects are decided at some of the runs."""
+        return {}
+
     def _reused(self, name: Location, key: object, make: Callable[[], Any]) -> Any:
         """Return what was made last under a name if its key is equal; else make it anew."""
         known = self._last.get(name)
@@ -248,8 +254,11 @@ class VariedScene:
         """Return the tables at values of the flanks."""
         if not values:
             return self.databases
-        key, others = tuple(values.items()), lambda: {**self.databases, **self._other_flanks(inputs)}
-        tables: Mapping[str, SteDatabase] = self._reused(("tables",), key, others)
+        key = tuple(values.items())
+        tables = self._tables.pop(key, None) or {**self.databases, **self._other_flanks(inputs)}
+        self._tables[key] = tables  # the one used last is the last
+        if len(self._tables) > TABLES:
+            del self._tables[next(iter(self._tables))]
         return tables
 
     def _other_flanks(self, inputs: SceneInput) -> dict[str, SteDatabase]:

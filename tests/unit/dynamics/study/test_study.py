@@ -211,11 +211,11 @@ def test_an_interrupted_study_goes_on_where_it_was(tmp_path: Path) -> None:
                 self.done.append(len(item))
                 yield function(shared, item)
 
-    first, second = Counting(2, []), Counting(99, [])
+    first, second = Counting(5, []), Counting(99, [])
     with pytest.raises(EndsInMidRun):
         study(task(design), design, Remembering(first, tmp_path, "1"))
     resumed = study(task(design), design, Remembering(second, tmp_path, "1"))
-    assert first.done == [8, 8] and second.done == [8]
+    assert first.done == [1, 1, 1, 8, 8] and second.done == [8]  # effects are decided at three points
     np.testing.assert_array_equal(resumed.figure, study(task(design), design).figure)
 
 
@@ -253,7 +253,7 @@ def test_worst_cases_are_kept_as_full_runs(found: Study, tmp_path: Path) -> None
 def test_a_kept_run_that_its_checks_refuse_does_not_end_the_study(
     found: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def refuse(_scene: Scene, _file: Path) -> None:
+    def refuse(_scene: Scene, _file: Path, **_: object) -> None:
         raise SolveError("more than 1 % of the work is unaccounted for")
 
     monkeypatch.setattr("dynamics.study.run_study.simulate_to_file", refuse)
