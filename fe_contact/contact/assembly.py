@@ -79,10 +79,10 @@ def contact_problem(
     sides = ((touch.lever_1, 1.0), (touch.lever_2, -1.0))
     diagonals, at_edge = [], _share_at_edge(slices)
     for g, (flank, (lever, tip), direction) in enumerate(zip(compliances, sides, (-1, 1), strict=True)):
-        blocks = _tooth_blocks(flank, direction * slices.pair)
+        blocks, teeth = _tooth_blocks(flank, direction * slices.pair)
         rows = np.ascontiguousarray  # one order in memory: compiled once
         along = rows(flank.along) / slices.tip_inclinations[g]
-        gear = _GearFlank(flank.s, blocks, along, rows(lever), patches[g], patches[1 - g], tip)
+        gear = _GearFlank(flank.s, blocks, teeth, along, rows(lever), patches[g], patches[1 - g], tip)
         tilt += _added_gear(gear, slices, at_edge, couple_teeth, compliance)
         diagonals.append(np.einsum("pii->pi", compliance).copy())
     planes, modulus = half_planes(compliances)
@@ -106,8 +106,9 @@ class _GearFlank(NamedTuple):
     nodes: FloatArray
     """Flank coordinates, m. Shape (k,)."""
     blocks: FloatArray
+    teeth: IntArray
     along: FloatArray
-    """`blocks`, `along`: Compliances as `_add_gear` takes them."""
+    """`blocks`, `teeth`, `along`: Compliances as `_add_gear` takes them."""
     lever: FloatArray
     """Shape (P, n)."""
     patch: Patches
@@ -129,7 +130,8 @@ class _GearFlank(NamedTuple):
         both = self.patch.rows(rows), self.mate.rows(rows)
         laid, way = _laid(*both, self.patch.half_width.max(), side[rows], self.tip, self.nodes[-1])
         levers, there = self.lever[rows], present[rows]
-        _add_gear(self.nodes, self.blocks, self.along, laid, way, levers, there, couple_teeth, out, tilt)
+        bodies = self.nodes, self.blocks, self.teeth, self.along
+        _add_gear(*bodies, laid, way, levers, there, couple_teeth, out, tilt)
 
 
 def _added_gear(
@@ -165,14 +167,13 @@ def half_planes(
     return (2.0 / (math.pi * first), 2.0 / (math.pi * second)), 1.0 / (1.0 / first + 1.0 / second)
 
 
-def _tooth_blocks(flank: FlankCompliance, teeth: IntArray) -> FloatArray:
-    """Compliance between the flanks of the teeth, shape (n, n, k, k)."""
-    k = flank.s.size
+def _tooth_blocks(flank: FlankCompliance, teeth: IntArray) -> tuple[FloatArray, IntArray]:
+    """Return the compliance by condensed teeth t and nodes, (t, k, t, k), and the rows of `teeth` in it."""
+    k, count = flank.s.size, flank.teeth.size
     rows = teeth - flank.teeth[0]
-    if rows.min() < 0 or rows.max() >= flank.teeth.size:
+    if rows.min() < 0 or rows.max() >= count:
         raise ValueError(f"teeth {teeth.tolist()} are not all condensed: {flank.teeth.tolist()}")
-    blocks = flank.matrix.reshape(flank.teeth.size, k, flank.teeth.size, k)
-    return np.ascontiguousarray(blocks[rows][:, :, rows].transpose(0, 2, 1, 3))
+    return np.ascontiguousarray(flank.matrix).reshape(count, k, count, k), rows
 
 
 def _laid(
@@ -229,6 +230,7 @@ def _logarithm_at_edges(slices: LoadedSlices, planes: tuple[float, float]) -> Fl
 def _add_gear(
     nodes: FloatArray,
     blocks: FloatArray,
+    teeth: IntArray,
     along: FloatArray,
     laid: FloatArray,
     way: FloatArray,
@@ -241,8 +243,9 @@ def _add_gear(
     """Add b_i' S b_j of one gear for all positions to `out`, and its derivative by patch i to `tilt`.
 
     `laid` and `way` are those of `_laid`. `along` (k, k) are the displacements along the flank by unit
-    forces, over those of a rotation about the axis that moves the flank across by 1. `blocks` (n, n, k, k)
-    are S. Nodes first[i] to last[i] - 1 are loaded by patch i; last[i] = 0: no such candidate.
+    forces, over those of a rotation about the axis that moves the flank across by 1. `blocks` (t, k, t, k)
+    are S of all condensed teeth, and `teeth` (n,) says which of them have candidates. Nodes first[i] to
+    last[i] - 1 are loaded by patch i; last[i] = 0: no such candidate.
     """
     positions, n = present.shape
     load = np.zeros((3, n, nodes.size))
@@ -262,20 +265,22 @@ def _add_gear(
                 if (i != j and not couple_teeth) or last[i] == 0 or last[j] == 0:
                     continue
                 value, change = 0.0, 0.0
+                row, column = teeth[i], teeth[j]
                 for a in range(first[i], last[i]):
                     motion, both = 0.0, 0.0  # by the patch on j, and by the lower and the higher one together
                     for b in range(first[j], last[j]):
-                        motion += blocks[i, j, a, b] * load[0, j, b]
-                        both += blocks[i, j, a, b] * (load[1, j, b] + load[2, j, b])
+                        motion += blocks[row, a, column, b] * load[0, j, b]
+                        both += blocks[row, a, column, b] * (load[1, j, b] + load[2, j, b])
                     value += load[0, i, a] * motion
                     change += (load[2, i, a] - load[1, i, a]) * both
                 arms = lever[p, i] * lever[p, j]
                 value, change = arms * value, arms * change
                 if i == j and lever[p, i] != 1.0:
                     ends = first[i], last[i], lever[p, i]
-                    value = _turned(blocks[i, i], along, load[0, i], *ends)
-                    change = _turned(blocks[i, i], along, load[2, i], *ends)
-                    change -= _turned(blocks[i, i], along, load[1, i], *ends)
+                    block = blocks[row, :, row]
+                    value = _turned(block, along, load[0, i], *ends)
+                    change = _turned(block, along, load[2, i], *ends)
+                    change -= _turned(block, along, load[1, i], *ends)
                 # half: `both` is twice a patch; on the diagonal both patches move, half of that is the tilt
                 tilt[p, i, j] += change / (2.0 * way[p, i])
                 if j <= i:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from bounds import at_most
@@ -66,15 +67,21 @@ class MeshRecipe:
         Teeth and margin stay, so that recipes of one family differ by their discretization only.
         """
         positive("factor", factor)
-        return replace(
-            self,
-            flank_size=self.flank_size / factor,
-            tip_size=self.tip_size / factor,
-            fillet_size=self.fillet_size / factor,
-            body_size=self.body_size / factor,
-            growth=min(1.0, max(0.05, self.growth / factor)),
-        )
+        return _refined(self, factor)
 
     def content(self) -> Json:
         """Return all fields as plain JSON."""
         return asdict(self)
+
+
+@lru_cache(maxsize=64)
+def _refined(recipe: MeshRecipe, factor: float) -> MeshRecipe:
+    """Return `MeshRecipe.refined`; a plan reads the same few recipes dozens of times."""
+    return replace(
+        recipe,
+        flank_size=recipe.flank_size / factor,
+        tip_size=recipe.tip_size / factor,
+        fillet_size=recipe.fillet_size / factor,
+        body_size=recipe.body_size / factor,
+        growth=min(1.0, max(0.05, recipe.growth / factor)),
+    )

@@ -158,26 +158,40 @@ def _on_branches(levels: LoadLevels, pairs: IntArray, k: int, force: FloatArray)
     """
     ends = levels.force[k : k + 2]
     start, end = levels.deflection[..., k, None], levels.deflection[..., k + 1, None]
-    before = _largest_exponent(
-        _exponent(levels, pairs, k - 1), lambda n: _branch(levels, k, n, ends[1:])[0] >= end
-    )
-    after = _largest_exponent(
-        _exponent(levels, pairs, k + 1), lambda n: _branch(levels, k + 1, n, ends[:1])[0] > start
-    )
+    wanted = _exponent(levels, pairs, k - 1)
+    before = _largest_exponent(levels, k, wanted, ends[1:], end, np.greater_equal)
+    wanted = _exponent(levels, pairs, k + 1)
+    after = _largest_exponent(levels, k + 1, wanted, ends[:1], start, np.greater)
     (lower, soft), (upper, stiff) = _branch(levels, k, before, force), _branch(levels, k + 1, after, force)
     return np.minimum(lower, upper), np.where(lower < upper, soft, stiff)
 
 
-def _largest_exponent(maximum: FloatArray, holds: Callable[[FloatArray], BoolArray]) -> FloatArray:
-    """Return the largest exponents up to `maximum` at which a condition `holds`; at 0 it does."""
-    low, high = np.zeros_like(maximum), maximum
-    if np.all(holds(maximum)):
+def _largest_exponent(
+    levels: LoadLevels,
+    k: int,
+    maximum: FloatArray,
+    force: FloatArray,
+    limit: FloatArray,
+    compare: Callable[[FloatArray, FloatArray], BoolArray],
+) -> FloatArray:
+    """Return the largest exponents (P, M, D, 1) up to `maximum` with which branches compare with a limit.
+
+    `compare` takes the deflection at `force` on the branch of level k, and the `limit`, both (P, M, D, 1). It
+    holds for the exponent 0. Branches for which it holds with the maximum are not searched.
+    """
+    short = ~compare(_branch(levels, k, maximum, force)[0], limit)[..., 0]
+    if not short.any():
         return maximum
+    searched = LoadLevels(levels.force, levels.deflection[short], levels.stiffness[short])
+    high, limit = maximum[short], limit[short]
+    low = np.zeros_like(high)
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
-        inside = holds(middle)
+        inside = compare(_branch(searched, k, middle, force)[0], limit)
         low, high = np.where(inside, middle, low), np.where(inside, high, middle)
-    return np.where(holds(maximum), maximum, low)
+    exponent = maximum.copy()
+    exponent[short] = low
+    return exponent
 
 
 def _branch(

@@ -20,6 +20,7 @@ from fe_contact.contact import (
     contact_problem,
     solve_contact,
 )
+from fe_contact.contact.assembly import _tooth_blocks
 from fe_contact.contact.edge_strip import SIDE, edge_motion, edge_position
 from fe_contact.contact.newton import solve_point
 from fe_contact.contact.point_problem import PointProblem, State, point_problems, problem_at
@@ -48,6 +49,24 @@ def problem(bodies) -> ContactProblem:
         PAIR, ContactModel(corner_contact=True), POSITION, rule, Slices.of_pair(PAIR, 1)
     )
     return contact_problem(plain, bodies)
+
+
+def test_teeth_without_candidates_leave_the_compliance_to_the_last_bit(
+    problem: ContactProblem, bodies
+) -> None:
+    """It is read in place: the condensed flanks are not copied."""
+    fewer = []
+    for flank in bodies:
+        k, last = flank.s.size, flank.teeth.size - 1
+        used = np.abs(flank.teeth) <= 1
+        part = flank.matrix.reshape(last + 1, k, last + 1, k)[used][:, :, used]
+        size = k * np.count_nonzero(used)
+        fewer.append(replace(flank, teeth=flank.teeth[used], matrix=part.reshape(size, size).copy()))
+        blocks, rows = _tooth_blocks(flank, np.array([1, 0, -1]))
+        assert np.shares_memory(blocks, flank.matrix) and flank.teeth[rows].tolist() == [1, 0, -1]
+    other = contact_problem(problem.candidates, tuple(fewer))
+    np.testing.assert_array_equal(other.compliance, problem.compliance)
+    np.testing.assert_array_equal(other.tilt, problem.tilt)
 
 
 def displaced(problem: ContactProblem, bodies, ways: np.ndarray) -> np.ndarray:

@@ -115,6 +115,26 @@ def test_two_straight_branches_are_found(make):
     assert np.median(error) < 1e-12
 
 
+def test_positions_that_search_their_branch_and_those_that_do_not_are_as_alone():
+    """A branch whose curvature would miss the other one is bent less; that of its neighbor stays."""
+    force = np.array([0.0, 100.0, 1000.0, 3000.0, 9000.0])
+    lag = np.cumsum(
+        [[0.0, 4.0, 20.0, 12.0, 40.0], [0.0, 4.0, 30.0, 60.0, 150.0], [0.0, 4.0, 9.0, 5.0, 81.0]], 1
+    )
+    stiffness = np.array(
+        [[0.0, 20.0, 60.0, 200.0, 130.0], [0.0, 20.0, 30.0, 40.0, 45.0], [0.0, 30.0, 300.0, 900.0, 950.0]]
+    )
+    pairs = np.array([[0, 1, 1, 2, 2]] * 3)
+    stack = [part[:, None, None] for part in (1e-6 * lag, 1e6 * stiffness, pairs)]
+    together = refined_levels(LoadLevels(force, *stack[:2]), stack[2], 0.0)
+    for row in range(3):
+        one = [part[row : row + 1] for part in stack]
+        alone = refined_levels(LoadLevels(force, *one[:2]), one[2], 0.0)
+        np.testing.assert_array_equal(together.force, alone.force)
+        np.testing.assert_array_equal(together.deflection[row], alone.deflection[0])
+        np.testing.assert_array_equal(together.stiffness[row], alone.stiffness[0])
+
+
 def branches(k, k2, gap, force):
     """Deflection of the two springs."""
     alone = force / k
