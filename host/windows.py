@@ -44,6 +44,10 @@ def keep_freed_memory() -> None:
     """Do nothing: the system has no such setting."""
 
 
+def keep_memory_to_the_end() -> None:
+    """Do nothing: the system has no such setting."""
+
+
 def max_open_files() -> float:
     """Return infinity: the system has no limit that a process can ask for."""
     return math.inf

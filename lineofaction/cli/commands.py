@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from host import keep_to_one_thread
+from lineofaction.cli.guard import ALONE
 from lineofaction.cli.verbs import (
     of_exports,
     of_files,
@@ -69,6 +70,7 @@ app.add_typer(of_services.store, name="store", rich_help_panel="service")
 def main() -> None:
     """Run the command line."""
     keep_to_one_thread()
+    ALONE.set(True)
     # verbs print complaints of plausibility themselves, with the fields and units of the case
     warnings.filterwarnings("ignore", message="implausible")
     foreign = warnings.showwarning

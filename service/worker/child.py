@@ -23,7 +23,14 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from fe_contact.cache_reads import COMPLIANCE_READS
-from host import cpu_seconds, kill_process_group, lock, lower_priority, peak_memory
+from host import (
+    cpu_seconds,
+    keep_memory_to_the_end,
+    kill_process_group,
+    lock,
+    lower_priority,
+    peak_memory,
+)
 from host.children.frames import Frame, read_frame
 from lineofaction.gearbox.loading import on_demand
 from lineofaction.gearbox.problems import ServiceError
@@ -40,6 +47,7 @@ warnings_of_case = on_demand("service.worker.expectations:warnings_of_case")
 def work(descriptor: int) -> None:
     """Run one order; messages go to the descriptor."""
     begin_work()
+    keep_memory_to_the_end()
     orders = os.fdopen(0, "rb", closefd=False)
     order = _order(orders)
     threading.Thread(target=_end_with, args=(orders,), daemon=True).start()

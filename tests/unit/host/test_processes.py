@@ -32,29 +32,34 @@ def test_the_peak_follows_what_is_held_in_bytes() -> None:
 
 FAULTS = """
 import resource, host
-if {kept}:
-    host.keep_freed_memory()
+{setting}
 def pages():
     before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
-    for _ in range(20):
-        blocks = [bytearray(2**20) for _ in range(8)]
+    for _ in range(6):
+        blocks = [bytearray({mib} * 2**20) for _ in range({blocks})]
         del blocks
     return resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before
 pages()
 print(pages())
 """
-"""Pages that a task gets which allocates 8 MiB again and again, and frees them."""
+"""Pages that a task gets which allocates blocks of so many MiB again and again, and frees them."""
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="a setting of the C library of Linux")
-def test_memory_that_is_kept_is_there_again() -> None:
+@pytest.mark.parametrize(
+    ("setting", "blocks", "mib"),
+    [("host.keep_freed_memory()", 8, 1), ("host.keep_memory_to_the_end()", 1, 40)],
+)
+def test_memory_that_is_kept_is_there_again(setting: str, blocks: int, mib: int) -> None:
     kept, given_back = (
         int(
             subprocess.run(
-                [sys.executable, "-c", FAULTS.format(kept=on)], capture_output=True, check=True
+                [sys.executable, "-c", FAULTS.format(setting=line, blocks=blocks, mib=mib)],
+                capture_output=True,
+                check=True,
             ).stdout
         )
-        for on in (True, False)
+        for line in (setting, "")
     )
     assert kept < 0.1 * given_back
 
