@@ -283,7 +283,11 @@ def _answer(bodies: CondensedPair, pair: ParallelAxes, change: LiveInput, stored
     torques = np.array(change.torque_n_m)
     alignment = change.misalignment_um * UM, change.center_distance_change_mm * MM
     table, solved = bodies.solve_table(pair, torques, *alignment, preview=change.preview)
-    curves = [_stored_curve(stored, table, k) or _curve(table, k) for k in range(table.force.size)]
+    nodes = [_stored_load(stored, table, k) for k in range(table.force.size)]
+    curves = [
+        _curve(table, k) if stored is None or node is None else _stored_curve(stored, node, table, k)
+        for k, node in enumerate(nodes)
+    ]
     answer = {"curves": curves, **_receipt(table)}
 
     @cache
@@ -291,7 +295,9 @@ def _answer(bodies: CondensedPair, pair: ParallelAxes, change: LiveInput, stored
         return load_distribution(solved.pair, solved.problem, solved.solution, k)
 
     def on_flanks() -> Iterator[Json]:
-        return (_flanks_json(loaded(k)) for k in range(table.force.size))
+        for k, node in enumerate(nodes):
+            known = {} if stored is None or node is None else _stored_pressure(stored, node)
+            yield _flanks_json(loaded(k)) | known
 
     def passages() -> Iterator[Json]:
         separation = solved.problem.displacement(solved.solution.force)
@@ -310,18 +316,36 @@ def _answer(bodies: CondensedPair, pair: ParallelAxes, change: LiveInput, stored
     return answer
 
 
-def _stored_curve(stored: SteDatabase | None, solved: SteDatabase, k: int) -> Json | None:
-    """Return the curve of the stored table at load k of the solved one; None where that is none of its loads.
+def _stored_load(stored: SteDatabase | None, solved: SteDatabase, k: int) -> tuple[int, int, int] | None:
+    """Return the indices of load and alignment at which the stored table has load k solved; None: nowhere.
 
     Between loads and alignments the table interpolates, with a larger error than an answer that is solved.
     """
     if stored is None or stored.n_failed:
         return None
-    nearest = stored.force[np.argmin(np.abs(stored.force - solved.force[k]))]
-    alignment = float(solved.misalignment[0]), float(solved.center_distance_change[0])
-    is_aligned = alignment[0] in stored.misalignment and alignment[1] in stored.center_distance_change
-    if abs(nearest / solved.force[k] - 1.0) > _SAME_LOAD or not is_aligned:
+    load = int(np.argmin(np.abs(stored.force - solved.force[k])))
+    tilts = np.flatnonzero(stored.misalignment == solved.misalignment[0])
+    distances = np.flatnonzero(stored.center_distance_change == solved.center_distance_change[0])
+    if abs(stored.force[load] / solved.force[k] - 1.0) > _SAME_LOAD or not tilts.size or not distances.size:
         return None
+    return load, int(tilts[0]), int(distances[0])
+
+
+def _stored_pressure(stored: SteDatabase, node: tuple[int, int, int]) -> Json:
+    """Return the largest pressures of the stored table at one load and alignment."""
+    at = (slice(None), *node)
+    edge = float(np.nanmax(stored.edge_pressure[at])) if stored.edge_pressure.size else 0.0
+    return {
+        "largest_pressure_mpa": float(np.nanmax(stored.max_pressure[at])) / MPA,
+        "edge_pressure_mpa": edge / MPA,
+    }
+
+
+def _stored_curve(stored: SteDatabase, node: tuple[int, int, int], solved: SteDatabase, k: int) -> Json:
+    """Return the curve of the stored table at one load and alignment, at the positions of the solved one."""
+    load, tilt, distance = node
+    nearest = stored.force[load]
+    alignment = float(stored.misalignment[tilt]), float(stored.center_distance_change[distance])
     curve = curve_json(
         stored,
         force_n=float(nearest),

@@ -9,6 +9,7 @@ import { Drawing } from "./drawing.js";
 import { button, byId, make } from "./elements.js";
 import { CaseForm } from "./form.js";
 import { noPlan, showPlan } from "./plan.js";
+import { pairAlone, same } from "./schema.js";
 import { View } from "./view.js";
 
 export const SETTLED = 350; // milliseconds without an edit after which the case is planned and drawn
@@ -169,6 +170,7 @@ export class Design {
   edited() {
     if (byId("example").value || !this.stands) this.from({ note: "", ...this.address.kept.origin, example: "" });
     this.changed();
+    if (this.drawnPair && !same(this.drawnPair, this.case.pair)) this.drawing.stale();
     clearTimeout(this.timer);
     this.timer = setTimeout(() => {
       this.settled();
@@ -184,10 +186,11 @@ export class Design {
     const body = { inputs: { case: this.submitted() } };
     let drawn = false;
     await guarded(async () => {
-      const outline = await ask("outline", body, signal);
+      const outline = await ask("outline", { inputs: { case: pairAlone(this.case) } }, signal);
       if (signal.aborted) return;
       this.form.clear();
       this.drawing.show(outline);
+      this.drawnPair = body.inputs.case.pair;
       this.view.show(outline);
       drawn = true;
       if (this.expected === undefined) noPlan("The plan is on its way.");

@@ -4,7 +4,7 @@ import { ask, guarded } from "./api.js";
 import { byId, folded, make } from "./elements.js";
 import { Field, GEARS, unitOf, wordsIn } from "./field.js";
 import { StartSwitch, isStart } from "./relief_start.js";
-import { at, leaves, ofFlank, put, resolved } from "./schema.js";
+import { at, leaves, ofFlank, pairAlone, put, resolved } from "./schema.js";
 import { reveal } from "./tabs.js";
 
 /** Rows of the table of gears that are always shown; the others open when asked for. */
@@ -129,7 +129,7 @@ export class CaseForm {
 
   /** The cell of a relief, of whose ways one is shown. */
   switched(fields, gear) {
-    const outline = () => guarded(() => ask("outline", { inputs: { case: this.case } }), (problem) => this.refuse(problem));
+    const outline = () => guarded(() => ask("outline", { inputs: { case: pairAlone(this.case) } }), (problem) => this.refuse(problem));
     const own = new StartSwitch(fields, gear, outline);
     this.switches.push(own);
     return make("td", {}, own.parts, ...fields.map((field) => field.message));

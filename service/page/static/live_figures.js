@@ -7,6 +7,7 @@ const PAIRS = [ // by index, as in the report (drawing/palette.py)
 ];
 export const SHOWN_HARMONICS = 8;
 const [STRONGEST, LABELED, HIGHEST] = [60, 16, 4.2]; // lines drawn and named, mesh order
+const BELOW = "#B4BBC3"; // what is below its error
 const APART = 0.09; // mesh orders between names
 const [PARTS, ROOM] = [8, 0.4]; // of an axis: steps of the grid that it ends on at least, steps beyond its values
 
@@ -75,10 +76,10 @@ function labelsOf(lines) {
 function ordersFigure(shown) {
   const data = shown.map(({ name, curve, color }, k) => {
     const lines = curve.period > 1 ? strongestOrders(curve) : curve.harmonics_um.slice(0, 4).map((amplitude, at) => (
-      { order: at + 1, name: `mesh ${at + 1}`, amplitude }));
+      { order: at + 1, name: `mesh ${at + 1}`, amplitude, error: curve.harmonics_error_um?.[at] ?? null }));
     const labels = k === shown.length - 1 ? labelsOf(lines.slice(0, LABELED)) : [];
     return {
-      type: "bar", name, x: lines.map((line) => line.order), y: lines.map(({ amplitude }) => amplitude), width: 0.02, marker: { color },
+      type: "bar", name, x: lines.map((line) => line.order), y: lines.map(({ amplitude }) => amplitude), width: 0.02, marker: { color: lines.map(({ amplitude, error }) => (error >= amplitude ? BELOW : color)) },
       text: labels, textposition: "outside", textangle: -90, constraintext: "none", cliponaxis: false, customdata: lines.map((line) => line.name),
       hovertemplate: "%{customdata}: %{y:.3g} µm",
     };
@@ -94,12 +95,14 @@ function ordersFigure(shown) {
 export function harmonicsFigure(shown, count) {
   if (shown.at(-1).curve.period > 1) return ordersFigure(shown);
   const order = Array.from({ length: count }, (_, k) => k + 1);
-  const data = shown.map(({ name, curve, color }) => ({
-    type: "bar", name, x: order, y: curve.harmonics_um.slice(0, count), marker: { color },
-  }));
+  const data = shown.map(({ name, curve, color }) => {
+    const [y, errors] = [curve.harmonics_um, curve.harmonics_error_um ?? []].map((values) => values.slice(0, count));
+    const band = errors.length ? { error_y: { type: "data", array: errors, color: "#1B1F24", thickness: 1, width: 3 } } : {};
+    return { type: "bar", name, x: order, y, marker: { color: y.map((value, k) => (errors[k] >= value ? BELOW : color)) }, ...band };
+  });
   const made = layout("harmonic of the mesh", "amplitude, µm", { bargap: 0.25 });
   made.xaxis.dtick = 1;
-  made.yaxis.range = endsOf([[0], ...data.map(({ y }) => y)]);
+  made.yaxis.range = endsOf([[0], ...data.map(({ y, error_y: band }) => y.map((value, k) => value + (band?.array[k] ?? 0)))]);
   return { data, layout: made };
 }
 

@@ -32,7 +32,7 @@ function pressureFigure(flanks) {
   const size = isolineStep(largest);
   const map = {
     type: "contour", x, y, z: z.map((row) => row.map((value) => (value > 0.01 * largest ? value : null))), zmin: 0, zmax: endsOf([[0, largest]])[1],
-    colorscale: "Cividis", colorbar: { title: { text: "MPa", side: "top" }, thickness: 14 }, line: { color: "#FFFFFF", width: 1 },
+    colorscale: "Cividis", colorbar: { title: { text: "Hertz pressure, MPa", side: "right" }, thickness: 14, tick0: 0 }, line: { color: "#FFFFFF", width: 1 },
     contours: { coloring: "heatmap", start: size, end: 0.92 * largest, size, showlabels: true, labelfont: { size: 11, color: "#FFFFFF" } },
     hovertemplate: "face %{x:.3g} mm<br>roll length %{y:.3g} mm<br>%{z:.4g} MPa<extra></extra>",
   };

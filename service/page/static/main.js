@@ -90,7 +90,7 @@ class Page {
     const dynamics = new Dynamics(studies.find(({ process }) => process === "modes"), page);
     this.scenes = new SceneEditor(studies, page);
     new UnitStudies(studies, page, this.scenes);
-    document.addEventListener("subject", () => this.tabs?.of(document.body.dataset.subject, this.usualTab));
+    document.addEventListener("subject", () => this.tabs?.of(document.body.dataset.seen, this.usualTab));
     this.variants = new Variants(this, () => this.render());
     const live = new Live(this, { take, inThreeDimensions: () => this.inThreeDimensions() });
     this.results = new Results(this, live, [dynamics, this.scenes]);
@@ -134,6 +134,7 @@ class Page {
     if (!this.address.get("database")) for (const name in OF_RESULT) this.address.settle(name, "job");
     this.design.stands = false;
     if (kept.fields) this.design.restore(kept);
+    if (this.address.get("database") && !this.results.stands) this.results.announce();
     const orders = kept.fields ? [] : await ordersOf(this.address.names);
     const first = await this.unit();
     const pair = await pairOf(orders) ?? first;

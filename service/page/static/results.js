@@ -30,7 +30,7 @@ export class Results {
    */
   constructor({ address, design }, live, others) {
     Object.assign(this, { address, design, live, others });
-    this.key = null;
+    this.key = undefined; // nothing was shown yet
     this.shown = null;
     this.stopping = new AbortController();
     this.note = new DesignNote(byId("results-design"), design);
@@ -91,12 +91,19 @@ export class Results {
     });
   }
 
+  /** Say that a result is being read. */
+  announce() {
+    byId("results-none").hidden = true;
+    byId("dock-words").textContent = "The result of this address is being read.";
+  }
+
   /** @param {string} key @param {AbortSignal} signal */
   async read(key, signal) {
     const href = `/v1/results/${key}`;
     fetchPlotly();
     const reported = this.report(href, key, signal);
     reported.catch(() => {}); // said where it is awaited
+    this.announce();
     const facts = await patiently(() => get(href));
     if (signal.aborted) return;
     const plane = PLANE.test(facts.receipt?.plan?.model ?? "");
@@ -105,7 +112,6 @@ export class Results {
     const circles = await circlesOf(facts.case);
     if (signal.aborted) return;
     const known = { key, case: facts.case, circles, torques, plane, long };
-    byId("results-none").hidden = true;
     const report = await reported;
     if (signal.aborted) return;
     this.offer(known);

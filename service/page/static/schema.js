@@ -75,4 +75,7 @@ export function changed(content, [name, ...rest], value) {
   return copy;
 }
 
+/** The case of a pair by itself, at any load: its outline depends on nothing else. */
+export const pairAlone = ({ pair }) => ({ pair, load: { torque_n_m: [1] } });
+
 export const same = (one, other) => JSON.stringify(one) === JSON.stringify(other);

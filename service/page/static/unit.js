@@ -55,6 +55,8 @@ export class OpenedUnit {
     try {
       if (word && word !== this.word) {
         const { name, bytes } = await unpackedFile(word);
+        this.place.hidden = false;
+        this.place.replaceChildren(make("p", { class: "hint", role: "status" }, `${name} is being read.`));
         this.put(word, name, await patiently(() => post("/v1/units/open", { rexs_base64: base64(bytes) })));
       }
     } catch (problem) {

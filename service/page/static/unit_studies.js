@@ -68,7 +68,7 @@ export class UnitStudies {
   follow() {
     const { unit } = this;
     const seen = unit.isSeen;
-    document.body.dataset.subject = seen ? "unit" : "pair";
+    document.body.dataset.seen = seen ? "unit" : "pair";
     byId("unit-dock").hidden = !seen;
     document.dispatchEvent(new Event("subject"));
     if (!seen) return;

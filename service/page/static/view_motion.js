@@ -46,7 +46,7 @@ export function hullOf(surface) {
     });
     most = Math.max(most, Math.hypot(...three(real), ...three(imaginary)));
   }
-  return { mesh: { values, indices, marked: 0 }, parts: [3, 3, 1, 3, 3], most, ends, levels: levels ? `${top - RANGE} to ${top} dB re ${surface.level_re}` : null };
+  return { mesh: { values, indices, marked: 0 }, parts: [3, 3, 1, 3, 3], most, ends, levels: levels ? `surface velocity ${top - RANGE} to ${top} dB re ${surface.level_re}` : null };
 }
 
 export class Motion {

@@ -78,7 +78,7 @@ def test_an_answer_at_a_load_of_the_table_states_the_numbers_of_the_table(tmp_pa
     (stored, between), (moved,) = (
         live_curves(condensed, LiveInput.model_validate(question))["curves"]
         for question in (
-            {"torque_n_m": (0.5, 0.7)},
+            {"torque_n_m": (0.5, 0.7), "flanks": True},
             {"torque_n_m": (0.5,), "pinion": {"tip_relief_um": 0.01, "tip_relief_length_mm": 0.3}},
         )
     )
@@ -88,6 +88,8 @@ def test_an_answer_at_a_load_of_the_table_states_the_numbers_of_the_table(tmp_pa
         assert stored[f"{name}_error_um"] == pytest.approx(1e6 * estimate.error, rel=1e-12)
         by_source = [errors[name] for errors in stored["error_by_source_um"].values()]
         assert stored[f"{name}_error_um"] == pytest.approx(np.linalg.norm(by_source), rel=1e-9)
+    pressure = stored["flanks"]["largest_pressure_mpa"]
+    assert pressure == pytest.approx(1e-6 * np.nanmax(table.max_pressure[:, 0]), rel=1e-12)
     assert len(stored["position"]) == len(moved["position"]) > of_table.position.size
     ripple = table.curve(torque=0.7).peak_to_peak
     for solved, known in ((between, ripple), (moved, of_table.peak_to_peak)):
