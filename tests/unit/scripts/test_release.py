@@ -1,0 +1,75 @@
+"""A release is refused, and changes nothing, where the tree is not ready for it."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[3]
+GIT = ("git", "-c", "user.name=a tester", "-c", "user.email=tester@example.org")
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Path:
+    """A repository with what a release reads: scripts, changelog, version."""
+    for name in ("scripts/release", "scripts/environment"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        shutil.copy(ROOT / name, tmp_path / name)
+    (tmp_path / "CHANGELOG.md").write_text("# Changelog\n\n## Unreleased (1.2.0)\n\n- a change\n", "utf-8")
+    (tmp_path / "pyproject.toml").write_text('version = "1.2.0.dev7"\n', "utf-8")
+    for command in (("init", "-q"), ("add", "--all"), ("commit", "-qm", "Begin")):
+        subprocess.run([*GIT, *command], cwd=tmp_path, check=True)
+    return tmp_path
+
+
+def contents(project: Path) -> list[bytes]:
+    return [(project / name).read_bytes() for name in ("CHANGELOG.md", "pyproject.toml")]
+
+
+def changed(project: Path) -> None:
+    (project / "CHANGELOG.md").write_text("another\n", "utf-8")
+
+
+def tagged(project: Path) -> None:
+    subprocess.run([*GIT, "tag", "v1.2.0"], cwd=project, check=True)
+
+
+def ready(_project: Path) -> None:
+    pass
+
+
+@pytest.mark.parametrize(
+    ("version", "prepare", "reason"),
+    [
+        ("", ready, "must be X.Y.Z"),
+        ("1.2", ready, "must be X.Y.Z"),
+        ("1.2.0; touch x", ready, "must be X.Y.Z"),
+        ("1.2.0", changed, "the tree has changes"),
+        ("1.2.0", tagged, "v1.2.0 is a tag already"),
+        ("1.3.0", ready, "must have the page '## Unreleased (1.3.0)'"),
+    ],
+)
+def test_a_release_that_is_not_ready_is_refused(
+    project: Path, version: str, prepare: Callable[[Path], None], reason: str
+) -> None:
+    prepare(project)
+    before = contents(project)
+    ended = subprocess.run(
+        ["scripts/release", version], cwd=project, capture_output=True, text=True, check=False
+    )
+    assert ended.returncode == 1 and reason in ended.stderr
+    assert ended.stderr.count("error: ") == 1
+    assert before == contents(project)
+
+
+def test_a_version_follows_its_development_versions_alone(project: Path) -> None:
+    (project / "pyproject.toml").write_text('version = "1.1.0.dev3"\n', "utf-8")
+    subprocess.run([*GIT, "commit", "-qam", "Another version"], cwd=project, check=True)
+    ended = subprocess.run(
+        ["scripts/release", "1.2.0"], cwd=project, capture_output=True, text=True, check=False
+    )
+    assert ended.returncode == 1 and "1.2.0 follows 1.2.0.devN alone" in ended.stderr
