@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +16,7 @@ from fe_contact.mesh.recipe import MeshRecipe
 from fe_contact.mesh.tooth_outline import tooth_outline
 from fe_contact.mesh.tooth_sector import ToothSector, tooth_sector
 from fe_contact.types import FloatArray, IntArray
+from host import ChildFailed
 
 SLENDER = 3.0  # deepest sector down to the bore, in root circle pitches: beyond it a hub needs fewer elements
 TAPER = 0.35  # least bore of sectors down to it, in root circles: below it a sector is a needle
@@ -173,15 +173,19 @@ def mesh_ahead(sections: Sequence[tuple[Toothing, MeshRecipe]]) -> None:
     """Mesh the tooth sectors of several sections in one process of gmsh, for the next calls of `mesh_gear`.
 
     That process takes longer to start than to mesh a sector. Sections that cannot be meshed are left to
-    `mesh_gear`, which says why.
+    `mesh_gear`, which says why. Raises `MeshError`: the process failed, ran out of time or of memory, as a
+    second one would.
     """
     made = {section: _ahead[section] for section in sections if section in _ahead}
     new = [section for section in dict.fromkeys(sections) if section not in made]
     _ahead.clear()
     _ahead.update(made)
     if len(new) > 1:
-        with suppress(FeContactError):
+        try:
             _ahead.update(zip(new, _sectors(new, QualityLimits()), strict=True))
+        except FeContactError as error:
+            if isinstance(error.__cause__, ChildFailed):
+                raise
 
 
 def _sectors(sections: Sequence[tuple[Toothing, MeshRecipe]], limits: QualityLimits) -> list[ToothSector]:

@@ -14,6 +14,7 @@ from fe_contact.geometry import Gear, Toothing, ToothProfile, tooth_profile
 from fe_contact.mesh import GearMesh, MeshRecipe, gear_mesh, mesh_gear, mesh_quality, quadratic_mesh
 from fe_contact.mesh.quadratic_mesh import rotated
 from fe_contact.types import Json
+from host import ChildOutOfMemory
 
 GearAndMesh = tuple[Toothing, GearMesh]
 
@@ -180,6 +181,21 @@ def test_sections_that_no_mesh_is_made_of_ahead_are_left_to_gears(
         with pytest.raises(MeshError, match="no mesh"):
             mesh_gear(gear, recipe)
     assert len(mesh_gear(gear, recipe).triangles)
+
+
+def test_a_mesher_without_memory_is_not_started_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    starts: list[object] = []
+
+    def devoured(*request: object) -> Json:
+        starts.append(request)
+        raise MeshError("gmsh worker: ran out of memory") from ChildOutOfMemory("ran out of memory")
+
+    gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
+    recipe = MeshRecipe.standard(gear)
+    monkeypatch.setattr(quadratic_mesh, "ask_gmsh", devoured)
+    with pytest.raises(MeshError, match="ran out of memory"):
+        gear_mesh.mesh_ahead([(gear, recipe), (gear, recipe.refined(0.6))])
+    assert len(starts) == 1
 
 
 @pytest.mark.parametrize("level", [0.5, 0.6, 0.7, 1.0])
