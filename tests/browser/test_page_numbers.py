@@ -15,7 +15,8 @@ from running_service import until
 SESSIONS = int(os.environ.get("LOA_PAGE_SESSIONS", "3"))
 """Sessions of each kind, by seeds from 0; scripts/nightly takes 200 in all."""
 ACTIONS = 6
-STILL = """() => !document.querySelector("#dock").textContent.includes("…")"""
+STILL = """() => !document.querySelector("#dock [aria-busy=true]")
+  && !document.querySelector("#dock").textContent.includes("…")"""
 TYPE = """(node, value) => {
   node.value = value;
   node.dispatchEvent(new Event("input", { bubbles: true }));

@@ -73,6 +73,7 @@ export class Live {
     this.analyzed = known && new Other("before", known, UNMOVED);
     this.heard = null;
     byId("operating-point").hidden = true;
+    this.mark(false);
     for (const id of ["live-figures", "compared", "sliders", "quick", ...Object.values(PLACES)]) byId(id).replaceChildren(); // of another result
     this.design.view.press(null);
     if (known) this.controls();
@@ -151,8 +152,14 @@ export class Live {
   async ask(preview = true) {
     clearTimeout(this.resting);
     if (!this.known || this.known.long) return;
+    this.mark(true);
     this.waiting = { ...this.sliders.moved, torque_n_m: [this.sliders.value("torque_n_m")], preview };
     await this.work();
+  }
+
+  /** Say that the numbers are of before, until those of now are there with their errors. @param {boolean} now */
+  mark(now) {
+    for (const id of ["live-figures", "compared"]) byId(id).setAttribute("aria-busy", String(now));
   }
 
   /** Answer what is waited for, then what a hand at rest leaves time for. */
@@ -210,12 +217,14 @@ export class Live {
       if (waiting.preview && !this.waiting) this.resting = setTimeout(() => this.ask(false), REST);
       byId("live-errors").hidden = true;
       this.shown = waiting.preview ? null : shown;
+      if (!waiting.preview && !this.waiting) this.mark(false);
       this.rested = this.shown;
     } catch (problem) {
       if (!(problem instanceof Problem)) throw problem;
       if (problem.type.endsWith("superseded") || key !== this.known?.key) return;
       if (problem.status !== 0) this.refuse(problem); // the line across the page says it
       const wait = problem.retryAfter || (problem.status === 0 ? AWAY : 0);
+      if (!wait) this.mark(false);
       if (!wait) return;
       await pause(1000 * wait); // busy or away: ask again, for what is wanted by then
       this.waiting ??= waiting;

@@ -69,6 +69,7 @@ export class UnitHeard {
   constructor(design, unit, bar) {
     Object.assign(this, { design, unit, bar });
     design.watch(() => this.follow());
+    document.addEventListener("subject", () => this.follow()); // a unit that is read after its pair
   }
 
   follow() {
