@@ -143,13 +143,18 @@ def _passing_table(answer: AnsweredComplaint) -> Table:
         "what": harmonic_label,
         "order": lambda group: number(group[0].order, 5),
         "frequency, Hz": lambda group: number(complaint.hertz(group[0].order) or np.nan, 5),
-        "off, %": lambda group: f"{100.0 * group[0].distance:+.2f}",
+        "off, %": lambda group: _percent(group[0].distance, 2),
         "within": lambda group: "yes" if group[0] in complaint.within else "no",
         "excites by, N": lambda group: _newtons(max(map(complaint.level, group))),
         "force, N": lambda group: _newtons(forces[group[0]].force if group[0] in forces else np.nan),
         "on bearing": lambda group: forces[group[0]].bearing if group[0] in forces else "",
     }
     return Table.of(f"Orders of {complaint.shaft} beside the complaint", _groups(complaint), columns)
+
+
+def _percent(distance: float, decimals: int) -> str:
+    """Return a relative distance in percent, 0 for the same order."""
+    return "0" if abs(distance) < SAME else f"{100.0 * distance:+.{decimals}f}"
 
 
 def _newtons(force: float) -> str:
@@ -160,7 +165,7 @@ def _newtons(force: float) -> str:
 def _mode_table(answer: AnsweredComplaint) -> Table:
     columns = {
         "frequency, Hz": lambda mode: number(mode.frequency, 5),
-        "off, %": lambda mode: f"{100.0 * mode.distance:+.1f}",
+        "off, %": lambda mode: _percent(mode.distance, 1),
         "damping ratio, %": lambda mode: number(100.0 * mode.damping_ratio, 3),
         "amplification": lambda mode: number(mode.amplification, 3),
         "dB": lambda mode: f"{20.0 * np.log10(mode.amplification):+.1f}",
