@@ -146,7 +146,8 @@ def test_a_case_prints_no_digit_beyond_its_error(name: str, tmp_path: Path) -> N
     case = tmp_path / "case.toml"
     case.write_text(toml_text(CASES[name]), encoding="utf-8")
     found = []
-    for verb, *options in QUICK if name in DAY else (*QUICK, *SLOW):
+    slow = SLOW[:-1] if name == "measured" else SLOW  # 20 tables of all pitches take half an hour
+    for verb, *options in QUICK if name in DAY else (*QUICK, *slow):
         files = [tmp_path / option if option.endswith(".nc") else option for option in options]
         found += printed(verb, case, *files)
     found += printed("ste", tmp_path / "ste.nc")
