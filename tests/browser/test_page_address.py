@@ -286,8 +286,8 @@ def test_a_scene_is_sent_with_its_text_and_its_speeds(visit: Visit, browser: Bro
     page.get_by_role("button", name="Write the scene of the pair").press("Enter")
     expect(page.locator("#scene-text")).to_have_value(re.compile("database_hash"))
     page.get_by_label("Compute", exact=True).select_option("modes")
-    page.get_by_label("to, rpm", exact=True).fill("2000")
-    page.get_by_label("number", exact=True).fill("4")
+    page.locator("#scene-body").get_by_label("to, rpm", exact=True).fill("2000")
+    page.locator("#scene-body").get_by_label("number", exact=True).fill("4")
     page.get_by_role("button", name="Compute the scene").press("Enter")
     drawn = "#scene-body [data-figure=modal_campbell] .plot"
     expect(page.locator(drawn)).to_have_attribute("data-drawn", "yes")

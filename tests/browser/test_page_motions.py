@@ -296,7 +296,7 @@ def test_a_unit_in_its_housing_moves_in_a_mode_and_stands_deflected(
     page = seen.page
     tab(page, "Sound")
     opened_scene(page, tmp_path)
-    page.get_by_label("number", exact=True).fill("2")
+    page.locator("#scene-body").get_by_label("number", exact=True).fill("2")
     stopped(page)
     motion, amplitude = page.get_by_label("Motion", exact=True), page.get_by_label("Amplitude", exact=True)
     size = page.locator("#view output")

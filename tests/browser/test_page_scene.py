@@ -44,8 +44,8 @@ def test_the_scene_of_the_pair_is_edited_and_computed_over_speed(visit: Visit, a
         text.input_value().replace("radial_stiffness_n_per_m = 100000000.0", "radial_stiffness_n_per_m = 5e7")
     )
     page.get_by_label("Compute", exact=True).select_option("response")
-    page.get_by_label("Speeds from, rpm").fill("500")
-    page.get_by_label("number", exact=True).fill("5")
+    page.locator("#scene-body").get_by_label("Speeds from, rpm").fill("500")
+    page.locator("#scene-body").get_by_label("number", exact=True).fill("5")
     page.get_by_role("button", name="Compute the scene").press("Enter")
     plot = page.locator("#scene-body [data-figure=response] .plot")
     expect(plot).to_have_attribute("data-drawn", "yes")
@@ -108,7 +108,7 @@ def test_many_runs_at_constant_speeds_are_drawn_over_speed(visit: Visit, analyze
     expect(text).to_have_value(re.compile("database_hash"))
     text.fill(text.input_value().replace("duration_s = 1.0", "duration_s = 0.1"))
     page.get_by_label("Compute", exact=True).select_option("study")
-    page.get_by_label("number", exact=True).fill("3")
+    page.locator("#scene-body").get_by_label("number", exact=True).fill("3")
     page.get_by_role("button", name="Compute the scene").press("Enter")
     for name in ("study_curves", "study_distribution", "study_tornado"):
         expect(page.locator(f"#scene-body [data-figure={name}] .plot")).to_have_attribute("data-drawn", "yes")
@@ -238,7 +238,7 @@ def test_flanks_of_a_unit_are_searched_by_what_is_heard(visit: Visit) -> None:
     page.get_by_role("button", name="Open scene", exact=True).press("Enter")
     expect(page.get_by_text("A deflection takes the load cases")).to_be_visible()
     page.get_by_label("Compute", exact=True).select_option("optimize")
-    page.get_by_label("Speeds from, rpm").fill("400")
+    page.locator("#scene-body").get_by_label("Speeds from, rpm").fill("400")
     with refused(page, "optimize") as sent:
         with page.expect_response("**/processes/optimize/execution"):
             page.get_by_role("button", name="Compute the scene").press("Enter")

@@ -257,7 +257,7 @@ def test_the_surface_of_a_housing_moves_in_the_colors_of_its_velocity(
     tab(page, "Sound")
     opened_scene(page, tmp_path)
     page.get_by_label("Compute", exact=True).select_option("vibration")
-    page.get_by_label("number", exact=True).fill("3")
+    page.locator("#scene-body").get_by_label("number", exact=True).fill("3")
     page.get_by_role("button", name="Compute the scene").press("Enter")
     motion, refused = page.get_by_label("Motion", exact=True), page.locator("#scene-body [role=alert]")
     page.locator("#view select:visible, #scene-body [role=alert]").first.wait_for(timeout=PATIENCE)
