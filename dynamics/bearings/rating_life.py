@@ -4,7 +4,7 @@ Only for steel bearings of good quality; lubrication and contamination (the modi
 
 References
 ----------
-.. [1] ISO/TS 16281:2008, Rolling bearings - Methods for calculating the modified reference rating life for
+.. [2] ISO/TS 16281:2008, Rolling bearings - Methods for calculating the modified reference rating life for
    universally loaded bearings, 4.3 (balls, equations 19 to 30) and 5.3 (rollers, equations 47 to 66), of
    radial bearings of one row.
 """
