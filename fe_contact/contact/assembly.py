@@ -130,8 +130,8 @@ class _GearFlank(NamedTuple):
         both = self.patch.rows(rows), self.mate.rows(rows)
         laid, way = _laid(*both, self.patch.half_width.max(), side[rows], self.tip, self.nodes[-1])
         levers, there = self.lever[rows], present[rows]
-        bodies = self.nodes, self.blocks, self.teeth, self.along
-        _add_gear(*bodies, laid, way, levers, there, couple_teeth, out, tilt)
+        body = self.nodes, self.blocks, self.teeth, self.along
+        _add_gear(body, laid, way, levers, there, couple_teeth, out, tilt)
 
 
 def _added_gear(
@@ -228,10 +228,7 @@ def _logarithm_at_edges(slices: LoadedSlices, planes: tuple[float, float]) -> Fl
 
 @njit(cache=True)
 def _add_gear(
-    nodes: FloatArray,
-    blocks: FloatArray,
-    teeth: IntArray,
-    along: FloatArray,
+    body: tuple[FloatArray, FloatArray, IntArray, FloatArray],
     laid: FloatArray,
     way: FloatArray,
     lever: FloatArray,
@@ -242,11 +239,12 @@ def _add_gear(
 ) -> None:
     """Add b_i' S b_j of one gear for all positions to `out`, and its derivative by patch i to `tilt`.
 
-    `laid` and `way` are those of `_laid`. `along` (k, k) are the displacements along the flank by unit
-    forces, over those of a rotation about the axis that moves the flank across by 1. `blocks` (t, k, t, k)
-    are S of all condensed teeth, and `teeth` (n,) says which of them have candidates. Nodes first[i] to
-    last[i] - 1 are loaded by patch i; last[i] = 0: no such candidate.
+    `laid` and `way` are those of `_laid`. `body` is nodes, blocks, teeth, along: `along` (k, k) are the
+    displacements along the flank by unit forces, over those of a rotation about the axis that moves the flank
+    across by 1. `blocks` (t, k, t, k) are S of all condensed teeth, and `teeth` (n,) says which of them have
+    candidates. Nodes first[i] to last[i] - 1 are loaded by patch i; last[i] = 0: no such candidate.
     """
+    nodes, blocks, teeth, along = body
     positions, n = present.shape
     load = np.zeros((3, n, nodes.size))
     first, last = np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64)

@@ -57,7 +57,7 @@ def refused(client: LineOfActionClient) -> None:
     """Each by an error that mypy knows; it reports one that is not there."""
     client.modes(SCENE, speed=[1.0])  # type: ignore[call-arg]
     client.modes(SCENE, orders="all")  # type: ignore[arg-type]
-    client.optimize(SCENE)  # type: ignore[call-arg]
+    client.response(SCENE)  # type: ignore[call-arg]
 
 
 async def awaited(client: AsyncLineOfActionClient) -> None:

@@ -7,7 +7,7 @@ from typing import Any, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
-from bounds import declarations
+from bounds import Interval, declarations
 from fe_contact.geometry.gear import Gear
 from fe_contact.geometry.ring_gear import RingGear
 from lineofaction.gearbox.schemas.declared import as_fields, figures, with_fields
@@ -22,8 +22,13 @@ _DEFAULTS = {
 }
 _RING_ONLY = tuple(figure for figure in RING if figure.name not in declarations(Gear))
 _GEAR_ONLY = tuple(figure for figure in figures(Gear) if figure.name not in declarations(RingGear))
-_NEGATIVE = ("teeth", "tip_diameter_mm", "rim_diameter_mm")
-"""Fields of a ring gear that are negative in ISO 21771-1."""
+_NEGATIVE = {
+    figure.field: (figure.boundary_value(bound.ge or 0.0), figure.boundary_value(bound.le))
+    for figure in figures(RingGear)
+    if figure.field in ("teeth", "tip_diameter_mm", "rim_diameter_mm")
+    and isinstance(bound := figure.what.bound, Interval)
+}
+"""Sizes, from and to, of the fields of a ring gear that are negative in ISO 21771-1."""
 _IS_RING = {"required": ["internal"], "properties": {"internal": {"const": True}}}
 _RING_HAS = both(required("rim_diameter_mm"), absent("bore_diameter_mm", "blank", "seat", "sector_teeth"))
 _GEAR_HAS = both(required("bore_diameter_mm"), absent(*(figure.field for figure in _RING_ONLY)))
@@ -41,14 +46,18 @@ def _of_positive_counts(data: Any) -> Any:
 
     The profile shift has the sign of the standard in either form.
     """
-    if not isinstance(data, dict) or not _is_negative(data.get("teeth")):
+    if not isinstance(data, dict) or not _is_negative("teeth", data.get("teeth")):
         return data
-    sizes = {name: -value for name, value in data.items() if name in _NEGATIVE and _is_negative(value)}
+    sizes = {name: -value for name, value in data.items() if _is_negative(name, value)}
     return {**data, "internal": True, **sizes}
 
 
-def _is_negative(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and value < 0
+def _is_negative(name: str, value: Any) -> bool:
+    """Whether a value is in the standard's form of a ring gear; others are refused as they are written."""
+    if name not in _NEGATIVE or isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    minimum, maximum = _NEGATIVE[name]
+    return bool(value < 0 and minimum <= -value <= maximum)
 
 
 @with_fields(as_fields(replace(figure, default=None) for figure in (*_GEAR_ONLY, *_RING_ONLY)))
