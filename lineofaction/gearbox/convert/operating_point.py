@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from bounds import engineering, shaft_words
-from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.units import MM, UM
+
+if TYPE_CHECKING:
+    from lineofaction.gearbox.schemas.scene import SceneInput
 
 OPERATING_POINT = "operating_point"
 """Name among the facts of the result of a scene, under which its operating point stands."""

@@ -116,7 +116,7 @@ def test_a_file_by_its_ending_is_the_only_one_written(
     computed(monkeypatch, study())
     result = loa("sensitivity", small, "-o", tmp_path / "x.csv", *WIDER)
     assert result.exit_code == 0
-    assert "written to" in result.stdout and "+150.0" in result.stdout
+    assert "written to" in result.stdout and "  +150\n" in result.stdout
     assert sorted(file.name for file in tmp_path.iterdir() if file.is_file()) == ["small.toml", "x.csv"]
 
 

@@ -335,7 +335,7 @@ def test_positions_of_every_analysis_join_until_the_limits_are_kept(
     problem = DesignProblem(
         cast(Any, Places(np.array([0.0, 0.5]))), (VARIABLE,), Limits(), 1.0, objective=WeightedMean()
     )
-    asked: Any = SimpleNamespace(start_design=(0.0,), search=Search())
+    asked: Any = SimpleNamespace(start_design=(0.0,), search=Search(), grid={})
     checked = SimpleNamespace(predicted=lambda *_: SimpleNamespace(cpu_seconds=0.0))
     study: Any = SimpleNamespace(decision=SimpleNamespace(checked=checked, plan=None))
     found = choice.choose(problem, (CONVERGED,), asked, study, StageClock(), Run(), lambda: False)
@@ -367,7 +367,7 @@ def concluded(after: HarrisMap, objective: float = 0.2, violation: float = 0.0) 
     run = SearchRun(np.array([0.5]), Assessed(0.2 * UM, 0.0, 1.0), 10, Ended.CONVERGED, 0.0)
     designs = {"start": design(BEFORE, 0.3), "optimum": design(after, objective, violation)}
     choice = SimpleNamespace(runs=(run,), run=run, **designs)
-    request = SimpleNamespace(search=Search(), outside=())
+    request = SimpleNamespace(search=Search(), outside=(), objective=WeightedMean())
     return outcome_and_reason(cast(Any, choice), cast(Any, request))
 
 
