@@ -81,4 +81,3 @@ def _bearings(run: Run) -> Iterator[Row]:
     radial = np.hypot(run.bearing_force[:, 0], run.bearing_force[:, 1]).max(axis=1)
     for at in np.argsort(-radial)[:MAX_PARTS]:
         yield f"bearing {run.bearing[at]}", f"radial force up to {engineering(float(radial[at]), 4)} N"
-
