@@ -174,7 +174,7 @@ def _inserted(axes: dict[str, Any], newton_metre: float) -> Iterator[str]:
     """Yield the values of each axis that were inserted to meet the tolerance; `newton_metre` in N."""
     for axis, (name, unit, word) in ({"force": ("loads", newton_metre, "N m")} | NODES).items():
         if inserted := axes.get(axis, {}).get("inserted"):
-            values = ", ".join(f"{value / unit:.4g}" for value in inserted)
+            values = ", ".join(engineering(value / unit, 4) for value in inserted)
             yield f"{name} inserted for interpolation: {values} {word}"
 
 
