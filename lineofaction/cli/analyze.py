@@ -25,7 +25,6 @@ from lineofaction.cli.output import (
     print_headlines,
     print_json,
     print_written,
-    progress_bar,
     table,
 )
 from lineofaction.cli.tolerance_lines import NODES, tolerance_lines, tolerance_warnings
@@ -41,6 +40,7 @@ from lineofaction.gearbox.convert.effects import (
 )
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import JobFailed
+from lineofaction.gearbox.progress_bars import progress_bar
 from lineofaction.gearbox.units import UM
 from lineofaction.report.ste.headlines import static_headlines
 
