@@ -81,7 +81,8 @@ def _force_swing(mesh: LoadedMesh) -> float:
 def _coast_table(mesh: GearMesh, flanks: Flanks, index: int) -> PlainTable:
     """Return the table of a coast flank against the position of the driving flank.
 
-    Seen turned about the line of centers, the gap of a misalignment grows towards the other end.
+    A coast flank is a driving flank seen turned about the line of centers, so that a misalignment opens its
+    gap towards the other end of the face.
     """
     back = mesh.coast
     if back is None:

@@ -56,7 +56,7 @@ class Gyroscopic(RotorEffect):
                 influence=0.0,
             )
         share = max(_tilt_share(rotor), _frame_share(rotor))
-        deflection = rotor.pushed / body.radial_stiffness if body.radial_stiffness > 0.0 else 0.0
+        deflection = rotor.resultant / body.radial_stiffness if body.radial_stiffness > 0.0 else 0.0
         reason = f"rotation shifts natural frequencies by up to {engineering(share, 2)} of them"
         return Verdict(on=share > SHARE, possible=True, reason=reason, influence=min(share, 1.0) * deflection)
 
