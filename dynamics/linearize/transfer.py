@@ -51,7 +51,8 @@ from model_studies.cached_file import keep_cached, read_cached
 BLOCK = 4_000_000  # complex displacements held at once
 SAME = 1e-9  # difference of gradients over the largest, below which rows are the same
 VERSION = 1
-"""Raised with every change of the numbers of a transfer function, or of what is kept with them."""
+"""Version of cached files, raised with every change of the fields of a transfer function or of their numbers.
+"""
 
 _SOLVED = 6e-8
 """CPU seconds of a line at a speed by freedoms squared: 3.5 to 9e-8 for 47 to 170 of them."""
@@ -205,7 +206,7 @@ class FlankTransfer(ArrayFile):
     ) -> ComplexArray:
         """Return the changes (S, H, 1 + R, d) of `inputs` of flanks, to first order in d small `changes`.
 
-        Differentiated, (1 + X A) dv = de' - dX (A v + G u_0).
+        They follow from the derivative (1 + X A) dv = de' - dX (A v + G u_0).
         """
         opposing = self._opposing(flanks.tangent - self.tangent, flanks.viscous - self.viscous, self.motion)
         motion = np.einsum("rshc,shc->rsh", self.motion, inputs)[..., None]
@@ -219,8 +220,9 @@ class FlankTransfer(ArrayFile):
     def varied_inputs(self, at: Excited, flanks: FlankExcitation) -> tuple[ComplexArray, float]:
         """Return `inputs` of flanks with tangents that vary with position, and the residual left, relative.
 
-        `at` is the scene about its equilibrium with them. With B = (1 + X A)^-1 they take v from the inputs
-        as in a scene of the receptances A B. Raises `SolveError` where nothing bounds the vibration.
+        `at` is the scene about its equilibrium with these flanks. With B = (1 + X A)^-1 the varying part of
+        the tangents acts as in a scene of the receptances A B, and its forces are subtracted from v. Raises
+        `SolveError` where nothing bounds the vibration.
         """
         inputs, count = self.inputs(flanks), at.cycles[-1].rows.stop
         opposing = self._opposing(flanks.tangent - self.tangent, flanks.viscous - self.viscous, self.motion)
@@ -334,7 +336,7 @@ def flank_transfer(
 def transfer_seconds(system: System, speed: FloatArray, orders: int) -> float:
     """Return the cost of `flank_transfer` with these arguments, CPU s: within a factor of 2 from 0.05 s on.
 
-    Raises `InputError`, `SolveError` as it.
+    Raises `InputError` and `SolveError` as `flank_transfer` does.
     """
     lines = possible_lines(excited(system, 0.0, orders), orders, speed)
     return _SOLVED * speed.size * lines.size * system.freedoms.column.size**2
@@ -439,11 +441,11 @@ def _bearing_columns(at: Excited, omega: FloatArray, u: ComplexArray, rows: IntA
     by_input = np.moveaxis(u, 3, 2).reshape(speeds, harmonics * inputs, freedoms)
     force = bearing_forces(at, np.repeat(omega, inputs, axis=1), by_input)
     force = force.reshape(*force.shape[:2], speeds, harmonics, inputs)
-    total, none = at.system.arrays.elements.offset.size, np.zeros((rows.size, freedoms))
-    unit = np.zeros((total, rows.size))
+    unit = np.zeros((at.system.arrays.elements.offset.size, rows.size))
     unit[rows, np.arange(rows.size)] = 1.0
-    of_none = at.system.bearing_force(np.zeros((total, 1)), none[:1], none[:1])
-    direct = at.system.bearing_force(unit, none, none) - of_none  # (b, 3 or 6, R)
+    rest = np.zeros((rows.size, freedoms))
+    static = at.system.bearing_force(np.zeros((len(unit), 1)), rest[:1], rest[:1])
+    direct = at.system.bearing_force(unit, rest, rest) - static  # (b, 3 or 6, R)
     force[..., 1:] -= direct[:, :, None, None]
     return np.asarray(force)
 

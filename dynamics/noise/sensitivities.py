@@ -97,11 +97,6 @@ class Sensitivity:
         return abs(self.for_one_db_less) <= self.linear_range
 
 
-def _ranked(rows: Iterable[Sensitivity]) -> tuple[Sensitivity, ...]:
-    """Return sensitivities by the change of a step, the largest first."""
-    return tuple(sorted(rows, key=lambda row: -abs(row.change)))
-
-
 def _response_level(model: SoundModel, speed: FloatArray, orders: int) -> float:
     return largest_level(speed, forced_power(model, speed, orders)[1])
 
@@ -141,8 +136,8 @@ def sound_sensitivities(
     model, speed, orders
         Arguments of `forced_power`; the level is the `largest_level`.
     scenes : callable
-        Function of a figure of the flanks that returns a function from its value to the scene. Its level is
-        computed by `flank_transfer`.
+        Function of a figure of the flanks that returns a function from its value to the scene. The level of
+        such a scene is computed by `flank_transfer`.
     progress : callable
         Called as progress("sensitivities", fraction).
 
@@ -169,4 +164,4 @@ def sound_sensitivities(
     figures = (DesignFigure(name, "", 1.0, STEPS.get(name, STEP)) for name in known)
     by_name = {figure.name: figure for figure in (*figures, *flanks)}
     rows, omitted = run_variants("sensitivities", by_name, compute, (DynamicsError,), progress)
-    return _ranked(rows.values()), omitted
+    return tuple(sorted(rows.values(), key=lambda row: -abs(row.change))), omitted
