@@ -34,10 +34,8 @@ class _RatingLife:
     """P_ref, N: the radial load of the same life by ISO 281."""
 
 
-def rating_life(
-    bearing: BallBearing | RollerBearing, load: FloatArray, rating: float, inner_turns: bool = True
-) -> _RatingLife:
-    """Return the life of `bearing` under constant loads of its elements.
+def rating_life(bearing: BallBearing | RollerBearing, load: FloatArray, rating: float) -> _RatingLife:
+    """Return the life of `bearing` under constant loads of its elements, which turn against the inner ring.
 
     Raises `InputError`: the rating is not positive.
 
@@ -47,20 +45,16 @@ def rating_life(
         Normal loads of the elements, N, see `Reaction`.
     rating : float
         Basic dynamic load rating C, N.
-    inner_turns : bool
-        Whether the load turns against the inner ring; False: against the outer.
     """
     positive("rating", rating)
     ball = isinstance(bearing, BallBearing)
     slope = 10.0 / 3.0 if ball else 4.5  # product of Weibull slope and load exponent
-    # exponents of the mean load: of a ring that turns against the load, and of one that stands
-    turning, standing = (3.0, slope) if ball else (4.0, slope)
-    exponents = (turning, standing) if inner_turns else (standing, turning)
-    limits = (
-        _ball_ratings(bearing, rating)
-        if isinstance(bearing, BallBearing)
-        else _lamina_ratings(bearing, rating)
-    )
+    # exponents of the mean load: of the inner ring, which turns against the load, and of the outer ring
+    exponents = (3.0, slope) if ball else (4.0, slope)
+    if isinstance(bearing, BallBearing):
+        limits = _ball_ratings(bearing, rating)
+    else:
+        limits = _lamina_ratings(bearing, rating)
     stressed = load if ball else load * _edge_factor(load.shape[1])
     damage = 0.0  # of both rings and all laminae; their probabilities of survival multiply
     for limit, exponent in zip(limits, exponents, strict=True):

@@ -41,9 +41,8 @@ class Backlash(MeshEffect):
             return Verdict(False, False, "no coast flank given: lift-off has no limit", 0.0)
         backlash, minimum = mesh.mesh.coast.backlash, float(np.min(mesh.train.mean_force[mesh.index]))
         if minimum <= 0.0:
-            return Verdict(
-                True, True, f"the load reverses: the mean force falls to {minimum:.4g} N", backlash
-            )
+            reason = f"the load reverses: the mean force falls to {minimum:.4g} N"
+            return Verdict(True, True, reason, backlash)
         swing = _force_swing(mesh)
         text = f"the mean force stays above {minimum:.4g} N, resonance changes it by up to "
         if swing >= minimum:

@@ -23,6 +23,5 @@ class Lateral(RotorEffect):
             return Verdict(True, True, "loads displace the shaft on its bushings", 0.0)
         if not rotor.meshes:
             return Verdict(False, True, "no mesh on this shaft", 0.0)
-        return Verdict(
-            True, True, "mesh forces displace the shaft on its bushings", rotor.resultant / stiffness
-        )
+        reason = "mesh forces displace the shaft on its bushings"
+        return Verdict(True, True, reason, rotor.resultant / stiffness)

@@ -117,7 +117,6 @@ def forced_response(
 
     Parameters
     ----------
-    system : System
     speed : (S,) sequence
         Speeds of the first drive that turns, rad/s, increasing, > 0; the scene decides the sense.
     orders : int

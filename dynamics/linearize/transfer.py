@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
@@ -286,28 +286,21 @@ def flank_transfer(
     system: System,
     speed: FloatArray,
     orders: int = 10,
-    time: float = 0.0,
     cache: Path | None = None,
-    progress: Callable[[float], None] | None = None,
 ) -> FlankTransfer:
-    """Return the transfer functions of a scene about its loaded equilibrium.
+    """Return the transfer functions of a scene about its equilibrium under the loads at t = 0.
 
     With tables of long periods the lines are the `strongest_lines` of the scene's flanks, the mesh orders
     always among them.
 
     Parameters
     ----------
-    system : System
     speed : (S,) array
         Speeds of the first drive that turns, rad/s, increasing, > 0.
     orders : int
         Harmonics of the mesh frequency of the first mesh that turns.
-    time : float
-        When loads are taken, s.
     cache : Path, optional
-        Directory in which they are kept by their content; None: neither read nor written.
-    progress : callable, optional
-        Called with the fraction of the speeds done.
+        Directory in which they are stored by their content; None: neither read nor written.
 
     Raises
     ------
@@ -321,14 +314,14 @@ def flank_transfer(
     if not speed.size:
         raise InputError("speed", [], "at least one speed")
     integer("orders", orders, 1, SAMPLES // 4)
-    at = excited(system, time, orders)
+    at = excited(system, 0.0, orders)
     harmonics = possible_lines(at, orders, speed)
     _require_memory(at, speed.size, harmonics.size)
     file = None if cache is None else cache / f"transfer-{_content_key(at, speed, harmonics, orders)}.nc"
     cached = read_cached(file, FlankTransfer.from_netcdf, ResultError)
     if cached is not None:
         return cached
-    transfer = _computed(at, speed, harmonics, orders, progress)
+    transfer = _computed(at, speed, harmonics, orders)
     keep_cached(transfer, file, FlankTransfer.to_netcdf)
     return transfer
 
@@ -391,13 +384,7 @@ def excitation_of(at: Excited, harmonics: IntArray) -> FlankExcitation:
     return FlankExcitation(static, force, tangent, viscous, start.mesh_force)
 
 
-def _computed(
-    at: Excited,
-    speed: FloatArray,
-    harmonics: IntArray,
-    orders: int,
-    progress: Callable[[float], None] | None,
-) -> FlankTransfer:
+def _computed(at: Excited, speed: FloatArray, harmonics: IntArray, orders: int) -> FlankTransfer:
     """Solve a block of speeds at a time."""
     flanks, rows, parts = excitation_of(at, harmonics), _rows(at), _parts(at)
     gradient, inputs = at.system.arrays.direction[rows], 1 + rows.size
@@ -410,8 +397,6 @@ def _computed(
         force.append(_bearing_columns(at, steady.omega, u, rows))
         omega.append(steady.omega)
         residual = max(residual, steady.residual)
-        if progress is not None:
-            progress(min(start + block, speed.size) / speed.size)
     return FlankTransfer(
         bearing=at.system.supports.name,
         freedom=at.linear.freedom,

@@ -39,11 +39,7 @@ def with_common_base_pitches(scene: Scene) -> tuple[Scene, Corrections]:
     return replace(scene, gears=gears), dict(corrected)
 
 
-def _pairs(scene: Scene) -> tuple[object, ...]:
-    return (scene.gears, *((mesh.driver, mesh.driven) for mesh in scene.meshes))
-
-
-@cached_by(_pairs)
+@cached_by(lambda scene: (scene.gears, *((mesh.driver, mesh.driven) for mesh in scene.meshes)))
 def _corrections(scene: Scene) -> Corrections:
     """Return the necessary corrections; raises `InputError`."""
     _check(scene)

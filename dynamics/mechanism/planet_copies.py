@@ -107,8 +107,7 @@ def _with_copies(parts: Sequence[Part], shaft: str, number: int) -> tuple[Part, 
 
 def _mesh_copies(scene: Scene, shaft: str, number: int) -> list[GearMesh]:
     of_shaft = {gear.name for gear in scene.gears if gear.shaft == shaft}
-    engaged = planet_parts(scene, shaft)[0]
-    meshes = [mesh for mesh in scene.meshes if mesh.name in engaged]
+    meshes = [mesh for mesh in scene.meshes if {mesh.driver, mesh.driven} & of_shaft]
     return [_copied_mesh(mesh, of_shaft, index) for index in range(1, number) for mesh in meshes]
 
 

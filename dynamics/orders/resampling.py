@@ -45,9 +45,9 @@ def driving_shaft(result: RunResult, mesh: int = 0) -> str:
     return str(next(gear["shaft"] for gear in result.case["gears"] if gear["name"] == driver))
 
 
-def driving_speed(result: RunResult, mesh: int = 0) -> FloatArray:
-    """Return the speed of the `driving_shaft`, rad/s without sign, (n,)."""
-    return np.asarray(np.abs(result.speed[result.shaft.index(driving_shaft(result, mesh))]))
+def driving_speed(result: RunResult) -> FloatArray:
+    """Return the speed of the `driving_shaft` of the first mesh, rad/s without sign, (n,)."""
+    return np.asarray(np.abs(result.speed[result.shaft.index(driving_shaft(result))]))
 
 
 def highest_valid_order(result: RunResult, mesh: int = 0) -> int:

@@ -286,7 +286,6 @@ def steady_states(
 
     Parameters
     ----------
-    system : System
     speed : (S,) sequence
         Speeds of the first drive that turns, rad/s, increasing, > 0; the scene decides the sense.
     branch : bool

@@ -276,11 +276,7 @@ def _check_references(scene: Scene) -> None:
         raise InputError("drives[0].speed", 0.0, "not zero all the time", suggestion)
 
 
-def _bodies_and_loads(scene: Scene) -> tuple[object, ...]:
-    return (*scene.parts.values(), scene.gravity, scene.temperatures)
-
-
-@cached_by(_bodies_and_loads)
+@cached_by(lambda scene: (*scene.parts.values(), scene.gravity, scene.temperatures))
 def _check_parts(scene: Scene) -> None:
     """All parts fit each other; once for scenes that differ by their run alone."""
     _check_names(scene)

@@ -25,7 +25,7 @@ from dynamics.results.order_fit import order_amplitudes, orders_seen
 from dynamics.scene import Integration
 from dynamics.simulation.documents import with_longest_step
 from dynamics.simulation.error_by_source import CAP, observed_signals, window_seconds
-from dynamics.types import BoolArray, FloatArray, Json
+from dynamics.types import FloatArray, Json
 
 StatesOf = Callable[[int, int], States]
 
@@ -58,8 +58,9 @@ def blind_windows(system: System, choice: MethodChoice, states_of: StatesOf, end
         return "requested"
     if scene.outputs.receipt != "full":
         return ""
-    if any(np.any(_parted(system, states_of(*block))) for block in blocks(end.samples)):
-        return "flanks part"
+    for block in blocks(end.samples):
+        if np.any(states_of(*block).minimum[:, system.driving_rows] <= 0.0):
+            return "flanks part"
     if outlives_windows(system, choice):
         decay = engineering(choice.slowest_decay, 2)
         return f"vibration decays at {decay} 1/s, slower than windows can see"
@@ -69,10 +70,6 @@ def blind_windows(system: System, choice: MethodChoice, states_of: StatesOf, end
 def outlives_windows(system: System, choice: MethodChoice) -> bool:
     """Whether a lightly damped motion that meshes excite decays more slowly than a window of a run lasts."""
     return choice.slowest_decay * window_seconds(system) < 1.0
-
-
-def _parted(system: System, states: States) -> BoolArray:
-    return np.asarray(states.minimum[:, system.driving_rows] <= 0.0)
 
 
 def finer_run(integration: Integration, end: Ending) -> Integration:

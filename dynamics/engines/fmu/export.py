@@ -167,10 +167,6 @@ def export_fmu(
         Model name: a C identifier.
     binary : bool
         False: sources alone, without a compiler; the host builds them.
-
-    Returns
-    -------
-    Path
     """
     target = Path(path)
     if target.suffix != ".fmu" or not target.parent.is_dir():
