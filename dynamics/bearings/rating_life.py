@@ -35,7 +35,7 @@ class _RatingLife:
 
 
 def rating_life(bearing: BallBearing | RollerBearing, load: FloatArray, rating: float) -> _RatingLife:
-    """Return the life of `bearing` under constant loads of its elements, which turn against the inner ring.
+    """Return the life of `bearing`, whose inner ring turns against a constant load.
 
     Raises `InputError`: the rating is not positive.
 

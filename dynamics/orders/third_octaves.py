@@ -94,8 +94,8 @@ def order_track(
 ) -> Waterfall:
     """Return the amplitudes of the mesh orders 0 to `highest` in blocks of `pitches` base pitches.
 
-    They are lines of `order_waterfall`. Raises `InputError`: the run is shorter
-    than one block, or its output does not hold the order.
+    They are lines of `order_waterfall`. Raises `InputError`: the run is shorter than one block, or its output
+    does not hold the order.
     """
     waterfall = order_waterfall(result, series, pitches, highest, mesh)
     orders = np.arange((waterfall.line.size - 1) // pitches + 1)
