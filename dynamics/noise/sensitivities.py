@@ -97,6 +97,11 @@ class Sensitivity:
         return abs(self.for_one_db_less) <= self.linear_range
 
 
+def _ranked(rows: Iterable[Sensitivity]) -> tuple[Sensitivity, ...]:
+    """Return sensitivities by the change of a step, the largest first."""
+    return tuple(sorted(rows, key=lambda row: -abs(row.change)))
+
+
 def _response_level(model: SoundModel, speed: FloatArray, orders: int) -> float:
     return largest_level(speed, forced_power(model, speed, orders)[1])
 
@@ -164,4 +169,4 @@ def sound_sensitivities(
     figures = (DesignFigure(name, "", 1.0, STEPS.get(name, STEP)) for name in known)
     by_name = {figure.name: figure for figure in (*figures, *flanks)}
     rows, omitted = run_variants("sensitivities", by_name, compute, (DynamicsError,), progress)
-    return tuple(sorted(rows.values(), key=lambda row: -abs(row.change))), omitted
+    return _ranked(rows.values()), omitted
