@@ -56,7 +56,6 @@ if TYPE_CHECKING:
         from host.windows import children_peak_memory as children_peak_memory
         from host.windows import cpu_seconds as cpu_seconds
         from host.windows import keep_freed_memory as keep_freed_memory
-        from host.windows import keep_memory_to_the_end as keep_memory_to_the_end
         from host.windows import lock as lock
         from host.windows import max_open_files as max_open_files
         from host.windows import peak_memory as peak_memory
@@ -66,7 +65,6 @@ if TYPE_CHECKING:
         from host.posix import children_peak_memory as children_peak_memory
         from host.posix import cpu_seconds as cpu_seconds
         from host.posix import keep_freed_memory as keep_freed_memory
-        from host.posix import keep_memory_to_the_end as keep_memory_to_the_end
         from host.posix import lock as lock
         from host.posix import max_open_files as max_open_files
         from host.posix import peak_memory as peak_memory
@@ -117,7 +115,6 @@ OF_SYSTEM = (
     "children_peak_memory",
     "cpu_seconds",
     "keep_freed_memory",
-    "keep_memory_to_the_end",
     "lock",
     "max_open_files",
     "peak_memory",
@@ -149,7 +146,6 @@ __all__ = [
     "handlers_restored",
     "has_exited",
     "keep_freed_memory",
-    "keep_memory_to_the_end",
     "keep_to_one_thread",
     "kill",
     "kill_group",

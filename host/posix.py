@@ -49,26 +49,18 @@ def physical_memory() -> int:
     return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
 
 
-def keep_freed_memory() -> None:
-    """Let this process keep up to 64 MiB that it has freed: pages given back have to be cleared anew.
+def keep_freed_memory(*, to_the_end: bool = False) -> None:
+    """Let this process keep up to 64 MiB that it has freed; `to_the_end`: all of it until the process ends.
 
-    For tasks that allocate alike again and again. Where the C library has no such setting nothing changes.
+    The system clears each page that a process gets, so pages that it gives back cost time when it gets them
+    anew. The limit is for tasks that allocate alike again and again, no limit for a process of one
+    computation. Where the C library has no such setting nothing changes.
     """
     setting = getattr(ctypes.CDLL(None), "mallopt", None)
-    if setting is not None:
-        setting(_MMAP_THRESHOLD, 32 * _MIB)
-        setting(_TRIM_THRESHOLD, 64 * _MIB)
-
-
-def keep_memory_to_the_end() -> None:
-    """Let this process keep all memory that it has freed until it ends, for a process of one computation.
-
-    The system clears each page that a process gets. Arrays of some hundred MiB would otherwise be given back
-    and got anew. Where the C library has no such setting nothing changes.
-    """
-    setting = getattr(ctypes.CDLL(None), "mallopt", None)
-    if setting is not None and setting(_MMAP_THRESHOLD, 1024 * _MIB):
-        setting(_TRIM_THRESHOLD, 2047 * _MIB)  # the largest whole number of MiB that the setting takes
+    # 2047: the largest whole number of MiB that the setting takes
+    largest_block, freed = (1024, 2047) if to_the_end else (32, 64)
+    if setting is not None and setting(_MMAP_THRESHOLD, largest_block * _MIB):
+        setting(_TRIM_THRESHOLD, freed * _MIB)
 
 
 def max_open_files() -> float:

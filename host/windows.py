@@ -40,11 +40,7 @@ def physical_memory() -> int:
     return int(import_module("psutil").virtual_memory().total)
 
 
-def keep_freed_memory() -> None:
-    """Do nothing: the system has no such setting."""
-
-
-def keep_memory_to_the_end() -> None:
+def keep_freed_memory(*, to_the_end: bool = False) -> None:
     """Do nothing: the system has no such setting."""
 
 

@@ -12,13 +12,9 @@ from fe_contact.contact.model import ContactModel
 from fe_contact.effects.effect import ContactScene, Effect, Verdict
 from fe_contact.flank.extent import Extent
 from fe_contact.geometry import ParallelAxes, Toothing, blank_factor
-from fe_contact.geometry.iso6336_stiffness import modulus_ratio
+from fe_contact.geometry.iso6336_stiffness import STEEL_STIFFNESS, modulus_ratio
 from fe_contact.hertz import relative_radius
 
-_STEEL_STIFFNESS = 14e9
-"""Stiffness of a pair of steel teeth on solid bodies, N/m per m of face: about the single stiffness of ISO
-6336.
-"""
 _ALONG_EDGE = 33
 _ALONG_FLANK = 401
 
@@ -96,6 +92,6 @@ def _largest_deflection(scene: ContactScene) -> float:
     """
     pair = scene.pair
     body = 0.5 * (blank_factor(pair.pinion) + blank_factor(pair.wheel))
-    stiffness = _STEEL_STIFFNESS * body * modulus_ratio(pair)
+    stiffness = STEEL_STIFFNESS * body * modulus_ratio(pair)
     width = min(pair.pinion.face_width, pair.wheel.face_width)
     return float(scene.torque.max()) / pair.pinion.base_radius / width / stiffness

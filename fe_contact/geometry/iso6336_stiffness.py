@@ -11,6 +11,8 @@ from fe_contact.geometry.gear_pair import GearPair
 from fe_contact.geometry.parallel_axes import ParallelAxes
 from fe_contact.geometry.toothing import Toothing
 
+STEEL_STIFFNESS = 14e9
+"""c' of pairs of steel teeth on solid bodies, N/m per m of face width: the usual value of clause 9.3."""
 MEASURED_OVER_THEORY = 0.8
 """C_M: measured gears against the theoretical stiffness."""
 _PER_MM_UM = 1e9  # N/(mm um) in N/m per m of face width

@@ -20,7 +20,7 @@ from fe_contact.microgeometry.search_methods import Cancel, SequentialLinearProg
 from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.options import Run
 from model_studies.stage_clock import StageClock
-from model_studies.workers import InProcess, OrHere, Workers, WorkersLost, divided
+from model_studies.workers import InProcess, LocalFallback, Workers, WorkersLost, divided
 
 REFINED = 4
 """Divisor of the number of designs in a further search. Such a search follows where the best design exceeds
@@ -54,7 +54,7 @@ class Choice:
         return self.runs[self.best]
 
 
-def posed(study: DesignStudy, request: OptimizationRequest, memory: Path | None) -> DesignProblem:
+def search_problem(study: DesignStudy, request: OptimizationRequest, memory: Path | None) -> DesignProblem:
     """Return the problem of the search; its scale is the objective of the start design.
 
     `memory` is a directory of designs that were assessed before. Raises `SolveError`: the contact of the
@@ -153,4 +153,4 @@ def to_the_end(workers: Workers, cancel: Cancel) -> Workers:
         if not cancel():
             raise error
 
-    return OrHere(workers, raise_unless_cancelled)
+    return LocalFallback(workers, raise_unless_cancelled)

@@ -94,7 +94,7 @@ class DrawnRipple:
         `CondensedPair.table`, or for teeth that differ, or for an effect of the flanks that is off.
         """
         request = pair, np.array([torque]), misalignment, center_distance_change
-        checked, contacts, _, nodes, plan = bodies.posed(*request)
+        checked, contacts, _, nodes, plan = bodies.contact_problem(*request)
         if checked.model.period > 1:
             bound = "left out where teeth differ"
             raise InputError("tolerance_class", "a class", bound, "For those, loa scatter draws pairs.")

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from fe_contact.microgeometry.best_design import Choice, choose, perturbation, posed, to_the_end
+from fe_contact.microgeometry.best_design import Choice, choose, perturbation, search_problem, to_the_end
 from fe_contact.microgeometry.conclusion import outcome_and_reason, untried_steps
 from fe_contact.microgeometry.counted_merit import Cancelled
 from fe_contact.microgeometry.design_problem import SearchProblem
@@ -143,7 +143,7 @@ def optimize(
         request.space, request.torques, request.further_torques, clock, run, request.checked, request.limits
     )
     with clock.stage("search"):
-        problem = posed(study, request, memory)
+        problem = search_problem(study, request, memory)
         runs = search_all(problem, request.search, request.start_design, run, cancel)
         runs = tuple(best_on_grid(problem, part, request.grid, cancel) for part in runs)
     choice = choose(problem, runs, request, study, clock, run, cancel)

@@ -12,14 +12,11 @@ import math
 import numpy as np
 
 from fe_contact.geometry import ParallelAxes, tooth_profile
+from fe_contact.geometry.iso6336_stiffness import STEEL_STIFFNESS
 from fe_contact.geometry.root_tangent import critical_section, tangent_angle
 from fe_contact.geometry.toothing import Toothing
 from fe_contact.hertz import contact_modulus, peak_pressure
 from fe_contact.material import STEEL
-
-SINGLE_STIFFNESS = 14e9
-"""c' in N/m per m of face width, of steel [3]_."""
-
 
 _SAMPLES = 33
 """Points of the fillet among which the critical section is sought."""
@@ -52,7 +49,7 @@ def nominal_deflection(pair: ParallelAxes, normal_force: float) -> float:
     """Return the deflection of the teeth along the line of action, m [3]_."""
     moduli = [gear.material.youngs_modulus for gear in (pair.pinion, pair.wheel)]
     mean = 2.0 * moduli[0] * moduli[1] / sum(moduli)
-    return _line_load(pair, normal_force) / (SINGLE_STIFFNESS * mean / STEEL.youngs_modulus)
+    return _line_load(pair, normal_force) / (STEEL_STIFFNESS * mean / STEEL.youngs_modulus)
 
 
 def nominal_root_stresses(pair: ParallelAxes, normal_force: float) -> tuple[float, float]:

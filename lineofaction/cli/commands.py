@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import gc
+import sys
 import warnings
 from typing import Annotated, Any
 
 import typer
 
-from host import keep_to_one_thread
-from lineofaction.cli.guard import ALONE
+from host import keep_freed_memory, keep_to_one_thread
 from lineofaction.cli.verbs import (
     of_exports,
     of_files,
@@ -70,7 +70,8 @@ app.add_typer(of_services.store, name="store", rich_help_panel="service")
 def main() -> None:
     """Run the command line."""
     keep_to_one_thread()
-    ALONE.set(True)
+    if sys.argv[1:2] != ["serve"]:  # a server lives on, so it gives back what it has freed
+        keep_freed_memory(to_the_end=True)
     # verbs print complaints of plausibility themselves, with the fields and units of the case
     warnings.filterwarnings("ignore", message="implausible")
     foreign = warnings.showwarning

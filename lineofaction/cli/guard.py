@@ -8,20 +8,16 @@ import sys
 import traceback
 import uuid
 from collections.abc import Callable
-from contextvars import ContextVar
 from typing import Annotated, Any, NoReturn, ParamSpec
 
 import typer
 
-from host import keep_memory_to_the_end
 from lineofaction.cli.verb_parameters import R, keyword, parameters_of, with_parameters
 from lineofaction.cli.verb_warnings import STRICT, begin_warnings, in_lines, warnings_so_far
 from lineofaction.gearbox.loading import load, on_demand
 from lineofaction.gearbox.problems import EXIT_INTERRUPTED, EXIT_WARNINGS, ServiceError, Unexpected
 
 P = ParamSpec("P")
-ALONE = ContextVar("alone", default=False)
-"""Whether this process is the program itself, which ends with its one verb."""
 _STRICT = "Exit with code 3 if a value is implausible, a part left out, or a tolerance not met."
 Strict = Annotated[bool, typer.Option("--strict", help=_STRICT)]
 
@@ -36,8 +32,6 @@ def computing(verb: Callable[..., R]) -> Callable[..., R]:
 
     @functools.wraps(verb)
     def tidied(*args: Any, **kwargs: Any) -> R:
-        if ALONE.get():
-            keep_memory_to_the_end()
         answer = verb(*args, **kwargs)
         load("lineofaction.cli.cache:keep_small")()
         return answer

@@ -8,7 +8,7 @@ import numpy as np
 
 from fe_contact.errors import FeContactError
 from fe_contact.ste import SteDatabase
-from lineofaction.hardcases.contact.posed_pair import even_positions
+from lineofaction.hardcases.contact.contact_case import even_positions
 from lineofaction.hardcases.scene import Measured, Scenes
 from lineofaction.hardcases.tables import COMPLIANCE, table_of
 

@@ -11,7 +11,7 @@ import numpy as np
 from fe_contact.errors import InputError
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
-from lineofaction.hardcases.contact.posed_pair import even_positions, off
+from lineofaction.hardcases.contact.contact_case import even_positions, off
 from lineofaction.hardcases.scene import Measured, Scenes
 from lineofaction.hardcases.tables import COMPLIANCE, PLAIN_TABLE, along, square_wave, table_of
 

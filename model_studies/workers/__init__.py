@@ -7,7 +7,7 @@ the caller, whatever the number of workers, and results come in the order of the
 from model_studies.workers.dask_cluster import ByDask, dask_workers
 from model_studies.workers.dispatch import divided, pays, spent
 from model_studies.workers.executor import ByExecutor, local_processes
-from model_studies.workers.fallback import OrHere
+from model_studies.workers.fallback import LocalFallback
 from model_studies.workers.in_process import InProcess, Workers, WorkersLost, cluster_cached
 from model_studies.workers.remembering import Remembering
 from model_studies.workers.remote_task import task_cpu_seconds
@@ -17,7 +17,7 @@ __all__ = [
     "ByDask",
     "ByExecutor",
     "InProcess",
-    "OrHere",
+    "LocalFallback",
     "Remembering",
     "RunCost",
     "Workers",

@@ -9,7 +9,7 @@ from enum import Enum
 
 import numpy as np
 
-HOW_IT_CAME = ("from_cache", "seconds")
+PROVENANCE_FIELDS = ("from_cache", "seconds")
 """Fields that record how a result was computed; they are no part of its content."""
 
 
@@ -40,7 +40,8 @@ def _parts(content: object) -> list[bytes]:
     elif isinstance(content, Mapping):
         inside = list(content.items())
     elif is_dataclass(content):
-        inside = [(f.name, getattr(content, f.name)) for f in fields(content) if f.name not in HOW_IT_CAME]
+        names = [field.name for field in fields(content) if field.name not in PROVENANCE_FIELDS]
+        inside = [(name, getattr(content, name)) for name in names]
     else:
         raise TypeError(f"the content of {type(content).__name__} is not known")
     name = f"{type(content).__qualname__} {len(inside)}".encode()

@@ -15,7 +15,7 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True)
-class OrHere:
+class LocalFallback:
     """Workers that may be lost; this process does the tasks that they leave.
 
     `on_loss` is called once, with the reason, when they are lost. After that they get no tasks any more.

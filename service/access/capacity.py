@@ -1,6 +1,6 @@
 """Limits of callers: requests of one caller per minute and at the same time, and the capacity for all.
 
-A holder is a key of access, or `NOBODY` for all callers without a key. Requests per minute are limited by a
+A holder is a key of access, or `KEYLESS` for all callers without a key. Requests per minute are limited by a
 bucket for each holder: it is refilled at the rate of the limit up to the limit, and a request takes one out.
 """
 
@@ -23,7 +23,7 @@ from service.access.quotas import Quota
 
 _RETRY_S = 1
 """Seconds after which a refused caller may try again."""
-NOBODY = ""
+KEYLESS = ""
 """Name of the holder that stands for all callers without a key."""
 
 logger = structlog.get_logger(__name__)
@@ -60,7 +60,7 @@ class Usage:
     def refuse_beyond(self, name: str, maximum: int | None) -> None:
         """Raise `TooManyHeld` if a holder has `maximum`, `TooManyRequests` if all together have `in_all`."""
         if maximum is not None and self._counts[name] >= maximum:
-            subject = "Callers without a key hold" if name == NOBODY else f"Key {name!r} holds"
+            subject = "Callers without a key hold" if name == KEYLESS else f"Key {name!r} holds"
             text = f"{subject} {maximum} {self._what}, the limit. End one of them, or try again."
             raise TooManyHeld.after(_RETRY_S, text)
         if self._in_all is not None and self._counts.total() >= self._in_all:

@@ -15,7 +15,7 @@ from concurrent.futures import Future
 from dataclasses import dataclass, field
 
 from lineofaction.gearbox.problems import QueueFull, Superseded, TooManyHeld
-from service.access.capacity import NOBODY
+from service.access.capacity import KEYLESS
 from service.live.order import LiveOrder
 
 _RETRY_S = 1
@@ -25,7 +25,7 @@ _RETRY_S = 1
 class Asker:
     """The sender of a question."""
 
-    key: str = NOBODY
+    key: str = KEYLESS
     """Name of the access key."""
     slider: str | None = None
     """Name of a slider, of whose questions only the newest counts. Keys do not share names."""
@@ -126,7 +126,7 @@ class Turns:
         busy = self._busy()
         for line in sorted(self._lines, key=lambda line: not line.submits):
             name, question = next(iter(self._lines[line].items()))
-            maximum = math.inf if line.key == NOBODY else self._limits.answered
+            maximum = math.inf if line.key == KEYLESS else self._limits.answered
             if busy[line] < maximum and fits(question):
                 self._take(line, name)
                 self._answered[id(question)] = question
@@ -157,7 +157,7 @@ class Turns:
     def _refuse_beyond(self, line: _Line) -> None:
         maximum = self._limits.submissions if line.submits else self._limits.outstanding
         count = self._busy()[line] + len(self._lines.get(line, ()))
-        if line.key != NOBODY and count >= maximum:
+        if line.key != KEYLESS and count >= maximum:
             text = f"Key {line.key!r} has {maximum} {self._what} in work and waiting. Try again soon."
             raise TooManyHeld.after(_RETRY_S, text)
         if sum(map(len, self._lines.values())) + len(self._answered) >= self._limits.in_all:

@@ -46,7 +46,7 @@ class Family:
         return values
 
 
-NOBODY = Family({}, 1.0)
+EMPTY_FAMILY = Family({}, 1.0)
 """The jobs of a batch without jobs."""
 
 
@@ -60,7 +60,7 @@ def batch_steps(connection: Connection) -> list[Update]:
     families = _families(connection, [row.id for row in rows]) if rows else {}
     steps = []
     for row in rows:
-        values = families.get(row.id, NOBODY).values()
+        values = families.get(row.id, EMPTY_FAMILY).values()
         values["fraction"] = max(values["fraction"], row.fraction)
         if "state" in values or (values["message"], values["fraction"]) != (row.message, row.fraction):
             condition = (computations.c.id == row.row) & running

@@ -11,7 +11,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from structlog.contextvars import bind_contextvars
 
 from lineofaction.gearbox.problems import KeyExpired, NotForUs, RateExceeded, ServiceError
-from service.access.capacity import NOBODY, RateLimits, Usage
+from service.access.capacity import KEYLESS, RateLimits, Usage
 from service.access.holder import Holder
 from service.access.identities import Identities
 from service.access.quotas import Quota
@@ -102,7 +102,7 @@ class Access:
             return
         if not closed or scope["path"] in OPEN_PATHS or scope["path"].startswith(OPEN_FOLDER):
             maximum = self._admission.share if closed else None
-            with self._admission.admitted(scope, receive, NOBODY, maximum) as received:
+            with self._admission.admitted(scope, receive, KEYLESS, maximum) as received:
                 await self._app(scope, received, send)
             return
         visit = _Visit(scope, send)

@@ -24,7 +24,7 @@ from lineofaction.gearbox.problems import (
 )
 from lineofaction.gearbox.registry import NETCDF
 from lineofaction.gearbox.schemas.model import BoundaryModel
-from service.access.capacity import NOBODY
+from service.access.capacity import KEYLESS
 from service.access.holder import Holder, Scope
 from service.live.order import LiveOrder
 from service.live.turns import Asker
@@ -191,7 +191,7 @@ def _predicted(
         return {}
     cache = str(context.settings.data_directory / "compliance")
     order = LiveOrder(process.plan, {**inputs, "time_budget_s": None, "cache": cache})
-    asker = Asker(NOBODY if caller is ANYBODY else caller.name, submits=True)
+    asker = Asker(KEYLESS if caller is ANYBODY else caller.name, submits=True)
     stages: dict[str, float] = json.loads(context.live.ask(order, asker).result())["prediction"]["stages"]
     return stages
 

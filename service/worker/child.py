@@ -25,7 +25,7 @@ from typing import Any, BinaryIO
 from fe_contact.cache_reads import COMPLIANCE_READS
 from host import (
     cpu_seconds,
-    keep_memory_to_the_end,
+    keep_freed_memory,
     kill_process_group,
     lock,
     lower_priority,
@@ -47,7 +47,7 @@ warnings_of_case = on_demand("service.worker.expectations:warnings_of_case")
 def work(descriptor: int) -> None:
     """Run one order; messages go to the descriptor."""
     begin_work()
-    keep_memory_to_the_end()
+    keep_freed_memory(to_the_end=True)
     orders = os.fdopen(0, "rb", closefd=False)
     order = _order(orders)
     threading.Thread(target=_end_with, args=(orders,), daemon=True).start()

@@ -11,7 +11,15 @@ from pathlib import Path
 from typing import TypeVar
 
 from fe_contact.solver_version import SOLVER_VERSION
-from model_studies.workers import ByDask, InProcess, OrHere, Remembering, RunCost, Workers, dask_workers
+from model_studies.workers import (
+    ByDask,
+    InProcess,
+    LocalFallback,
+    Remembering,
+    RunCost,
+    Workers,
+    dask_workers,
+)
 from service.version import solver_version
 from service.worker.order import PARTS, WorkOrder
 
@@ -47,7 +55,7 @@ def cluster_of(order: WorkOrder) -> Iterator[Workers]:
         return
     cluster = _DeferredCluster(order.scheduler, order.workspace / PARTS)
     try:
-        yield OrHere(cluster, partial(logger.warning, "cluster away, the job goes on here: %s"))
+        yield LocalFallback(cluster, partial(logger.warning, "cluster away, the job goes on here: %s"))
     finally:
         for connected in cluster.connected:
             connected.client.close()  # type: ignore[no-untyped-call]

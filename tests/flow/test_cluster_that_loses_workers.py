@@ -28,7 +28,7 @@ from fe_contact.options import AnalysisOptions, Run
 from model_studies.workers import (
     ByDask,
     InProcess,
-    OrHere,
+    LocalFallback,
     RunCost,
     Workers,
     WorkersLost,
@@ -243,7 +243,7 @@ def test_what_a_cluster_leaves_whose_last_worker_is_killed_is_done_here(
     cluster.at_least(1)
     losing = Losing(ByDask(cluster.client, patience=1.0), lambda: cluster.kill_busy(9), "solve_block")
     told: list[WorkersLost] = []
-    found = table(cache, OrHere(losing, told.append))
+    found = table(cache, LocalFallback(losing, told.append))
     assert losing.killed and not cluster.alive
     assert_same(alone, found)
     assert len(told) == 1 and "had no worker for 1 s" in str(told[0])

@@ -16,7 +16,7 @@ from tempfile import TemporaryDirectory
 from bounds import engineering
 from fe_contact.analysis.database.compute_database import compute_pass
 from fe_contact.analysis.database.refinement import Refinement, next_pass
-from fe_contact.analysis.database.run_passes import Pass, of_all_passes
+from fe_contact.analysis.database.run_passes import Pass, table_of_passes
 from fe_contact.analysis.estimates.tolerance_shares import error_shares, reducible_shares
 from fe_contact.analysis.request.model_choice import Decision, decide
 from fe_contact.analysis.request.request import Checked
@@ -102,19 +102,19 @@ def _refined(checked: Checked, shared: _Passes) -> SteDatabase:
         with clock.stage("planning"):
             refinement = _next_refinement(table, best)
             if isinstance(refinement, str):  # the reason why there is none
-                return of_all_passes(passes, table, refinement)
+                return table_of_passes(passes, table, refinement)
             reason = _refusal(refinement, passes, shared.run.cache)
         if reason:
-            return of_all_passes(passes, table, reason)
+            return table_of_passes(passes, table, reason)
         if shared.on_draft is not None:
             shared.on_draft(table, refinement.text)
         last = shared.refined(refinement, clock)
         passes.append(last)
         if last.table is None:
-            return of_all_passes(passes, table, f"pass {len(passes)} ({last.name}) failed: {last.failure}")
+            return table_of_passes(passes, table, f"pass {len(passes)} ({last.name}) failed: {last.failure}")
         if last.used >= best.used:
             reason = f"pass {len(passes)} ({refinement.text}) did not lower the measured errors"
-            return of_all_passes(passes, table, reason)
+            return table_of_passes(passes, table, reason)
         best, table = last, last.table
 
 

@@ -54,7 +54,7 @@ class Pass:
         }
 
 
-def of_all_passes(passes: Sequence[Pass], table: SteDatabase, reason: str) -> SteDatabase:
+def table_of_passes(passes: Sequence[Pass], table: SteDatabase, reason: str) -> SteDatabase:
     """Return the table of one pass with the receipt of all, and the reason why there was no further one."""
     receipt = table.metadata.receipt | _summed([done.cost for done in passes])
     receipt["tolerance"] = receipt["tolerance"] | {"reason": reason}

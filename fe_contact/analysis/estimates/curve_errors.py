@@ -16,7 +16,7 @@ from fe_contact.analysis.estimates.error_sources import contact_error
 from fe_contact.analysis.estimates.half_position_errors import errors_by_halves
 from fe_contact.analysis.estimates.position_errors import PositionErrors
 from fe_contact.analysis.estimates.relieved_helical import has_signed_errors, with_signed_errors
-from fe_contact.analysis.estimates.rough_flank_errors import of_quantities, rough_flank_errors
+from fe_contact.analysis.estimates.rough_flank_errors import quantity_errors, rough_flank_errors
 from fe_contact.analysis.estimates.table_sample import Nested, TableSample
 from fe_contact.analysis.pairs.operating_points import OperatingPoints
 from fe_contact.analysis.request.solved_run import Solved
@@ -109,7 +109,7 @@ def curve_errors(
         METHOD: model_errors(
             pair, plan.load, deflection, over_face=isinstance(discretization, FaceDiscretization)
         )
-        + points.gathered([of_quantities(rough_flank_errors(*contact)) for contact in solved]),
+        + points.gathered([quantity_errors(rough_flank_errors(*contact)) for contact in solved]),
     }
     return np.stack([by_source[name] for name in AT_NODES])
 

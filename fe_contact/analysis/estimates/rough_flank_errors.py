@@ -42,7 +42,7 @@ def rough_flank_errors(problem: ContactProblem, solution: ContactSolution) -> Fl
     return np.asarray(error) if len(error) == shape[0] else np.broadcast_to(error.max(axis=0), shape)
 
 
-def of_quantities(error: FloatArray) -> FloatArray:
+def quantity_errors(error: FloatArray) -> FloatArray:
     """Return the errors (23, L) of the quantities of curves with errors (P, L) of their points, m.
 
     Their signs are not known: a harmonic may have twice the mean.

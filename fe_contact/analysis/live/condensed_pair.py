@@ -174,7 +174,8 @@ class CondensedPair:
 
         Parameters and errors are those of `table`.
         """
-        checked, _, points, nodes, plan = self.posed(pair, torques, misalignment, center_distance_change)
+        operating_point = pair, torques, misalignment, center_distance_change
+        checked, _, points, nodes, plan = self.contact_problem(*operating_point)
         return _solved(checked, plan, points, nodes)
 
     def solve_rougher(
@@ -189,15 +190,15 @@ class CondensedPair:
         What this changes of a result on the flanks is a measure of its error. Parameters and errors are those
         of `table`.
         """
-        question = pair, torques, misalignment, center_distance_change
-        checked, contacts, points, nodes, plan = self.posed(*question)
+        operating_point = pair, torques, misalignment, center_distance_change
+        checked, contacts, points, nodes, plan = self.contact_problem(*operating_point)
         return tuple(
             _solved(checked, plan, points.on(rougher), nodes)
             for rougher in (contacts.sliced, contacts.coarse)
             if rougher is not None
         )
 
-    def posed(
+    def contact_problem(
         self, pair: ParallelAxes, torques: FloatArray, misalignment: float, change: float
     ) -> tuple[Checked, CondensedContacts, OperatingPoints, PositionNodes, Plan]:
         """Return the data of a contact solution: request, bodies with the flanks, positions and plan.

@@ -13,6 +13,7 @@ from dynamics.meshes.stiffness_table import PeriodicCurve, stiffness_table
 from dynamics.meshes.technique import PlainTable
 from dynamics.scene import Scene
 from fe_contact.geometry import ParallelAxes
+from fe_contact.geometry.iso6336_stiffness import STEEL_STIFFNESS
 from fe_contact.ste import PairGeometry
 from lineofaction.gearbox.convert.checked_case import CheckedCases
 from lineofaction.gearbox.convert.scene import check_scene
@@ -21,9 +22,6 @@ from lineofaction.gearbox.schemas.scene import SceneInput
 
 CASES = CheckedCases(16)
 """Cases whose costs were predicted last: cases that a scene or several verbs share are checked once."""
-
-_SINGLE_STIFFNESS = 14e9
-"""Stiffness of a pair of teeth per unit width, N/m^2: the usual value of ISO 6336-1:2019, 9.3."""
 
 _POSITIONS = 48
 """Number of positions of a table in a base pitch, about as many as a computed table has."""
@@ -76,7 +74,7 @@ def _usual_table(pair: ParallelAxes) -> PlainTable:
     across = np.linspace(0.0, pair.overlap_ratio, _POSITIONS, endpoint=False)
     entered = (position[:, None] - across) % 1.0
     pairs = np.mean(np.ceil(pair.transverse_contact_ratio - entered), axis=1)
-    stiffness = pair.face_width * _SINGLE_STIFFNESS * (0.75 * pairs + 0.25)
+    stiffness = pair.face_width * STEEL_STIFFNESS * (0.75 * pairs + 0.25)
     return stiffness_table(PeriodicCurve.tabulated(position.tolist(), stiffness.tolist()))
 
 

@@ -9,16 +9,16 @@ import numpy as np
 
 from fe_contact.geometry import Gear, GearBlank, GearPair
 from fe_contact.material import Material
-from lineofaction.hardcases.contact.laws import soundness
-from lineofaction.hardcases.contact.posed_pair import (
+from lineofaction.hardcases.contact.contact_case import (
     NOMINAL_TORQUE,
-    Posed,
+    ContactCase,
+    contact_case,
     even_positions,
     mean_off,
     nominal_gear,
     nominal_pair,
-    posed,
 )
+from lineofaction.hardcases.contact.laws import soundness
 from lineofaction.hardcases.scene import Measured, Scenes
 
 SCENES = Scenes("contact")
@@ -41,7 +41,7 @@ def _plastic_on_steel() -> Sequence[Measured]:
     mean = nominal_gear(material=Material(2.0 / (1.0 / 210e9 + 1.0 / 2.1e9)))
     position = even_positions(96)
     pairs = (GearPair(steel, soft, 80e-3), GearPair(soft, steel, 80e-3), GearPair(mean, mean, 80e-3))
-    driven, driving, equal = (posed(pair, NOMINAL_TORQUE * np.array([1e-3, 0.02])) for pair in pairs)
+    driven, driving, equal = (contact_case(pair, NOMINAL_TORQUE * np.array([1e-3, 0.02])) for pair in pairs)
     problem, solution = driven.solve(position)
     reversed_ste = driving.ste((1.0 - position) % 1.0)  # equal teeth: the pair seen from its other gear
     halves = equal.ste(position)
@@ -70,8 +70,8 @@ def _nearly_incompressible() -> Sequence[Measured]:
     """Give both gears Poisson's ratio 0.49 in plane strain, on three meshes and in three dimensions."""
     pair = nominal_pair(material=_RUBBERY)
     position = even_positions(96)
-    levels = [posed(pair, level=level) for level in ("draft", "standard", "fine")]
-    solid = [posed(pair, model="3d", level=level) for level in ("draft", "standard")]
+    levels = [contact_case(pair, level=level) for level in ("draft", "standard", "fine")]
+    solid = [contact_case(pair, model="3d", level=level) for level in ("draft", "standard")]
     means = [_mean(case, position) for case in levels]
     solids = [_mean(case, position) for case in solid]
     problem, solution = levels[-1].solve(position)
@@ -94,10 +94,10 @@ def _thin_rim() -> Sequence[Measured]:
     """Hang the teeth on ever thinner rims over a narrow web."""
     position = even_positions(48)
     thick = [9.0, 2.0, 0.5]
-    cases = [posed(_on_rim(modules), effects={"thin_rim": "on"}) for modules in thick]
+    cases = [contact_case(_on_rim(modules), effects={"thin_rim": "on"}) for modules in thick]
     means = [_mean(case, position) for case in cases]
     problem, solution = cases[-1].solve(position)
-    finer = posed(_on_rim(thick[-1]), level="standard", effects={"thin_rim": "on"})
+    finer = contact_case(_on_rim(thick[-1]), level="standard", effects={"thin_rim": "on"})
     growth = [after / before for before, after in pairwise(means)]
     return (
         *soundness(problem, solution, 8),
@@ -118,6 +118,6 @@ def _on_rim(modules: float) -> GearPair:
     return GearPair(nominal_gear(), wheel)
 
 
-def _mean(case: Posed, position: np.ndarray[tuple[int], np.dtype[np.float64]]) -> float:
+def _mean(case: ContactCase, position: np.ndarray[tuple[int], np.dtype[np.float64]]) -> float:
     """Return the mean STE at the highest load, m."""
     return float(case.ste(position)[:, -1].mean())

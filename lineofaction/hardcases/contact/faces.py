@@ -9,15 +9,15 @@ import numpy as np
 from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.contact.slices import POINTS
 from fe_contact.types import FloatArray
-from lineofaction.hardcases.contact.laws import soundness
-from lineofaction.hardcases.contact.posed_pair import (
+from lineofaction.hardcases.contact.contact_case import (
     NOMINAL_TORQUE,
-    Posed,
+    ContactCase,
+    contact_case,
     even_positions,
     nominal_pair,
     off,
-    posed,
 )
+from lineofaction.hardcases.contact.laws import soundness
 from lineofaction.hardcases.scene import Measured, Scenes
 
 SCENES = Scenes("contact")
@@ -36,7 +36,7 @@ _WIDE = 60e-3
 def _five_per_cent() -> Sequence[Measured]:
     """Misalign a wide pair until one slice of nineteen carries all, to either side."""
     case, mirrored_case = (
-        posed(
+        contact_case(
             nominal_pair(face_width=_WIDE),
             [0.02 * NOMINAL_TORQUE],
             model="3d",
@@ -92,11 +92,11 @@ def _five_per_cent() -> Sequence[Measured]:
 )
 def _single_slice() -> Sequence[Measured]:
     """Spread the load evenly: one slice in three dimensions, then three, then nine."""
-    full = posed(nominal_pair(), model="3d")
+    full = contact_case(nominal_pair(), model="3d")
     position = even_positions(24)
     curves = []
     for slices in (1, 3, 9):
-        fewer = Posed(full.contact.in_slices(slices), full.model)
+        fewer = ContactCase(full.contact.in_slices(slices), full.model)
         problem, solution = fewer.solve(position)
         curves.append(solution.deflection[:, 0])
         if slices == 1:
@@ -121,7 +121,7 @@ def _single_slice() -> Sequence[Measured]:
 )
 def _duplicates() -> Sequence[Measured]:
     """Ask for the same position several times, in any order, alone and among others."""
-    case = posed(nominal_pair())
+    case = contact_case(nominal_pair())
     positions = np.array([0.3, 0.3, 0.0, 0.97, 0.3, 0.0, 0.5, 0.5])
     problem, together = case.solve(positions)
     single = [case.ste(np.array([x]))[0, 0] for x in positions]

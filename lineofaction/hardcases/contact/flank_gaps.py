@@ -13,14 +13,14 @@ import numpy as np
 from fe_contact.contact import ContactProblem, solve_contact
 from fe_contact.geometry import FlankGrid, FlankModification, Gear, GearPair, PitchDeviation
 from fe_contact.types import FloatArray
-from lineofaction.hardcases.contact.laws import soundness
-from lineofaction.hardcases.contact.posed_pair import (
+from lineofaction.hardcases.contact.contact_case import (
     NOMINAL_TORQUE,
+    contact_case,
     even_positions,
     nominal_gear,
     nominal_pair,
-    posed,
 )
+from lineofaction.hardcases.contact.laws import soundness
 from lineofaction.hardcases.contact.tip_edges import largest
 from lineofaction.hardcases.scene import Measured, Scenes
 
@@ -59,7 +59,7 @@ _POSITIONS = 48
 def _gap_beyond_deflection() -> Sequence[Measured]:
     """Relieve both tips by 0.3 mm, so that most pairs cannot touch at any load."""
     relief = FlankModification(tip_relief=_RELIEF, tip_relief_length=3e-3)
-    case = posed(nominal_pair(modification=relief), NOMINAL_TORQUE * np.array([0.01, 1.0, 4.0]))
+    case = contact_case(nominal_pair(modification=relief), NOMINAL_TORQUE * np.array([0.01, 1.0, 4.0]))
     problem, solution = case.solve(even_positions(200))
     c = problem.candidates
     elastic = float((solution.deflection - solution.no_load[:, None]).max())
@@ -86,15 +86,15 @@ def _gap_beyond_deflection() -> Sequence[Measured]:
 def _pitch_error_beyond_deflection() -> Sequence[Measured]:
     """Put one tooth 50 um ahead of its place, then all of them."""
     position = even_positions(_POSITIONS)
-    plain = posed(nominal_pair())
+    plain = contact_case(nominal_pair())
     _, equal = plain.solve(position)  # all teeth alike
     teeth = np.zeros(_TEETH)
     teeth[_TOOTH] = _STEP
-    case = posed(_with_pitch(tuple(teeth)), pitches=_TEETH, bodies=plain.contact)
+    case = contact_case(_with_pitch(tuple(teeth)), pitches=_TEETH, bodies=plain.contact)
     pitch = np.repeat(np.arange(_TEETH), _POSITIONS)
     problem, solution = case.solve(position, case.plan.load, pitch)
     shift = _STEP * np.cos(plain.pair.pinion.transverse_pressure_angle)
-    every = posed(_with_pitch((_STEP,) * _TEETH), bodies=plain.contact)
+    every = contact_case(_with_pitch((_STEP,) * _TEETH), bodies=plain.contact)
     shifted = every.ste(position) - equal.deflection + shift
     # the tooth of each candidate (positions, candidates): pairs count back from the pitch
     tooth = pitch[:, None] - problem.candidates.pair
@@ -125,19 +125,19 @@ def _pitch_error_beyond_deflection() -> Sequence[Measured]:
 def _noisy_flanks() -> Sequence[Measured]:
     """Put noise on both flanks, as a measurement would."""
     rng = np.random.default_rng(_SEED)
-    plain = posed(nominal_pair())
+    plain = contact_case(nominal_pair())
     position = even_positions(200)
     smooth = plain.ste(position)
     # 25 heights; five deviations above 0, because material can only be removed
     first, second = (_with_grid(np.maximum(rng.normal(5.0 * _NOISE, _NOISE, 25), 0.0)) for _ in range(2))
-    noisy = posed(
+    noisy = contact_case(
         GearPair(first, second, _CENTER_DISTANCE),
         NOMINAL_TORQUE * np.geomspace(1e-3, 4.0, 7),
         bodies=plain.contact,
     )
     problem, solution = noisy.solve(position)
     low, high = (sum(extreme(_heights(gear)) for gear in (first, second)) for extreme in (np.min, np.max))
-    at_nominal_load = posed(GearPair(first, second, _CENTER_DISTANCE), bodies=plain.contact)
+    at_nominal_load = contact_case(GearPair(first, second, _CENTER_DISTANCE), bodies=plain.contact)
     _, nominal = at_nominal_load.solve(position, plain.plan.load)
     added = nominal.deflection - smooth
     return (

@@ -10,15 +10,15 @@ import numpy as np
 from scipy.optimize import brentq
 
 from fe_contact.geometry import Gear, GearPair
-from lineofaction.hardcases.contact.laws import soundness
-from lineofaction.hardcases.contact.posed_pair import (
+from lineofaction.hardcases.contact.contact_case import (
     CYCLIC,
     NOMINAL_TORQUE,
-    Posed,
+    ContactCase,
+    contact_case,
     even_positions,
     off,
-    posed,
 )
+from lineofaction.hardcases.contact.laws import soundness
 from lineofaction.hardcases.scene import Measured, Scenes
 
 SCENES = Scenes("contact")
@@ -41,7 +41,7 @@ def _handover_at_ratio(ratio: float) -> Sequence[Measured]:
     pair = _pair(addendum, ratio)
     # the tooth force of the nominal pair
     torque = NOMINAL_TORQUE * pair.pinion.base_radius / _NOMINAL_RADIUS
-    case = posed(pair, torque * np.array([1e-3, 1.0]))
+    case = contact_case(pair, torque * np.array([1e-3, 1.0]))
     position = even_positions(240)
     problem, solution = case.solve(position)
     ends = case.ste(np.array([0.0, 1.0]))
@@ -98,7 +98,7 @@ def _pair(addendum: float, ratio: float) -> GearPair:
     return GearPair(gear, gear)
 
 
-def _mean_pairs(case: Posed) -> float:
+def _mean_pairs(case: ContactCase) -> float:
     without = case.with_model(corner_contact=False)
     _, solution = without.solve(even_positions(_COUNTED), case.plan.load[:1])
     return float((solution.force[:, 0] > 0.0).sum(axis=1).mean())

@@ -9,15 +9,15 @@ import numpy as np
 from fe_contact.analysis.analyze import analyze
 from fe_contact.errors import InputError
 from fe_contact.geometry import FlankModification
-from lineofaction.hardcases.contact.laws import soundness
-from lineofaction.hardcases.contact.posed_pair import (
+from lineofaction.hardcases.contact.contact_case import (
     NOMINAL_TORQUE,
+    contact_case,
     even_positions,
     mean_off,
     nominal_pair,
-    posed,
     range_off,
 )
+from lineofaction.hardcases.contact.laws import soundness
 from lineofaction.hardcases.scene import Measured, Scenes
 
 SCENES = Scenes("contact")
@@ -34,9 +34,9 @@ _DECADES = np.geomspace(1e-4, 1e3, 29)
 )
 def _seven_decades() -> Sequence[Measured]:
     """Solve one table over seven decades of load, and its nominal curve alone."""
-    wide = posed(nominal_pair(), NOMINAL_TORQUE * _DECADES)
+    wide = contact_case(nominal_pair(), NOMINAL_TORQUE * _DECADES)
     problem, solution = wide.solve(even_positions(48))
-    single = posed(nominal_pair())
+    single = contact_case(nominal_pair())
     nominal = single.ste(even_positions(48))[:, 0]
     at_nominal = solution.deflection[:, int(np.argmin(np.abs(_DECADES - 1.0)))]
     elastic = solution.deflection - solution.no_load[:, None]
@@ -68,7 +68,7 @@ def _zero_load() -> Sequence[Measured]:
     """Go to zero load in the solver, in the table and at the entry point."""
     relief = FlankModification(tip_relief=20e-6, tip_relief_length=2e-3, profile_crowning=5e-6)
     pair = nominal_pair(modification=relief)
-    case = posed(pair, NOMINAL_TORQUE * np.geomspace(1e-15, 1.0, 6))
+    case = contact_case(pair, NOMINAL_TORQUE * np.geomspace(1e-15, 1.0, 6))
     problem, solution = case.solve(even_positions(48))
     rest = (solution.deflection[:, 0] - solution.no_load) / solution.deflection[:, -1]
     table = analyze(pair, torques=[NOMINAL_TORQUE], level="draft", positions=48, receipt="minimal")

@@ -10,17 +10,17 @@ from functools import partial
 import numpy as np
 
 from fe_contact.geometry import Gear, GearPair
-from lineofaction.hardcases.contact.laws import soundness
-from lineofaction.hardcases.contact.posed_pair import (
+from lineofaction.hardcases.contact.contact_case import (
     NOMINAL_TORQUE,
-    Posed,
+    ContactCase,
+    contact_case,
     even_positions,
     mean_off,
     nominal_gear,
     nominal_pair,
     off,
-    posed,
 )
+from lineofaction.hardcases.contact.laws import soundness
 from lineofaction.hardcases.scene import Measured, Scenes
 
 SCENES = Scenes("contact")
@@ -114,12 +114,12 @@ def _steep_helix() -> Sequence[Measured]:
 )
 def _faces() -> Sequence[Measured]:
     """Compare gears of 0.3 and of 30 modules face width with the plane between them."""
-    plane = posed(nominal_pair())
+    plane = contact_case(nominal_pair())
     position = even_positions(24)
     strain = plane.ste(position)[:, 0].mean()
     ratios, figures = [], []
     for width in (0.3 * _MODULE, 30.0 * _MODULE):
-        case = posed(nominal_pair(face_width=width), [NOMINAL_TORQUE * width / _WIDTH], model="3d")
+        case = contact_case(nominal_pair(face_width=width), [NOMINAL_TORQUE * width / _WIDTH], model="3d")
         problem, solution = case.solve(position)
         ratios.append(float(solution.deflection[:, 0].mean() / strain))
         figures += [
@@ -134,17 +134,17 @@ def _faces() -> Sequence[Measured]:
     )
 
 
-def _scaled(scale: float, model: str) -> Posed:
+def _scaled(scale: float, model: str) -> ContactCase:
     """Return the nominal pair with all lengths scaled, under the same strain."""
     gear = Gear(
         teeth=20, normal_module=scale * _MODULE, face_width=scale * _WIDTH, bore_diameter=scale * 40e-3
     )
     torques = NOMINAL_TORQUE * scale**3 * np.array([0.1, 1.0])
-    return posed(GearPair(gear, gear, scale * 80e-3), torques, model=model)
+    return contact_case(GearPair(gear, gear, scale * 80e-3), torques, model=model)
 
 
-def _helical(degrees: float) -> Posed:
+def _helical(degrees: float) -> ContactCase:
     """Return gears of the nominal teeth and another helix, at their own center distance."""
     helix = math.radians(degrees)
     pair = GearPair(nominal_gear(helix_angle=helix), nominal_gear(helix_angle=-helix))
-    return posed(pair, model="3d")
+    return contact_case(pair, model="3d")

@@ -10,17 +10,17 @@ from scipy.optimize import brentq
 
 from fe_contact.geometry import FlankModification, Gear, GearPair
 from fe_contact.types import FloatArray
-from lineofaction.hardcases.contact.laws import soundness
-from lineofaction.hardcases.contact.posed_pair import (
+from lineofaction.hardcases.contact.contact_case import (
     NOMINAL_TORQUE,
-    Posed,
+    ContactCase,
+    contact_case,
     even_positions,
     mean_off,
     nominal_gear,
     nominal_pair,
-    posed,
     range_off,
 )
+from lineofaction.hardcases.contact.laws import soundness
 from lineofaction.hardcases.scene import Measured, Scenes
 
 SCENES = Scenes("contact")
@@ -40,7 +40,7 @@ _ROUNDING = 0.15e-3
 )
 def _tip_edge_at_high_load() -> Sequence[Measured]:
     """Load the nominal pair tenfold and look at how its tip edges enter and leave."""
-    case = posed(nominal_pair(), [10.0 * NOMINAL_TORQUE])
+    case = contact_case(nominal_pair(), [10.0 * NOMINAL_TORQUE])
     problem, solution = case.solve(even_positions(400))
     _, without_edges = case.with_model(corner_contact=False).solve(even_positions(400), case.plan.load)
     relief = (without_edges.deflection - solution.deflection) / solution.deflection
@@ -61,7 +61,7 @@ def _sharp_tips() -> Sequence[Measured]:
     """Raise the tips until next to nothing is left of them."""
     highest = brentq(lambda h: _tall(h).tip_tooth_thickness - _POINTED * 4e-3, 1.0, 1.7, xtol=1e-10)
     gear = _tall(highest)
-    coarse, fine = (posed(GearPair(gear, gear), level=level) for level in ("standard", "fine"))
+    coarse, fine = (contact_case(GearPair(gear, gear), level=level) for level in ("standard", "fine"))
     problem, solution = fine.solve(even_positions(200))
     _, coarse_solution = coarse.solve(even_positions(200), fine.plan.load)
     return (
@@ -88,7 +88,7 @@ def _sharp_tips() -> Sequence[Measured]:
 )
 def _rounded_tips() -> Sequence[Measured]:
     """Round the tip edges off, by a relief steep enough to take them out of contact."""
-    sharp = posed(nominal_pair(), [2.0 * NOMINAL_TORQUE])
+    sharp = contact_case(nominal_pair(), [2.0 * NOMINAL_TORQUE])
     position = even_positions(200)
     plain = sharp.ste(position)
     curves = []
@@ -102,7 +102,7 @@ def _rounded_tips() -> Sequence[Measured]:
                 )
             )
         )
-        case = posed(pair, [2.0 * NOMINAL_TORQUE], bodies=sharp.contact)
+        case = contact_case(pair, [2.0 * NOMINAL_TORQUE], bodies=sharp.contact)
         problem, solution = case.solve(position)
         curves.append(solution.deflection)
     # the deepest rounding turns the normal, so that it has a bound of its own
@@ -125,7 +125,7 @@ def _tall(addendum: float) -> Gear:
     )  # fmt: skip
 
 
-def _smoothness(case: Posed) -> Measured:
+def _smoothness(case: ContactCase) -> Measured:
     """Return the ratio of the largest step of STE on positions four times as close: 1/4 if smooth."""
     steps = []
     for count in (256, 1024):

@@ -9,16 +9,16 @@ from dataclasses import replace
 import numpy as np
 
 from fe_contact.geometry import Gear, GearPair
-from lineofaction.hardcases.contact.laws import soundness
-from lineofaction.hardcases.contact.posed_pair import (
+from lineofaction.hardcases.contact.contact_case import (
     CYCLIC,
     NOMINAL_TORQUE,
+    contact_case,
     even_positions,
     mean_off,
     off,
-    posed,
     range_off,
 )
+from lineofaction.hardcases.contact.laws import soundness
 from lineofaction.hardcases.scene import Measured, Scenes
 
 SCENES = Scenes("contact")
@@ -34,7 +34,9 @@ SCENES = Scenes("contact")
 def _undercut_pinion() -> Sequence[Measured]:
     """Drive 60 teeth by 9 that the tool has undercut."""
     pair = _undercut_pair()
-    cases = [posed(pair, [0.2 * NOMINAL_TORQUE], level=level) for level in ("draft", "standard", "fine")]
+    cases = [
+        contact_case(pair, [0.2 * NOMINAL_TORQUE], level=level) for level in ("draft", "standard", "fine")
+    ]
     position = even_positions(240)
     curves = [case.ste(position)[:, 0] for case in cases]
     problem, solution = cases[-1].solve(position)
@@ -79,12 +81,12 @@ def _twenty_to_two_hundred() -> Sequence[Measured]:
     pinion = Gear(teeth=20, bore_diameter=20e-3, **common)  # type: ignore[arg-type]
     wheel = Gear(teeth=200, bore_diameter=0.2, **common)  # type: ignore[arg-type]
     position = np.linspace(0.0, 0.98, 50)
-    there = posed(GearPair(pinion, wheel), [20.0]).with_model(corner_contact=False)
-    back = posed(GearPair(wheel, pinion), [200.0]).with_model(corner_contact=False)
+    there = contact_case(GearPair(pinion, wheel), [20.0]).with_model(corner_contact=False)
+    back = contact_case(GearPair(wheel, pinion), [200.0]).with_model(corner_contact=False)
     problem, driven = there.solve(position)
     # position x by the pinion is -x by the wheel
     driving = back.solve((1.0 - position) % 1.0, there.plan.load)[1]
-    cornered, solution = posed(GearPair(pinion, wheel), [20.0]).solve(position, there.plan.load)
+    cornered, solution = contact_case(GearPair(pinion, wheel), [20.0]).solve(position, there.plan.load)
     return (
         *soundness(cornered, solution),
         Measured(

@@ -9,8 +9,8 @@ from scipy.optimize import brentq
 
 from fe_contact.contact import ContactProblem, ContactSolution, solve_contact
 from fe_contact.geometry import FlankModification, GearPair
+from lineofaction.hardcases.contact.contact_case import ContactCase, contact_case, nominal_gear, nominal_pair
 from lineofaction.hardcases.contact.laws import soundness
-from lineofaction.hardcases.contact.posed_pair import Posed, nominal_gear, nominal_pair, posed
 from lineofaction.hardcases.scene import Measured, Scenes
 
 SCENES = Scenes("contact")
@@ -38,7 +38,7 @@ _NUDGES = np.array([-1e-3, -1e-6, -1e-9, -1e-12, -1e-15, 0.0, 1e-15, 1e-12, 1e-9
 )
 def _relief_that_touches() -> Sequence[Measured]:
     """Find the tip relief with which the entering pair touches without force; solve around it."""
-    case = posed(nominal_pair())
+    case = contact_case(nominal_pair())
     exact = brentq(lambda relief: _reach(case, relief), 1e-6, 100e-6, xtol=1e-18, rtol=1e-15)
     reliefs = exact * (1.0 + _NUDGES)
     solved = [_solve(case, relief) for relief in reliefs]
@@ -62,15 +62,15 @@ def _relief_that_touches() -> Sequence[Measured]:
     )
 
 
-def _solve(case: Posed, relief: float) -> tuple[ContactProblem, ContactSolution]:
+def _solve(case: ContactCase, relief: float) -> tuple[ContactProblem, ContactSolution]:
     """Solve with a linear relief of the driven tip, which enters the mesh."""
     modification = FlankModification(tip_relief=float(relief), tip_relief_length=_RELIEF_LENGTH)
     pair = GearPair(nominal_gear(), nominal_gear(modification=modification), case.pair.center_distance)
-    relieved = posed(pair, case.pair.torque(case.plan.load), bodies=case.contact)
+    relieved = contact_case(pair, case.pair.torque(case.plan.load), bodies=case.contact)
     return relieved.solve(_POSITION, case.plan.load)
 
 
-def _reach(case: Posed, relief: float) -> float:
+def _reach(case: ContactCase, relief: float) -> float:
     """Return minus the load share of the weaker pair if it carries, else its least gap under load, um."""
     problem, solution = _solve(case, relief)
     force = solution.force[0, 0]
@@ -83,7 +83,7 @@ def _reach(case: Posed, relief: float) -> float:
     return 1e6 * float(np.min(slack[force == 0.0]))
 
 
-def _off_the_ramp(case: Posed, relief: float) -> float:
+def _off_the_ramp(case: ContactCase, relief: float) -> float:
     """Return the relative deviation of the entering pair's gap from that of a straight ramp of relief.
 
     With c the relief at the point of contact, m its slope along the flank and R the radius of relative

@@ -16,7 +16,7 @@ SCENES = Scenes("service")
 MEMORY_MB = 384
 """Memory limit in MB, between the needs of the small and of the large job."""
 
-AFTER = (
+RECOVERY = (
     "nothing of it is left, and the jobs behind it end as they should, in their turn, with results that are "
     "those of an undisturbed service to the last bit."
 )
@@ -26,7 +26,7 @@ AFTER = (
     "job_out_of_memory",
     "A three-dimensional analysis that needs three times the memory a worker may have: an allocation fails "
     "somewhere in numerical libraries.",
-    f"The job fails at its first attempt, with the limit and what to try; {AFTER}",
+    f"The job fails at its first attempt, with the limit and what to try; {RECOVERY}",
 )
 def _out_of_memory() -> Sequence[Measured]:
     """Run the large job with little memory."""
@@ -43,7 +43,7 @@ def _out_of_memory() -> Sequence[Measured]:
 @SCENES.add(
     "job_past_deadline",
     "A job that is inside compiled code when its deadline passes, and hears of nothing.",
-    f"The job fails at its first attempt, with the deadline and what to try; {AFTER}",
+    f"The job fails at its first attempt, with the deadline and what to try; {RECOVERY}",
 )
 def _past_the_deadline() -> Sequence[Measured]:
     """Run the large job with a deadline of a few times the duration of the small one."""

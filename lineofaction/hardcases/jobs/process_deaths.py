@@ -22,7 +22,7 @@ from lineofaction.hardcases.jobs.aftermath import (
     largest_difference,
     undisturbed,
 )
-from lineofaction.hardcases.jobs.disturbances import AFTER
+from lineofaction.hardcases.jobs.disturbances import RECOVERY
 from lineofaction.hardcases.jobs.job_service import JobService
 from lineofaction.hardcases.scene import Measured, Scenes
 from service.queue.job import Job
@@ -83,7 +83,7 @@ def _killing(
 @SCENES.add(
     "job_whose_mesh_fails",
     "The mesher is killed in mid-mesh: a process started by the worker, of which the service knows nothing.",
-    f"The job fails at its first attempt and says that the mesher was killed; {AFTER}",
+    f"The job fails at its first attempt and says that the mesher was killed; {RECOVERY}",
 )
 def _mesher_killed() -> Sequence[Measured]:
     outcome, killed = _killing(MESHER_COMMAND, 1)
@@ -117,7 +117,7 @@ def _worker_killed_once() -> Sequence[Measured]:
 @SCENES.add(
     "worker_killed_at_every_attempt",
     "Every worker of the job crashes while its mesher hangs: tried for ever, it would block all others.",
-    f"The job fails at its second attempt, with the signal and the number of attempts; {AFTER}",
+    f"The job fails at its second attempt, with the signal and the number of attempts; {RECOVERY}",
 )
 def _worker_killed_always() -> Sequence[Measured]:
     """Let every worker crash in mid-mesh."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from host import limit_file_size, memory_figure
 from lineofaction.hardcases.jobs.aftermath import MEDIUM, aftermath, largest_difference
-from lineofaction.hardcases.jobs.disturbances import AFTER, MEMORY_MB
+from lineofaction.hardcases.jobs.disturbances import MEMORY_MB, RECOVERY
 from lineofaction.hardcases.jobs.job_service import JobService
 from lineofaction.hardcases.jobs.process_deaths import (
     MESHER_COMMAND,
@@ -35,7 +35,7 @@ while True:
     "job_without_disk_space",
     "No write of the worker succeeds any more, as on a full disk: libraries that write may crash.",
     "The job fails at its first attempt, with the cause and what to try, and serves nothing; submitted again "
-    f"with room it gives what Python gives, to the last bit; {AFTER}",
+    f"with room it gives what Python gives, to the last bit; {RECOVERY}",
 )
 def _disk_full() -> Sequence[Measured]:
     """Let no write of the worker succeed, then submit the job again."""
@@ -63,7 +63,7 @@ def _disk_full() -> Sequence[Measured]:
     "mesher_without_end",
     "The mesher, a process started by the worker that the service knows nothing of, takes memory without "
     "end.",
-    f"It never has more than a worker may; the job fails at its first attempt, with the cause; {AFTER}",
+    f"It never has more than a worker may; the job fails at its first attempt, with the cause; {RECOVERY}",
 )
 def _greedy_mesher() -> Sequence[Measured]:
     """Let the first mesher take memory until the system gives it no more."""

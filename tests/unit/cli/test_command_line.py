@@ -244,11 +244,26 @@ def test_what_the_client_warns_of_is_one_line_for_people(
         warnings.warn("of a library", UserWarning, stacklevel=1)
 
     monkeypatch.setattr(commands, "app", verb)
+    monkeypatch.setattr(commands, "keep_freed_memory", lambda **_: None)  # of the process of the tests
     with warnings.catch_warnings(record=True) as others:
         warnings.simplefilter("always")
         commands.main()
     assert capsys.readouterr().err == "note: the table comes from the cache\n"
     assert [str(other.message) for other in others] == ["of a library"]
+
+
+@pytest.mark.parametrize(("verb", "settings"), [("analyze", [{"to_the_end": True}]), ("serve", [])])
+def test_a_process_of_one_verb_keeps_freed_memory_and_a_server_does_not(
+    verb: str, settings: list[dict[str, bool]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    calls: list[dict[str, bool]] = []
+    monkeypatch.setattr("sys.argv", ["loa", verb])
+    monkeypatch.setattr(commands, "app", lambda: None)
+    monkeypatch.setattr(commands, "keep_freed_memory", lambda **setting: calls.append(setting))
+    with warnings.catch_warnings():
+        monkeypatch.setattr(warnings, "showwarning", warnings.showwarning)  # which `main` replaces
+        commands.main()
+    assert calls == settings
 
 
 def test_a_defect_is_a_number_and_a_log(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, table: Path) -> None:

@@ -48,7 +48,7 @@ print(pages())
 @pytest.mark.skipif(sys.platform != "linux", reason="a setting of the C library of Linux")
 @pytest.mark.parametrize(
     ("setting", "blocks", "mib"),
-    [("host.keep_freed_memory()", 8, 1), ("host.keep_memory_to_the_end()", 1, 40)],
+    [("host.keep_freed_memory()", 8, 1), ("host.keep_freed_memory(to_the_end=True)", 1, 40)],
 )
 def test_memory_that_is_kept_is_there_again(setting: str, blocks: int, mib: int) -> None:
     kept, given_back = (

@@ -11,7 +11,12 @@ import pytest
 from fe_contact import FlankModification, Gear, GearPair
 from fe_contact.contact.contact_pressure import contact_pressure
 from fe_contact.geometry import InternalGearPair, ParallelAxes, RingGear
-from lineofaction.hardcases.contact.posed_pair import Posed, even_positions, nominal_pair, posed
+from lineofaction.hardcases.contact.contact_case import (
+    ContactCase,
+    contact_case,
+    even_positions,
+    nominal_pair,
+)
 
 TORQUES = [20.0, 100.0, 400.0]
 POSITIONS = even_positions(200)
@@ -42,7 +47,7 @@ def cut_off(pair: ParallelAxes, height: float) -> ParallelAxes:
     return replace(pair, **{name: replace(gears[name], tip_diameter=diameters[name]) for name in gears})
 
 
-def curves(case: Posed) -> np.ndarray:
+def curves(case: ContactCase) -> np.ndarray:
     """STE, of a helical pair at every fifth position: its contact lines hand over at all of them."""
     load = np.asarray(case.pair.normal_force(np.array(TORQUES)))
     position = POSITIONS[::5] if case.pair.base_helix_angle else POSITIONS
@@ -52,25 +57,27 @@ def curves(case: Posed) -> np.ndarray:
 
 
 @pytest.fixture(scope="module", params=list(PAIRS))
-def sharp(request: pytest.FixtureRequest) -> tuple[str, Posed]:
+def sharp(request: pytest.FixtureRequest) -> tuple[str, ContactCase]:
     make, model = PAIRS[request.param]
-    return request.param, posed(make(FlankModification()), TORQUES, model=model)
+    return request.param, contact_case(make(FlankModification()), TORQUES, model=model)
 
 
-def with_edge(sharp: tuple[str, Posed], **edge: float) -> Posed:
+def with_edge(sharp: tuple[str, ContactCase], **edge: float) -> ContactCase:
     name, bodies = sharp
     make, model = PAIRS[name]
-    case = posed(make(FlankModification(**edge)), TORQUES, model=model, bodies=bodies.contact)
+    case = contact_case(make(FlankModification(**edge)), TORQUES, model=model, bodies=bodies.contact)
     return case.with_model(corner_contact=True)
 
 
-def test_no_edge_given_is_the_sharp_tip_to_the_last_bit(sharp: tuple[str, Posed]) -> None:
+def test_no_edge_given_is_the_sharp_tip_to_the_last_bit(sharp: tuple[str, ContactCase]) -> None:
     none = with_edge(sharp, tip_rounding=0.0, tip_chamfer=0.0, tip_chamfer_angle=1.0)
     assert curves(none).tobytes() == curves(sharp[1]).tobytes()
 
 
 @pytest.mark.law
-def test_a_rounding_tends_to_the_sharp_edge_in_proportion_to_its_radius(sharp: tuple[str, Posed]) -> None:
+def test_a_rounding_tends_to_the_sharp_edge_in_proportion_to_its_radius(
+    sharp: tuple[str, ContactCase],
+) -> None:
     """Somewhere in the handover the change is what an edge loses: a few tenths of the radius at most."""
     plain = curves(sharp[1])
     changes = []
@@ -83,12 +90,12 @@ def test_a_rounding_tends_to_the_sharp_edge_in_proportion_to_its_radius(sharp: t
 
 
 @pytest.mark.law
-def test_chamfered_teeth_are_teeth_cut_off_at_the_tip_form_circle(sharp: tuple[str, Posed]) -> None:
+def test_chamfered_teeth_are_teeth_cut_off_at_the_tip_form_circle(sharp: tuple[str, ContactCase]) -> None:
     """Pairs hand over where theirs do; what is left is the body of the tip, and load patches."""
     height = 0.3e-3
     name, bodies = sharp
     make, model = PAIRS[name]
-    cut = posed(cut_off(make(FlankModification()), height), TORQUES, model=model)
+    cut = contact_case(cut_off(make(FlankModification()), height), TORQUES, model=model)
     wanted, found, plain = curves(cut), curves(with_edge(sharp, tip_chamfer=height)), curves(bodies)
     mean_limit, largest, ripple = {
         "spur": (1e-3, 0.011, 5e-3),
@@ -103,7 +110,7 @@ def test_chamfered_teeth_are_teeth_cut_off_at_the_tip_form_circle(sharp: tuple[s
 
 
 @pytest.mark.law
-def test_an_edge_never_stiffens_the_mesh(sharp: tuple[str, Posed]) -> None:
+def test_an_edge_never_stiffens_the_mesh(sharp: tuple[str, ContactCase]) -> None:
     plain = curves(sharp[1])
     before = plain
     for radius in (1e-5, 1e-4, 3e-4):
@@ -116,7 +123,7 @@ def test_an_edge_never_stiffens_the_mesh(sharp: tuple[str, Posed]) -> None:
 def test_pressure_on_a_rounding_is_that_of_hertz_on_its_radius() -> None:
     """Far beyond the tip form point light contacts lie on the arc alone."""
     radius = 0.4e-3
-    case = posed(nominal_pair(modification=FlankModification(tip_rounding=radius)), TORQUES)
+    case = contact_case(nominal_pair(modification=FlankModification(tip_rounding=radius)), TORQUES)
     problem, solution = case.solve(POSITIONS, np.asarray(case.pair.normal_force(np.array([400.0]))))
     candidates = problem.candidates
     form = case.pair.pinion.tip_form_roll_length**2 / (2.0 * case.pair.pinion.base_radius)
@@ -136,18 +143,18 @@ def test_the_angle_of_a_steep_chamfer_hardly_matters(angle: float) -> None:
     """Beyond its edge contact is open whatever the angle; the edge itself is an edge."""
     height = 0.3e-3
     edge = {"tip_chamfer": height, "tip_chamfer_angle": math.radians(angle)}
-    case = posed(nominal_pair(modification=FlankModification(**edge)), TORQUES)
+    case = contact_case(nominal_pair(modification=FlankModification(**edge)), TORQUES)
     steep = {"tip_chamfer": height, "tip_chamfer_angle": math.radians(30.0)}
-    other = posed(nominal_pair(modification=FlankModification(**steep)), TORQUES, bodies=case.contact)
+    other = contact_case(nominal_pair(modification=FlankModification(**steep)), TORQUES, bodies=case.contact)
     found, wanted = curves(case), curves(other)
     assert (np.abs(found - wanted).max(axis=0) / wanted.mean(axis=0)).max() < 0.02
     load = np.asarray(case.pair.normal_force(np.array(TORQUES)))
     problem, solution = case.solve(POSITIONS, load)
-    sharp = posed(cut_off(nominal_pair(), height), TORQUES)
+    sharp = contact_case(cut_off(nominal_pair(), height), TORQUES)
     at_cut = contact_pressure(*_with_force(sharp, load))[0].max()
     assert contact_pressure(problem, solution.force)[0].max() == pytest.approx(at_cut, rel=0.05)
 
 
-def _with_force(case: Posed, load: np.ndarray) -> tuple[object, np.ndarray]:
+def _with_force(case: ContactCase, load: np.ndarray) -> tuple[object, np.ndarray]:
     problem, solution = case.solve(POSITIONS, load)
     return problem, solution.force

@@ -1,6 +1,6 @@
 from own_process import ROOT, python
 
-AFTER = """
+RUN_UP_PROGRAM = """
 from numba.core.dispatcher import Dispatcher
 from dynamics.simulation import compile_ahead, simulate
 from dynamics.loads import TimeLaw
@@ -23,5 +23,5 @@ print([name for name in found if name.startswith("dynamics.integrators")])
 
 
 def test_after_it_a_run_up_finds_all_loops_of_the_integrators() -> None:
-    with python("-c", AFTER, settings={"PYTHONPATH": str(ROOT / "tests" / "fakes")}) as process:
+    with python("-c", RUN_UP_PROGRAM, settings={"PYTHONPATH": str(ROOT / "tests" / "fakes")}) as process:
         assert process.communicate()[0] == "[]\n"

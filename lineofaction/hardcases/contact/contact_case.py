@@ -25,7 +25,7 @@ teeth."""
 
 
 @dataclass(frozen=True)
-class Posed:
+class ContactCase:
     """A pair at one misalignment, its plan and the model its effects compose."""
 
     contact: PairContact
@@ -51,7 +51,7 @@ class Posed:
         """Return the STE (P, L) in m at the loads of the plan."""
         return self.solve(position)[1].deflection
 
-    def with_model(self, **changes: object) -> Posed:
+    def with_model(self, **changes: object) -> ContactCase:
         """Return the same bodies with another contact model."""
         return replace(self, model=replace(self.model, **changes))  # type: ignore[arg-type]
 
@@ -73,7 +73,7 @@ def nominal_pair(**changes: object) -> GearPair:
     return GearPair(gear, gear, 80e-3)
 
 
-def posed(
+def contact_case(
     pair: ParallelAxes,
     torques: Sequence[float] | FloatArray = (NOMINAL_TORQUE,),
     *,
@@ -83,7 +83,7 @@ def posed(
     pitches: int | None = None,
     effects: dict[str, str] | None = None,
     bodies: PairContact | None = None,
-) -> Posed:
+) -> ContactCase:
     """Plan a pair for torques in N m as `analyze` does.
 
     Its compliances are computed afresh, or taken from `bodies` of the same macro geometry.
@@ -96,7 +96,7 @@ def posed(
     reused = None if bodies is None else replace(bodies, pair=pair, plan=plan, _problems={})
     contact = reused or pair_contact(pair, plan, None)
     (point,) = operating_points(request.scene, request.choices, contact).places
-    return Posed(point.contact, point.model)
+    return ContactCase(point.contact, point.model)
 
 
 def even_positions(count: int) -> FloatArray:
