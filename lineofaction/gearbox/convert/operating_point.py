@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from bounds import engineering, shaft_words
-from lineofaction.gearbox.units import MM, UM
+from lineofaction.gearbox.units import MM, RPM, UM
 
 if TYPE_CHECKING:
     from lineofaction.gearbox.schemas.scene import SceneInput
@@ -38,9 +38,15 @@ def typed(value: float) -> str:
     return text if float(text) == float(f"{value:.12g}") else engineering(value, _COMPUTED)
 
 
-def scene_point(scene: SceneInput) -> str:
-    """Return the operating point of a scene: its loads at the start, constant speeds, misaligned meshes."""
-    parts = [*_loads(scene), *_speeds(scene), *_misalignments(scene)]
+def scene_point(scene: SceneInput, speed: tuple[str, float] | None = None) -> str:
+    """Return the operating point of a scene: its loads at the start, constant speeds, misaligned meshes.
+
+    `speed`: a shaft and its speed, rad/s, at which a result is computed in place of the speeds of drives.
+    """
+    own = (
+        [] if speed is None else [f"{engineering(speed[1] / RPM, _COMPUTED)} rpm of {shaft_words(speed[0])}"]
+    )
+    parts = [*_loads(scene), *(own or _speeds(scene)), *_misalignments(scene)]
     return f"at {', '.join(parts)}" if parts else ""
 
 

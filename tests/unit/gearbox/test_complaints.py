@@ -404,6 +404,16 @@ def test_a_study_over_speed_leaves_out_the_torque_of_a_run_up() -> None:
     assert rising.mesh_force == approx(running.mesh_force, rel=1e-9)
 
 
+def test_an_answer_names_the_speed_of_its_complaint_not_that_of_a_drive() -> None:
+    scene = train((25, 61))  # driven at 1000 rpm
+    scene["meshes"][0]["stiffness"]["stiffness_n_per_m"] = {"value": [3e8], "amplitude": [4e7]}
+    for shaft, rpm in (("shaft 0", 610.0), ("shaft 1", 250.0)):
+        answer = loa.complaint(scene, frequency_hz=254.0, speed_rpm=rpm, shaft=shaft)
+        said = f"at 10 N m on shaft 1, {rpm:.0f} rpm of {shaft}"
+        assert answer.metadata["operating_point"] == said
+        assert answer.complaint.within[0].harmonic == 1
+
+
 def test_a_force_that_no_linear_response_holds_is_told() -> None:
     """A stiffness that swings by 80 % parts the flanks in the torsional mode, at any load."""
     scene = train((25, 61))

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -33,6 +33,7 @@ from lineofaction.gearbox.convert.complaint import (
     leading_shaft,
     sentence,
 )
+from lineofaction.gearbox.convert.operating_point import OPERATING_POINT, scene_point
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.case import Case
@@ -183,7 +184,11 @@ class _ComplaintStudy(
         forces = tuple(_force(response, order, complaint.bearing) for order in _orders(complaint))
         metadata = modes.metadata | {"parting": _parting(response)}
         answer = AnsweredComplaint(complaint, forces, _near_modes(modes, complaint), metadata)
-        return with_scene_metadata(answer, subject)
+        answer = with_scene_metadata(answer, subject)
+        if complaint.speed is None:
+            return answer
+        point = scene_point(subject.inputs, (complaint.shaft, complaint.speed))
+        return replace(answer, metadata={**answer.metadata, OPERATING_POINT: point})
 
     def figures(self, result: AnsweredComplaint) -> Json:
         complaint = result.complaint
