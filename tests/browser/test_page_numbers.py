@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import pytest
 from page_numbers import contradictions, printed
-from page_visit import OVER_FACE, Visit, computed, shown
+from page_visit import CASE, GEAR, OVER_FACE, Visit, computed, shown
 from playwright.sync_api import Browser, Page, expect
 from running_service import until
 
@@ -128,6 +128,24 @@ def test_a_pair_in_the_plane_has_one_number_of_each_subject(
 ) -> None:
     visit = shown(browser, address, analyzed)
     run(visit.page, address, seed, over_face=False)
+    assert visit.complaints == []
+    visit.page.close()
+
+
+@pytest.fixture(scope="module")
+def on_polymer(address: str) -> str:
+    polymer = {"youngs_modulus_gpa": 2.8, "poissons_ratio": 0.35}  # POM
+    pair = CASE["pair"] | {"wheel": GEAR | {"material": polymer}}
+    return computed(address, case=CASE | {"pair": pair})
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("seed", range(SESSIONS))
+def test_a_wheel_of_polymer_has_one_number_of_each_subject(
+    browser: Browser, address: str, on_polymer: str, seed: int
+) -> None:
+    visit = shown(browser, address, on_polymer)
+    run(visit.page, address, 2000 + seed, over_face=False)
     assert visit.complaints == []
     visit.page.close()
 
