@@ -20,7 +20,7 @@ _IN_ORDER = """
     reference_errors static_table full_contact_cost full_contact_coverage full_contact_helical
     full_contact_over_face finite_width run_up long_phase other_engine corrected_plane dynamics_cost
     step_cost study_cost accumulated_errors solvers_3d condensation housing_modes gear_case_sound housed_run
-    default_run heard_band predictions
+    default_run heard_band predictions announced_costs
     predicted_errors predicted_memory receipt_cost error_coverage quiet_meshes live_coverage load_arm_coverage
     limit_coverage derivatives heard_flanks heard_designs heard_tolerances tolerance_kept looser_tolerance
     influence_estimates quiet_helical dynamic_influence_estimates neglected_effects

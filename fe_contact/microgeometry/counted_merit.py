@@ -22,15 +22,27 @@ class Cancelled(Exception):
     """Somebody requested the search to end."""
 
 
+TAIL = 0.1
+"""Part of the work done that is taken to be left where a search goes on beyond its usual cost."""
+
+
 class Budget:
     """Designs that one search may evaluate, of whatever cost.
 
-    Before every design `cancel` is called; after it the used part of the budget is reported.
+    Before every design `cancel` is called; after it the part of the work done is reported: the cost of all
+    designs so far over the `usual` cost of the whole search, in designs at all positions.
     """
 
-    def __init__(self, total: int, cancel: Callable[[], bool], report: Callable[[float], None]) -> None:
+    def __init__(
+        self,
+        total: int,
+        cancel: Callable[[], bool],
+        report: Callable[[float], None],
+        usual: float = math.inf,
+    ) -> None:
         self.total, self.used = total, 0
         self.cancelled, self._report = cancel, report
+        self._usual, self._paid = min(usual, float(total)), 0.0
 
     def take(self, maximum: int) -> None:
         """Take one design, if fewer than `maximum` were taken; raises `BudgetUsed` or `Cancelled`."""
@@ -40,9 +52,11 @@ class Budget:
             raise BudgetUsed
         self.used += 1
 
-    def tell(self) -> None:
-        """Report the used part of the budget."""
-        self._report(self.used / self.total)
+    def tell(self, price: float) -> None:
+        """Report the part of the work done after a design of a price, in designs at all positions."""
+        self._paid += price
+        tail = TAIL * self._paid if self.used < self.total else 0.0
+        self._report(self._paid / (self._paid + max(self._usual - self._paid, tail)))
 
 
 class CountedMerit:
@@ -54,6 +68,8 @@ class CountedMerit:
         Number of used designs of the budget at which it raises `BudgetUsed`.
     workers : Workers
         Workers that assess independent designs, and follow independent walks.
+    price : float
+        Cost of a design, in designs at all positions.
 
     Attributes
     ----------
@@ -69,8 +85,9 @@ class CountedMerit:
         budget: Budget,
         maximum: int,
         workers: Workers = InProcess(),  # noqa: B008 (frozen)
+        price: float = 1.0,
     ) -> None:
-        self.problem, self.workers, self._seconds = problem, workers, 0.0
+        self.problem, self.workers, self._seconds, self._price = problem, workers, 0.0, price
         self.designs: list[Design] = []
         self.ends: list[Design] = []
         self._budget, self._maximum = budget, maximum
@@ -115,7 +132,7 @@ class CountedMerit:
         """Count and remember a design; return its merit."""
         self.designs.append((assessed, np.clip(point, 0.0, 1.0)))
         self.problem.keep(point, assessed)
-        self._budget.tell()
+        self._budget.tell(self._price)
         return assessed.merit
 
     def end(self, point: FloatArray) -> None:

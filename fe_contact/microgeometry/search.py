@@ -132,7 +132,7 @@ def search_from(
     index : int
         Of the start: each draws its own random numbers.
     report : callable, optional
-        Called with the part of the evaluations used.
+        Called with the part of the work done, by the usual cost of a search.
     cancel : callable, optional
         Asked before each design whether to end with the best so far, and when workers are lost.
     ending : tuple of exception types
@@ -141,10 +141,12 @@ def search_from(
         Who assesses designs, and takes walks, that do not wait for each other.
     """
     spent_before = spent(workers)
-    budget = Budget(search.evaluations, cancel or never, report or unreported)
-    merit = CountedMerit(problem, budget, search.evaluations, workers)
-    explored = int(EXPLORED * search.evaluations)
-    rough = CountedMerit(problem.rough(search.exploration), budget, explored, workers)
+    usual = usual_designs(search) / search.starts
+    budget = Budget(search.evaluations, cancel or never, report or unreported, usual)
+    linear = isinstance(search.method, (SequentialLinearProgramming, StagedLinearProgramming))
+    merit = CountedMerit(problem, budget, search.evaluations, workers, LINEARIZED if linear else 1.0)
+    explored, few = int(EXPLORED * search.evaluations), min(search.exploration / search.positions, 1.0)
+    rough = CountedMerit(problem.rough(search.exploration), budget, explored, workers, few)
     ended = Ended.CONVERGED
     try:
         search.method.minimize(merit, rough, start, np.random.SeedSequence((search.seed, index)))

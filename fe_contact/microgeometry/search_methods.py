@@ -67,9 +67,9 @@ EXPLORED = 0.65
 Cancel = Callable[[], bool]
 
 
-LINEARIZED, FOLLOWED = 1.4, 75
-"""Cost of a design with its slopes in assessments, and number of designs of the walk to the end and of its
-restarts.
+LINEARIZED, FOLLOWED = 2.1, 75
+"""Cost of a design with its slopes in assessments (2.1 of a helical pair with five variables), and number of
+designs of the walk to the end and of its restarts.
 """
 
 

@@ -19,11 +19,16 @@ from lineofaction.gearbox.studies.run_cost import run_cost
 from lineofaction.gearbox.studies.scene_before_tables import CASES
 from lineofaction.gearbox.study import Study
 from lineofaction.gearbox.subjects import with_inline_cases
+from model_studies.host_speed import host_slowness
 from model_studies.progress import ANNOUNCED
 
 _READING, _PLAYED, _BY_EAR = 0.5, 0.06, 2.9
 """CPU seconds of reading a run, of a second of sound, and of a second of sound at a microphone, with the
 figures of hearing."""
+_LOADED = 2.5
+"""CPU seconds of loading what a study needs, on the reference host."""
+_DRAWN = {".html": 1.7, ".png": 2.1, ".svg": 2.1, ".pdf": 2.1}
+"""CPU seconds of drawing a file of a result, on the reference host, by its ending."""
 
 
 def study_cost(
@@ -66,8 +71,22 @@ def listening_cost(seconds: float, *, housings: int = 0) -> StudyCost:
     return StudyCost((panels_work(housings), *sound) if housings else sound)
 
 
-def announce_cost(verb: str, costs: Sequence[StudyCost | None]) -> None:
-    """Print the predicted cost of a verb on standard error, if it is known and more than a moment."""
+def announce_cost(
+    verb: str, costs: Sequence[StudyCost | None], targets: Sequence[Path] | None = None
+) -> None:
+    """Print the predicted cost of a verb on standard error, if it is known and more than a moment.
+
+    `targets`: files that the verb draws; they and the program are counted, but do not make a moment more.
+    None: neither is counted.
+    """
     total = sum(filter(None, costs), StudyCost(()))
     if None not in costs and total.seconds > ANNOUNCED:
+        total += StudyCost(()) if targets is None else _program_cost(targets)
         sys.stderr.write(in_lines(f"loa {verb}: {total.text}", sys.stderr) + "\n")
+
+
+def _program_cost(targets: Sequence[Path]) -> StudyCost:
+    """Return the predicted cost of loading the program and of drawing files."""
+    drawn = sum(_DRAWN.get(target.suffix, 0.0) for target in targets)
+    slowness = host_slowness(cache_home() / "compliance")
+    return StudyCost((Work("program and files", (_LOADED + drawn) * slowness),))

@@ -84,7 +84,7 @@ def run_study(study: Study, options: Json) -> None:
     interrupts = until_interrupted if study.run.interruptible else nullcontext
     with (
         open_executor(options["workers"], options["scheduler"]) as others,
-        _announced_cost(study, subjects, inputs, options),
+        _announced_cost(study, subjects, inputs, options, targets),
         cached_workers(study, fields, inputs, others) as workers,
         progress_bar(study.stages) as report,
         interrupts() as cancel,
@@ -111,7 +111,9 @@ def run_study(study: Study, options: Json) -> None:
 
 
 @contextmanager
-def _announced_cost(study: Study, subjects: Sequence[Any], inputs: Any, options: Json) -> Iterator[None]:
+def _announced_cost(
+    study: Study, subjects: Sequence[Any], inputs: Any, options: Json, targets: Sequence[Path]
+) -> Iterator[None]:
     """Print on standard error what is known beforehand, and the cost if it is more than a moment."""
     if not options["json"]:
         for subject, folder in subjects:
@@ -120,7 +122,7 @@ def _announced_cost(study: Study, subjects: Sequence[Any], inputs: Any, options:
         costs = [study_cost(study, subject, folder, inputs) for subject, folder in subjects]
         if study.run.tables and options.get("service") is None:
             costs += [tables_cost(*case) for case in subjects if isinstance(case[0], SceneInput)]
-        announce_cost(study.name, costs)
+        announce_cost(study.name, costs, targets)
     yield
 
 

@@ -22,13 +22,14 @@ from dynamics.assembly.assemble import System, assemble
 from dynamics.influence import neglected_check
 from dynamics.scene import Scene
 from fe_contact.analysis.pairs.pair_contact import PairContact
+from fe_contact.analysis.run_plan import PredictedDesigns
 from fe_contact.microgeometry import evaluator
 from fe_contact.microgeometry.design_study import design_study
 from fe_contact.microgeometry.tolerance_study import curves_of_samples
 from fe_contact.options import Run
 from fe_contact.planning.cost_of_derivatives import ContactWork
 from host.directories import cache_home
-from lineofaction.cli import run_study, simulate
+from lineofaction.cli import costs, run_study, simulate
 from lineofaction.cli.costs import simulation_cost, study_cost, table_cost
 from lineofaction.cli.scene_tables import tabled_scene
 from lineofaction.cli.status import run_status
@@ -39,6 +40,7 @@ from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.cost import LONG, StudyCost, Work
+from lineofaction.gearbox.studies.deflect import run as deflect
 from lineofaction.gearbox.studies.noise.run import USUAL_LINE
 from lineofaction.gearbox.studies.scatter import run as scatter
 from lineofaction.gearbox.studies.scene_before_tables import CASES
@@ -175,6 +177,21 @@ def test_a_pair_of_scatter_is_solved_once_however_it_is_misaligned(misalignment:
     assert pairs.pieces == pytest.approx(40 + 10 * scatter._TANGENT)
 
 
+def test_contacts_of_a_deflection_come_with_their_errors(monkeypatch: pytest.MonkeyPatch) -> None:
+    own = deflect.predicted_designs
+
+    def priced(checked: Any, cache: Path | None) -> PredictedDesigns:
+        return own(checked, cache)._replace(design=1.0, errors=2.0, across_face=True)
+
+    monkeypatch.setattr(deflect, "predicted_designs", priced)
+    scene, folder = scene_of(EXAMPLES / "flexible_shafts_scene.toml")
+    cost = study_cost(STUDIES["deflect"], scene, folder, STUDIES["deflect"].inputs())
+    assert cost is not None
+    parts = {part.name: part for part in cost.parts}
+    assert parts["contacts"].piece_seconds == 3.0
+    assert parts["deflections"].pieces == 4  # of one load case: before, and in three passes
+
+
 def test_the_cost_is_said_as_parts_of_a_whole() -> None:
     gears, values = Work("gears", 1.6), Work("values", 1.6, 24)
     whole = StudyCost((gears,), 2.0**30) + StudyCost((values, Work("values", 0.8, 24), Work("beside", 0.01)))
@@ -186,11 +203,13 @@ def test_the_verb_says_more_than_a_moment_on_standard_error(
     seconds: float, case: CheckedCase, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(run_study, "study_cost", lambda *_: StudyCost((Work("values", seconds / 8.0, 8),)))
-    with run_study._announced_cost(STUDIES["sensitivity"], [(case, Path())], None, {"json": False}):
+    monkeypatch.setattr(costs, "host_slowness", lambda _: 2.0)
+    targets = Path("sensitivity.nc"), Path("sensitivity.html")  # one is drawn
+    with run_study._announced_cost(STUDIES["sensitivity"], [(case, Path())], None, {"json": False}, targets):
         pass
     printed = capsys.readouterr()
     assert printed.out == ""
-    said = "loa sensitivity: about 40 CPU s: 8 values at 5 s\n"
+    said = "loa sensitivity: about 48 CPU s: 8 values at 5 s, program and files 8.4 s\n"
     assert printed.err == (said if seconds == 40.0 else "")
 
 

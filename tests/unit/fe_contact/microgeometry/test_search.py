@@ -15,6 +15,7 @@ import pytest
 from fe_contact.microgeometry import best_design as choice
 from fe_contact.microgeometry.conclusion import outcome_and_reason
 from fe_contact.microgeometry.confirmation import HarrisMap, rising
+from fe_contact.microgeometry.counted_merit import Budget
 from fe_contact.microgeometry.design_problem import Assessed, DesignProblem
 from fe_contact.microgeometry.linear_program import LinearMerit
 from fe_contact.microgeometry.objective import Limits, Objective, WeightedMean, Worst
@@ -440,3 +441,19 @@ def test_objectives_are_the_largest_of_their_rows():
     expected = np.array([2.0, 5.0, 1.0])
     for objective in (WeightedMean(), WeightedMean((1.0, 0.0, 2.0)), Worst()):
         assert (objective.rows(3) @ expected).max() == pytest.approx(objective.of(expected), rel=1e-12)
+
+
+@pytest.mark.law
+def test_the_part_done_is_that_of_a_usual_search_not_that_of_all_designs_allowed() -> None:
+    told: list[float] = []
+    budget = Budget(1000, lambda: False, told.append, 50.0)
+    for _ in range(80):
+        budget.take(1000)
+        budget.tell(1.0)
+    assert told[24] == 0.5
+    assert np.diff(told).min() > -1e-12 and told[-1] == pytest.approx(1.0 / 1.1)  # a tail is left
+    short = Budget(10, lambda: False, told.append, 50.0)
+    for _ in range(10):
+        short.take(10)
+        short.tell(1.0)
+    assert told[-1] == 1.0
