@@ -30,10 +30,10 @@ class Stored:
     long_name: str
 
 
-def write_arrays(
-    path: Path, schema: str, stored: Mapping[str, Stored], arrays: Mapping[str, Any], rest: Json
-) -> None:
-    """Write a netCDF-4 file; it appears whole or not at all.
+def arrays_content(
+    schema: str, stored: Mapping[str, Stored], arrays: Mapping[str, Any], rest: Json
+) -> NetcdfContent:
+    """Return the content of a file of named arrays.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ def write_arrays(
     variables = {
         name: _variable(stored[name], values, sizes) for name, values in arrays.items() if values.size
     }
-    NetcdfContent(variables, attributes).write(path)
+    return NetcdfContent(variables, attributes)
 
 
 def read_arrays(path: Path, schemas: tuple[str, ...]) -> tuple[str, dict[str, Any], Json]:

@@ -9,10 +9,10 @@ from typing import Any, ClassVar, Generic, Protocol, TypeVar
 import numpy as np
 
 from bounds.brief import brief
-from bounds.plottable import Plottable
 from host import cpu_seconds
 from model_studies.progress import Progress
 from model_studies.record import under_key
+from model_studies.result_record import ResultRecord
 from model_studies.variants import run_variants
 
 R = TypeVar("R")
@@ -181,7 +181,7 @@ R_co = TypeVar("R_co", bound=FidelityResult, covariant=True)
 
 @brief
 @dataclass(frozen=True)
-class Frontier(Plottable, Generic[R_co]):
+class Frontier(ResultRecord, Generic[R_co]):
     """An accuracy study."""
 
     results: tuple[R_co, ...]

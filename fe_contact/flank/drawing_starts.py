@@ -66,7 +66,7 @@ WAYS = {
 def _start(relief: str, way: str, example: float) -> Any:
     """Return the field of one way to state where a relief starts."""
     kind = WAYS[way]
-    text = f"{kind.text.capitalize()} at which the {relief} starts, instead of its length; left out: none"
+    text = f"{kind.text.capitalize()} at which the {relief} starts, instead of its length"
     bound = between(0.0, kind.maximum)
     return declared(
         None, Declared(Kind.START, kind.unit, bound, text, example, Direction.PROFILE, later=True)

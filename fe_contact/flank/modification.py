@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bounds import Direction, Kind, declarations, described
+from bounds.brief import concise
 from fe_contact.flank.along_face import AlongFace
 from fe_contact.flank.along_profile import AlongProfile
 from fe_contact.flank.over_flank import OverFlank
@@ -46,6 +47,7 @@ def _of_all_parts(kind: type[Flank]) -> type[Flank]:
     return dataclass(frozen=True, kw_only=True)(kind)
 
 
+@concise
 @described
 @_of_all_parts
 class FlankModification(_Figures):

@@ -90,6 +90,24 @@ def test_cases_and_scenes_show_what_they_state_in_a_dozen_lines(name: str) -> No
     assert lines == repr(subject).split("\n") and "<table>" in subject._repr_html_()
 
 
+def test_results_show_the_main_figures_of_their_report() -> None:
+    result = loa.modes(EXAMPLES / "jeffcott_scene.toml")
+    lines = repr(result).split("\n")
+    assert lines[0] == "ModalAnalysis: modes"
+    assert any(line.split()[:3] == ["lowest", "natural", "frequency"] for line in lines)
+    assert len(lines) <= MAX_LINES
+    assert "lowest natural frequency" in result._repr_html_()
+    assert result.to_xarray()["natural_frequency"].attrs["units"] == "Hz"
+
+
+def test_the_text_of_a_gear_pair_is_its_call() -> None:
+    relief = loa.FlankModification(tip_relief=1e-5, tip_relief_length=1e-3)
+    gear = loa.Gear(20, 4e-3, 0.025, 0.04, modification=relief)
+    pair = loa.GearPair(gear, gear, 0.08)
+    names = {name: getattr(loa, name) for name in ("Gear", "GearPair", "FlankModification")}
+    assert len(repr(pair)) < 400 and eval(repr(pair), names) == pair
+
+
 def test_modes_of_a_scene_equal_those_of_dynamics(tmp_path: Path) -> None:
     """The function converts, checks and computes as the parts do one by one."""
     from dynamics.assembly.assemble import assemble  # noqa: PLC0415
