@@ -184,6 +184,8 @@ def test_texts_and_lists_of_several_lines_hide_what_looks_like_a_field() -> None
         "[c]\nb = 4\n[[g.h]]\nx = 1\n[[g.h]]\nx = 2\n"
     )
     expected = {"a": 1, "d": 5, "c.b": 11, "g.h[0].x": 13, "g.h[1].x": 15, "c.missing": 10, "b": None}
+    # names in quotes may end like an index or a path
+    expected |= {"c.x]": 10, "c.x[": 10, "c.x.": 10, "c.x\n": 10, "c.[0]": 10, "]": None}
     assert {path: line_of_field(text, path) for path in expected} == expected
 
 
