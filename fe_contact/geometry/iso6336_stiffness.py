@@ -14,7 +14,7 @@ from fe_contact.geometry.toothing import Toothing
 STEEL_STIFFNESS = 14e9
 """c' of pairs of steel teeth on solid bodies, N/m per m of face width: the usual value of clause 9.3."""
 MEASURED_OVER_THEORY = 0.8
-"""C_M: measured gears against the theoretical stiffness."""
+"""C_M: stiffness of measured gears over the theoretical stiffness."""
 _PER_MM_UM = 1e9  # N/(mm um) in N/m per m of face width
 _THINNEST_WEB = 0.2  # b_s/b
 _THINNEST_RIM = 1.0  # s_R/m_n
@@ -23,6 +23,7 @@ _LOW_LOAD_EXPONENT = 0.25
 _STEEL_MODULUS = 206e9
 """Young's modulus of the steel pairs of the series, Pa; others scale."""
 _SERIES = (0.04723, 0.15551, 0.25791, -0.00635, -0.11654, -0.00193, -0.24188, 0.00529, 0.00182)
+"""C_1 to C_9 of the flexibility q', mm um/N."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,7 @@ class Iso6336Stiffness:
 
 
 def iso6336_stiffness(pair: GearPair, line_load: float | None = None) -> Iso6336Stiffness:
-    """Tooth stiffness of `pair` (ISO 6336-1, method B, gear bodies as their blanks say).
+    """Return the tooth stiffness of `pair` (ISO 6336-1, method B), whose blanks are the gear bodies.
 
     Parameters
     ----------
@@ -49,12 +50,7 @@ def iso6336_stiffness(pair: GearPair, line_load: float | None = None) -> Iso6336
         x_1 + x_2 <= 2 and x_1 >= x_2.
     line_load : float, optional
         Specific load F_t K_A / b in N/m; below 1e5 N/m the stiffness falls with its fourth root. Default:
-        above.
-
-    Returns
-    -------
-    Iso6336Stiffness
-        Per unit face width.
+        1e5 N/m or more.
     """
     gears = sorted((pair.pinion, pair.wheel), key=lambda gear: (gear.teeth, -gear.profile_shift_coefficient))
     theoretical = _PER_MM_UM / _flexibility(*gears)
@@ -71,7 +67,7 @@ def iso6336_stiffness(pair: GearPair, line_load: float | None = None) -> Iso6336
     if line_load is not None:
         single *= min(1.0, positive("line_load", line_load) / _LOW_LINE_LOAD) ** _LOW_LOAD_EXPONENT
     mesh = single * (0.75 * pair.transverse_contact_ratio + 0.25)
-    return Iso6336Stiffness(theoretical, single, mesh, 0.85 * mesh)
+    return Iso6336Stiffness(theoretical, single, mesh, 0.85 * mesh)  # factors of the standard
 
 
 def blank_factor(gear: Toothing) -> float:

@@ -56,18 +56,18 @@ class Axis:
             inside = np.where((query >= first) & (query < first + self.period), query, wrapped)
         else:
             inside = np.clip(query, first, self.knots[-1])
-        left = np.clip(
-            np.searchsorted(self.knots, inside, side="right") - 1, 0, max(len(self.spacing) - 1, 0)
-        )
+        intervals = len(self.spacing)  # 0: an open axis of one knot
+        left = np.searchsorted(self.knots, inside, side="right") - 1
+        left = np.clip(left, 0, max(intervals - 1, 0))
         right = np.mod(left + 1, len(self.knots))
-        width = self.spacing[left] if len(self.spacing) else np.ones_like(inside)
+        width = self.spacing[left] if intervals else np.ones_like(inside)
         outside = np.zeros(query.shape, bool) if self.period else (query != inside)
         return Stencil(left, right, width, (inside - self.knots[left]) / width, outside)
 
 
 @dataclass(frozen=True)
 class Stencil:
-    """Stencil of queries: the two knots, interval width, fraction in [0, 1], beyond an open end or not."""
+    """Stencil of queries: the two knots, interval width, fraction in [0, 1], whether beyond an open end."""
 
     left: IntArray
     right: IntArray
@@ -167,7 +167,7 @@ def _akima_slopes(axis: Axis, values: FloatArray) -> FloatArray:
 
 
 def _extended_chords(chords: FloatArray) -> FloatArray:
-    """Two more chords beyond each open end, in arithmetic progression (Akima's end rule)."""
+    """Add two chords beyond each open end, in arithmetic progression (Akima's end rule)."""
     if len(chords) == 1:
         return np.repeat(chords, 5, axis=0)
     first = 2.0 * chords[:1] - chords[1:2]
@@ -178,7 +178,8 @@ def _extended_chords(chords: FloatArray) -> FloatArray:
 def _gap_bounds(axis: Axis, gaps: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Bounds on the slope of the gap to the next curve at every knot, down and up."""
     spacing = axis.spacing.reshape(-1, *(1,) * (gaps.ndim - 1))
-    before, after = axis.neighbors(np.broadcast_to(spacing, (len(spacing), *gaps.shape[1:])), 0.0)
+    spacing = np.broadcast_to(spacing, (len(spacing), *gaps.shape[1:]))
+    before, after = axis.neighbors(spacing, 0.0)  # no interval beyond an open end: its bound is infinite
     # the inner Bernstein coefficients of the gap are gap -+ slope * spacing / 3
     allowed = 3.0 * (1.0 - _MIN_GAP_SHARE) * gaps
     with np.errstate(divide="ignore"):
