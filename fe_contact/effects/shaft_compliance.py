@@ -47,7 +47,7 @@ def _reactions(shaft: Shaft) -> tuple[FloatArray, FloatArray]:
 
 
 def _section(shaft: Shaft, low: float, high: float, bending: float, shear: float) -> FloatArray:
-    """Flexibility of the part of the shaft from `low` to `high`, on which the moment is linear."""
+    """Return the flexibility of the shaft from `low` to `high`, a part on which the moment is linear."""
     first, second = _reactions(shaft)
     middle = 0.5 * (low + high)
     # shear force and moment (= constant + force x) by the loads on the left: unit force and unit moment

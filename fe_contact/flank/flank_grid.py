@@ -87,7 +87,7 @@ class FlankGrid:
         return any(value != row[0] for row in self.removed for value in row)
 
     def material_removed(self, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:
-        """Material removed in m at roll lengths and face positions in m, arrays of equal shape."""
+        """Return the material removed in m at roll lengths and face positions in m, arrays of equal shape."""
         import host.analysis  # noqa: F401, PLC0415 (says what to install)
         from fe_contact.flank.bicubic import bicubic  # noqa: PLC0415 (loads the compiler)
 
@@ -97,7 +97,7 @@ class FlankGrid:
         return np.asarray(removed.reshape(roll_length.shape))
 
     def extent(self, ends: tuple[float, float]) -> Extent:
-        """Bounds of the material removed of a gear whose usable profile has these `ends`, roll lengths in m.
+        """Return bounds of the material removed on a usable profile between the roll lengths `ends` in m.
 
         At the ends of the grid the slope drops to zero.
         """
@@ -169,13 +169,13 @@ def _slope(values: FloatArray, axis: FloatArray, direction: int) -> FloatArray:
 def _end_slope(
     secant: FloatArray, inner: FloatArray, step: FloatArray, next_step: FloatArray, confirmed: FloatArray
 ) -> FloatArray:
-    """Slope at a border: that of the parabola, as confirmed or such that the surface does not turn back."""
+    """Return the slope at a border: the confirmed one, or that of the parabola, limited not to turn back."""
     parabola = secant + (secant - inner) * step / (step + next_step)
     return np.where(confirmed != secant, confirmed, _lesser(parabola, 3.0 * secant))
 
 
 def _curvature(secant: FloatArray, step: FloatArray) -> FloatArray:
-    """Half the second derivative in every cell: the lesser of those at its ends, 0 if unconfirmed."""
+    """Return half the second derivative in every cell: the lesser one of its ends, 0 if unconfirmed."""
     at_nodes = np.diff(secant, axis=0) / (step[:-1] + step[1:])  # of inner nodes
     cells, nodes = len(secant), len(at_nodes)
     if nodes < _CONFIRMING - 1:
@@ -211,7 +211,7 @@ def _beyond(nodes: FloatArray, roll: FloatArray, face: FloatArray) -> FloatArray
 
 
 def _hermite_weights(at: FloatArray, axis: FloatArray) -> FloatArray:
-    """Weights (points, end, value or slope, cells) of the cubic Hermite interpolant."""
+    """Return weights (points, end, value or slope, cells) of the cubic Hermite interpolant."""
     step, back = np.diff(axis), 1.0 - at
     value = np.stack([(1.0 + 2.0 * at) * back**2, at**2 * (3.0 - 2.0 * at)], axis=1)
     slope = np.stack([at * back**2, -back * at**2], axis=1)

@@ -118,7 +118,7 @@ class FlankModification(_Figures):
             part.check_fits(gear)
 
     def tip_form_roll_length(self, gear: Tooth) -> float:
-        """Roll length in m at which the usable flank of `gear` ends and its tip's edge begins."""
+        """Return the roll length in m at which the usable flank of `gear` ends and its tip's edge begins."""
         ends = (float(start.roll_length) for start in self.relief_starts(gear) if start.ends_flank)
         return next(ends, gear.tip_roll_length)
 

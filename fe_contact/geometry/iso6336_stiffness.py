@@ -71,7 +71,7 @@ def iso6336_stiffness(pair: GearPair, line_load: float | None = None) -> Iso6336
 
 
 def blank_factor(gear: Toothing) -> float:
-    """Gear blank factor C_R of ISO 6336-1 (method B): 1 for a solid disc, below 1 for a rim on a web.
+    """Return the gear blank factor C_R of ISO 6336-1 (method B): 1 for a solid disc, below 1 with a web.
 
     C_R = 1 + ln(b_s/b) / (5 exp(s_R / (5 m_n))), with b_s/b taken as at least 0.2 and s_R/m_n as at least 1.
     """
@@ -83,7 +83,7 @@ def blank_factor(gear: Toothing) -> float:
 
 
 def _flexibility(small: Gear, large: Gear) -> float:
-    """Flexibility q' in mm um/N: the series of the standard."""
+    """Return the flexibility q' in mm um/N by the series of the standard."""
     c1, c2, c3, c4, c5, c6, c7, c8, c9 = _SERIES
     x1, x2 = small.profile_shift_coefficient, large.profile_shift_coefficient
     z1, z2 = _virtual_teeth(small), _virtual_teeth(large)
@@ -92,18 +92,18 @@ def _flexibility(small: Gear, large: Gear) -> float:
 
 
 def _virtual_teeth(gear: Gear) -> float:
-    """z_n: teeth of the virtual spur gear."""
+    """Return z_n, the teeth of the virtual spur gear."""
     return gear.teeth / (math.cos(gear.base_helix_angle) ** 2 * math.cos(gear.helix_angle))
 
 
 def _rack_factor(gear: Gear) -> float:
-    """C_B: basic racks other than h_fP = 1.2 m_n and alpha = 20 deg."""
+    """Return C_B, the factor of basic racks other than h_fP = 1.2 m_n and alpha = 20 deg."""
     height = 1.0 + 0.5 * (1.2 - gear.dedendum_coefficient)
     return height * (1.0 - 0.02 * (20.0 - math.degrees(gear.normal_pressure_angle)))
 
 
 def modulus_ratio(pair: ParallelAxes) -> float:
-    """Harmonic mean of both moduli over steel's (the series is for steel pairs)."""
+    """Return the harmonic mean of both moduli over that of steel, since the series is for steel pairs."""
     moduli = pair.pinion.material.youngs_modulus, pair.wheel.material.youngs_modulus
     mean = 2.0 * moduli[0] * moduli[1] / sum(moduli)
     return mean / _STEEL_MODULUS

@@ -136,7 +136,7 @@ class SequentialLinearProgramming:
     def minimize(
         self, merit: CountedMerit, rough: CountedMerit, start: FloatArray, seed: np.random.SeedSequence
     ) -> None:
-        """Search; the sequence and the restarts are random."""
+        """Search by both merits; the sequence and the restarts are random."""
         walks = [_begun(merit, _Walk(start))]
         for point in _screened(rough, self.sample, self.trials, start.size, seed):
             walks.append(_begun(merit, _Walk(point)))
@@ -165,7 +165,7 @@ class StagedLinearProgramming:
     def minimize(
         self, merit: CountedMerit, rough: CountedMerit, start: FloatArray, seed: np.random.SeedSequence
     ) -> None:
-        """Search; each merit remembers the ends of its walks."""
+        """Search by both merits, each of which remembers the ends of its walks."""
         merit(start)
         with suppress(BudgetUsed):
             points = [start, *_screened(rough, self.sample, self.trials, start.size, seed)]
@@ -310,7 +310,7 @@ class DifferentialEvolution:
     def minimize(
         self, merit: CountedMerit, rough: CountedMerit, start: FloatArray, seed: np.random.SeedSequence
     ) -> None:
-        """Search; the start belongs to the first population."""
+        """Search from a population to which the start belongs."""
         merit(start)
         with suppress(BudgetUsed):
             differential_evolution(

@@ -299,7 +299,7 @@ def _check_shapes(table: SteFields) -> None:
 
 
 def _check_axes(table: SteFields) -> None:
-    """Axes are finite and increasing, inside their domain, and loads are the torques."""
+    """Check that axes are finite, increasing and inside their domain, and that loads are the torques."""
     for name in (*GRID, "pair"):
         axis = getattr(table, name)
         _refuse(axis.size == 0 or not np.all(np.isfinite(axis)), name, "be non-empty and finite")
@@ -320,7 +320,7 @@ def _check_axes(table: SteFields) -> None:
 
 
 def _check_values(table: SteFields) -> None:
-    """Converged points hold numbers of plausible size and sign; failed points hold NaN."""
+    """Check that converged points hold numbers of plausible size and sign, and failed points NaN."""
     good = ~table.failed
     finite, compliance = np.isfinite(table.static_transmission_error), table.tangent_compliance
     _refuse(not np.all(finite == good), "static_transmission_error", "be finite exactly where converged")

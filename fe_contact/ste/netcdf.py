@@ -154,7 +154,7 @@ def json_attribute(path: Path, attributes: Json, name: str) -> Any:
 
 
 def digest(arrays: Mapping[str, Any], before: str = "") -> str:
-    """SHA-256 over the text `before`, and names, types, shapes and bytes of the arrays, in their order."""
+    """Return the SHA-256 of the text `before`, and of name, type, shape and bytes of each array."""
     hasher = hashlib.sha256(before.encode())
     for name, values in arrays.items():
         array = np.ascontiguousarray(values)

@@ -176,7 +176,7 @@ class _AlignmentLaws:
         yield _LOADED.between(ste, floor, bound, lambda p, f: self._at(int(rows[p]), int(f)))
 
     def _over_loads(self) -> Iterator[LawCheck]:
-        """Rise with load: chords between loads lie between the tangents at their ends."""
+        """Check the rise with load: chords between loads lie between the tangents at their ends."""
         t, m, d = self.table, self.m, self.d
         force = np.concatenate([t.force, t.support_force])
         order = np.argsort(force)
