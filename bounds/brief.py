@@ -1,20 +1,25 @@
 """Records in a dozen lines, as a Python prompt and a notebook show them.
 
-`brief` gives a dataclass such a `repr`, and its HTML for notebooks. Its lines are those that the record
-states itself (`Headlined`), or its fields: numbers as they are, arrays by shape and range, records by type.
+`brief` gives a dataclass such a `repr`, its HTML for notebooks, and equality by content. Its lines are those
+that the record states itself (`Headlined`), the main figures of its report (`Plottable`), or its fields:
+numbers as they are, arrays by shape and range, records by type.
 """
 
 from __future__ import annotations
 
 import html
+import re
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import fields, is_dataclass
+from dataclasses import MISSING, Field, fields, is_dataclass
 from enum import Enum
 from itertools import islice
+from textwrap import wrap
 from typing import Any, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
+from bounds.content_equality import equal_content, equal_records, record_hash
+from bounds.plottable import Plottable
 from bounds.unit import engineering
 
 MAX_LINES = 12
@@ -23,6 +28,13 @@ WIDTH = 100
 """Characters of a line, at most."""
 LISTED = 6
 """Numbers or words of a sequence that are listed; longer ones are counted."""
+
+_UNIT, _NO_BREAK = re.compile(r"(?<=\d) (?=[^\W\d]|[°%])"), "\u00a0"
+"""Blank between a number and a word, and one that no line ends at."""
+_INDENT = 4
+"""Blanks before and after the name of a row."""
+_NARROW = 40
+"""Characters left for the text of a row, up to which it is cut, not wrapped."""
 
 Record = TypeVar("Record")
 Row = tuple[str, str]
@@ -37,18 +49,62 @@ class Headlined(Protocol):
 
 
 def brief(kind: type[Record]) -> type[Record]:
-    """Give a dataclass the short text and HTML of its content; a decorator."""
+    """Give a dataclass the short text and HTML of its content, and equality by it; a decorator."""
+    kind.__eq__ = equal_records  # type: ignore[method-assign]
+    if kind.__hash__ is object.__hash__:  # by identity: equal records would have unequal ones
+        kind.__hash__ = record_hash  # type: ignore[assignment, method-assign]
     kind.__repr__ = text_of  # type: ignore[method-assign]
     kind._repr_html_ = html_of  # type: ignore[attr-defined]
     return kind
 
 
+def concise(kind: type[Record]) -> type[Record]:
+    """Give a dataclass the `repr` of a call without the arguments that have their defaults; a decorator."""
+    kind.__repr__ = call_of  # type: ignore[method-assign]
+    return kind
+
+
+def call_of(record: object) -> str:
+    """Return the call that makes a dataclass, without the arguments that have their defaults."""
+    arguments = (
+        f"{field.name}={value!r}"
+        for field in fields(record)  # type: ignore[arg-type]
+        if field.init
+        and field.repr
+        and not equal_content(value := getattr(record, field.name), _default(field))
+    )
+    return f"{type(record).__name__}({', '.join(arguments)})"
+
+
+def _default(field: Field[Any]) -> object:
+    return field.default if field.default_factory is MISSING else field.default_factory()
+
+
 def text_of(record: object) -> str:
     """Return a record as text of at most `MAX_LINES` lines."""
     title, rows = _content(record)
+    lines, free = [_cut(title, WIDTH)], MAX_LINES - 1 - len(rows)
     width = max((len(name) for name, _ in rows), default=0)
-    lines = [title, *(f"  {name:<{width}}  {text}".rstrip() for name, text in rows)]
-    return "\n".join(line if len(line) <= WIDTH else f"{line[: WIDTH - 1]}…" for line in lines)
+    for name, text in rows:
+        first, *further = _wrapped(text, WIDTH - width - _INDENT, 1 + free) or [""]
+        free -= len(further)
+        lines.append(_cut(f"  {name:<{width}}  {first}".rstrip(), WIDTH))
+        lines += [f"{'':<{width + _INDENT}}{line}" for line in further]
+    return "\n".join(lines)
+
+
+def _wrapped(text: str, width: int, count: int) -> list[str]:
+    """Return a text in at most `count` lines; the last one is cut where there is more."""
+    joined = _UNIT.sub(_NO_BREAK, text)  # a number and its unit stay on one line
+    lines = wrap(joined, width, break_on_hyphens=False) if width > _NARROW else [joined]
+    lines = [line.replace(_NO_BREAK, " ") for line in lines]
+    if len(lines) <= count:
+        return lines
+    return [*lines[: count - 1], _cut(" ".join(lines[count - 1 :]), width)]
+
+
+def _cut(line: str, width: int) -> str:
+    return line if len(line) <= width else f"{line[: max(width - 1, 0)]}…"
 
 
 def html_of(record: object) -> str:
@@ -65,6 +121,8 @@ def html_of(record: object) -> str:
 def _content(record: object) -> tuple[str, list[Row]]:
     if isinstance(record, Headlined):
         title, rows = record.headlines()
+    elif isinstance(record, Plottable) and (figures := record.main_figures()) is not None:
+        title, rows = figures
     else:
         title, rows = type(record).__name__, list(_field_rows(record))
     rows = [(name, " ".join(text.split())) for name, text in rows]
@@ -76,6 +134,10 @@ def _content(record: object) -> tuple[str, list[Row]]:
 
 
 def _field_rows(record: object) -> Iterator[Row]:
+    """Yield the fields of a dataclass; the parts of a sequence of records."""
+    if isinstance(record, tuple):
+        yield from ((str(number), described_value(part)) for number, part in enumerate(record, start=1))
+        return
     for field in fields(record):  # type: ignore[arg-type]
         value = getattr(record, field.name)
         if field.repr and value is not None:

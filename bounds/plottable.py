@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -42,6 +43,20 @@ class Plottable:
         """
         frame: pandas.DataFrame = _program("to_dataframe").dataframe(self, view)
         return frame
+
+    def main_figures(self) -> tuple[str, list[tuple[str, str]]] | None:
+        """Return the title and the main figures of the report, rows of name and text.
+
+        None where the program that draws is not loaded or not installed.
+        """
+        if "lineofaction" not in sys.modules:
+            return None
+        try:
+            report = import_module("lineofaction.report.summary")
+        except ModuleNotFoundError:  # the base installation has no plots
+            return None
+        title_and_rows: tuple[str, list[tuple[str, str]]] | None = report.summary(self)
+        return title_and_rows
 
 
 def _program(method: str) -> Any:

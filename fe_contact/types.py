@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import Any
 
 from bounds.error_digits import with_error
 from bounds.types import BoolArray, ComplexArray, FloatArray, IntArray, Json
+from host.extras import MissingExtra
 
 __all__ = ["BoolArray", "ComplexArray", "Estimate", "FloatArray", "IntArray", "Json", "Status"]
 _UNITS = {
@@ -17,6 +19,8 @@ _UNITS = {
     "N/m": {"N/mm": 1e3, "N/um": 1e6},
 }
 """Sizes of the units in which a number of an SI unit can be written."""
+_DEVIATIONS = 2.0
+"""Standard deviations in the half-width of an error band, which covers about 95 % of the true errors."""
 
 
 class Status(IntEnum):
@@ -51,6 +55,9 @@ class Estimate:
         """Return the number with its error, in µm and MPa where the unit is m or Pa."""
         return self._written({"m": "um", "Pa": "MPa"}.get(self.unit, self.unit))
 
+    def _repr_html_(self) -> str:
+        return str(self)
+
     def __format__(self, unit: str) -> str:
         """Return the number with its error in a unit (``f"{ripple:um}"``), to two digits of the error.
 
@@ -62,6 +69,18 @@ class Estimate:
             known = ", ".join((self.unit, *_UNITS.get(self.unit, {})))
             raise ValueError(f"a number in {self.unit or '1'} is not written in {unit}; units: {known}")
         return self._written(unit)
+
+    def ufloat(self) -> Any:
+        """Return a number of `uncertainties`, which carries errors through arithmetic.
+
+        The half-width of the band counts as two standard deviations; NaN where no error is stated. The number
+        is in `unit`. Raises `MissingExtra`: the extra ``uncertainties`` is not installed.
+        """
+        try:
+            from uncertainties import ufloat  # noqa: PLC0415 (an extra)
+        except ModuleNotFoundError:
+            raise MissingExtra("uncertainties", "uncertainties") from None
+        return ufloat(self.value, self.error / _DEVIATIONS)
 
     def _written(self, unit: str) -> str:
         one = _UNITS.get(self.unit, {}).get(unit, 1.0)

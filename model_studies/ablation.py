@@ -12,9 +12,9 @@ from typing import Any, Generic, Protocol, TypeVar
 import numpy as np
 
 from bounds.brief import brief
-from bounds.plottable import Plottable
 from bounds.types import FloatArray, Json
 from model_studies.record import in_unit, under_key
+from model_studies.result_record import ResultRecord
 
 TRIFLE = 1e-3
 """Relative change below which an effect is negligible: a report lists such effects together."""
@@ -95,7 +95,7 @@ A = TypeVar("A", bound=EffectAblation[Any, Any])
 
 @brief
 @dataclass(frozen=True)
-class Ablation(Plottable, Generic[F, A]):
+class Ablation(ResultRecord, Generic[F, A]):
     """All effects of a request, each toggled by itself."""
 
     nominal: F

@@ -16,8 +16,9 @@ from typing import Any, TypeVar, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
-from model_studies.array_file import Stored, read_arrays, write_arrays
+from model_studies.array_file import Stored, arrays_content, read_arrays
 from model_studies.netcdf import DAMAGE, UnreadableFile
+from model_studies.netcdf_content import NetcdfContent
 from model_studies.record import key_of
 
 IN_VARIABLE = "variable"
@@ -53,15 +54,19 @@ class _FieldVariable:
 
 
 def write_record(record: Any, path: Path, schema: str) -> None:
-    """Write a dataclass; its file appears whole or not at all.
+    """Write the file of `record_content`; it appears whole or not at all."""
+    record_content(record, schema).write(path)
+
+
+def record_content(record: Any, schema: str) -> NetcdfContent:
+    """Return the content of the file of a dataclass.
 
     A field whose metadata are `model_studies.record.NOT_STORED` is left out.
     """
     columns: dict[_FieldVariable, list[Any]] = {}
     rest = _split(type(record), record, _FieldVariable(), columns)
     arrays = {variable: np.stack(rows) if variable.row else rows[0] for variable, rows in columns.items()}
-    write_arrays(
-        path,
+    return arrays_content(
         schema,
         {variable.name: variable.stored(values.ndim) for variable, values in arrays.items()},
         {variable.name: values for variable, values in arrays.items()},

@@ -91,11 +91,21 @@ def _filled(text: str) -> str:
 
 
 def definition(figure: Figure, usual: Mapping[str, str] = MappingProxyType({})) -> str:
-    """Return the entry of a field: its name, meaning, bounds and default; not those that are `usual`."""
+    """Return the entry of a field: its name, meaning, bounds and default.
+
+    Bounds that are `usual`, and a meaning that the name says, are left out.
+    """
     bounds = f"{accepted(figure)}; {default(figure)}"
-    text = f"{figure.what.description}." + ("" if usual.get(_end(figure)) == bounds else f" {bounds}.")
+    meaning = "" if _is_named(figure) else f"{figure.what.description}. "
+    text = f"{figure.what.description}." if usual.get(_end(figure)) == bounds else f"{meaning}{bounds}."
     lines = fill(text, LINE, initial_indent=": ", subsequent_indent="  ", break_on_hyphens=False)
     return f"`{figure.field}`\n{lines}"
+
+
+def _is_named(figure: Figure) -> bool:
+    """Whether every word of a field's description stands in its name."""
+    words = figure.what.description.replace("'", "").lower().split()
+    return set(words) <= set(figure.field.split("_"))
 
 
 def accepted(figure: Figure) -> str:

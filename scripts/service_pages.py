@@ -35,14 +35,17 @@ def table(titles: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> str:
 
 
 def verbs(text: str) -> str:
-    """Return a table of the verbs; those with a section of the page link to it."""
+    """Return a table of the verbs by the main clause of their help; those with a section link to it."""
     descriptions = dict(commands(get_command(app), "loa"))
     for name, study in STUDIES.items():
         descriptions.setdefault(f"loa {name}", study.description)
     linked = {verb: f"[`{verb}`](#{verb.replace(' ', '-')})" for verb in re.findall(r"\n## `(.+)`\n", text)}
     return table(
         ("verb", "what it does"),
-        ((linked.get(verb, f"`{verb}`"), descriptions[verb]) for verb in descriptions),
+        (
+            (linked.get(verb, f"`{verb}`"), f"{re.split('[:;] |[.]$', text)[0]}.")
+            for verb, text in descriptions.items()
+        ),
     )
 
 

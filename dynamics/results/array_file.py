@@ -5,15 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, fields
 from pathlib import Path
-from typing import Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
 from dynamics.errors import ResultError
 from dynamics.types import Json
-from model_studies.array_file import Stored, read_arrays, write_arrays
+from model_studies.array_file import Stored, arrays_content, read_arrays
 from model_studies.netcdf import UnreadableFile
+from model_studies.netcdf_content import NetcdfContent
 from model_studies.record import key_of
+
+if TYPE_CHECKING:
+    import xarray
 
 
 def stored(units: str, text: str, *dimensions: str) -> dict[str, Stored]:
@@ -44,13 +48,20 @@ class ArrayFile:
 
         Complex arrays get a last dimension of real and imaginary part.
         """
+        self._content().write(Path(path))
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Return the content of the file as arrays with names and units; what is no array is an attribute."""
+        return self._content().to_xarray()
+
+    def _content(self) -> NetcdfContent:
         values = {item.name: getattr(self, item.name) for item in fields(self)}  # type: ignore[arg-type]
         kinds = self.arrays()
         arrays = {name: np.asarray(values.pop(name)) for name in kinds}
         values |= {name: asdict(values[name]) for name in self.RECORDS}
         keys = self._keys()
         rest = {keys[name]: value for name, value in values.items()}
-        write_arrays(Path(path), self.SCHEMA, kinds, arrays, rest)
+        return arrays_content(self.SCHEMA, kinds, arrays, rest)
 
     @classmethod
     def from_netcdf(cls, path: str | Path) -> Self:

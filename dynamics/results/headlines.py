@@ -29,7 +29,9 @@ class Run(Protocol):
     @property
     def bearing(self) -> Sequence[str]: ...  # noqa: D102
     @property
-    def mesh_force(self) -> FloatArray: ...  # noqa: D102
+    def least_mesh_force(self) -> FloatArray: ...  # noqa: D102
+    @property
+    def largest_mesh_force(self) -> FloatArray: ...  # noqa: D102
     @property
     def dynamic_transmission_error(self) -> FloatArray: ...  # noqa: D102
     @property
@@ -56,16 +58,18 @@ def _counted(count: int, part: str) -> str:
 
 
 def _meshes(run: Run) -> Iterator[Row]:
-    """Yield transverse force and dynamic transmission error of meshes."""
+    """Yield transverse force, between samples as within them, and dynamic transmission error of meshes."""
     if not run.time.size:
         return
-    maximum = run.mesh_force.max(axis=1, initial=0.0)
-    for at in np.argsort(-maximum)[:MAX_PARTS]:
-        force, error = run.mesh_force[at], 1e6 * run.dynamic_transmission_error[at]
+    least = run.least_mesh_force.min(axis=1, initial=np.inf)
+    largest = run.largest_mesh_force.max(axis=1, initial=0.0)
+    for at in np.argsort(-largest)[:MAX_PARTS]:
+        force = f"{engineering(float(least[at]), 3)} to {engineering(float(largest[at]), 4)}"
+        error = 1e6 * run.dynamic_transmission_error[at]
         swing = engineering(float(np.ptp(error)), 3)
         yield (
             f"mesh {run.mesh[at]}",
-            f"force {_range(force)} N, transmission error mean {engineering(float(error.mean()), 4)} µm, "
+            f"force {force} N, transmission error mean {engineering(float(error.mean()), 4)} µm, "
             f"peak-to-peak {swing} µm",
         )
 
@@ -77,7 +81,3 @@ def _bearings(run: Run) -> Iterator[Row]:
     radial = np.hypot(run.bearing_force[:, 0], run.bearing_force[:, 1]).max(axis=1)
     for at in np.argsort(-radial)[:MAX_PARTS]:
         yield f"bearing {run.bearing[at]}", f"radial force up to {engineering(float(radial[at]), 4)} N"
-
-
-def _range(values: FloatArray) -> str:
-    return f"{engineering(float(values.min()), 3)} to {engineering(float(values.max()), 4)}"

@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from bounds import Declared, Kind, between, declared, described, integers, required
+from bounds.brief import concise
 from fe_contact.body import CLAMPED, BoreSeat, GearBlank, Web
 from fe_contact.geometry.basic_rack import BasicRack
 from fe_contact.geometry.form_point import FormPoint, find_form_point
@@ -44,6 +45,7 @@ _SECTOR = Declared(
 )
 
 
+@concise
 @described
 @dataclass(frozen=True)
 class Gear(Toothing):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
+from bounds.brief import concise
 from fe_contact.geometry.backlash import reference_center_distance
 from fe_contact.geometry.gear import Gear
 from fe_contact.geometry.pair_feasibility import refuse_infeasible_pair, refuse_strangers
@@ -14,6 +15,7 @@ from fe_contact.geometry.ring_pair_feasibility import refuse_trimming_interferen
 from fe_contact.geometry.trimming import radial_clearance
 
 
+@concise
 @dataclass(frozen=True)
 class GearPair(ParallelAxes):
     """Gear 1 (`pinion`) drives gear 2 (`wheel`).
@@ -43,6 +45,7 @@ class GearPair(ParallelAxes):
         )
 
 
+@concise
 @dataclass(frozen=True)
 class InternalGearPair(ParallelAxes):
     """The external gear (`pinion`, gear 1) drives the ring gear (`wheel`, gear 2); see `ParallelAxes`.

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import ClassVar
 
 from bounds import Declared, Kind, declared, described, integers, required, up_to
+from bounds.brief import concise
 from fe_contact.errors import integer
 from fe_contact.geometry.basic_rack import ROOT_RADIUS, BasicRack
 from fe_contact.geometry.cutter_trochoid import CutterTrochoid
@@ -32,6 +33,7 @@ _TEETH = "Teeth z_0 of the pinion cutter; fewer than the ring gear's"
 _SHIFT = "Profile shift x_0 of the cutter in normal modules; large when new"
 
 
+@concise
 @described
 @dataclass(frozen=True)
 class RingGear(Toothing):

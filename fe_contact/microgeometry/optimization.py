@@ -18,7 +18,6 @@ import numpy as np
 
 from bounds import engineering
 from bounds.brief import brief
-from bounds.plottable import Plottable
 from fe_contact.analysis.request.request import Checked
 from fe_contact.errors import increasing
 from fe_contact.geometry import ParallelAxes
@@ -34,6 +33,7 @@ from fe_contact.options import AnalysisOptions, Levels
 from fe_contact.types import Estimate, FloatArray, IntArray, Json
 from model_studies import in_unit
 from model_studies.record import under_key
+from model_studies.result_record import ResultRecord
 
 MAP_PARTS = np.arange(1, 11) / 8.0
 """Further torques of the Harris map over the largest design torque: up to 1.25."""
@@ -202,7 +202,7 @@ class Perturbation:
 
 @brief
 @dataclass(frozen=True)
-class Optimization(Plottable):
+class Optimization(ResultRecord):
     """Result of `optimize`."""
 
     outcome: Outcome

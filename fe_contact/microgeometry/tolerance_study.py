@@ -15,7 +15,6 @@ import numpy as np
 
 from bounds import MAX_BYTES, at_most
 from bounds.brief import brief
-from bounds.plottable import Plottable
 from fe_contact.analysis.request.request import Checked
 from fe_contact.errors import InputError, SolveError, integer, within
 from fe_contact.geometry import ParallelAxes
@@ -48,6 +47,7 @@ from fe_contact.options import AnalysisOptions, Levels, Run
 from fe_contact.types import FloatArray, Json
 from model_studies import in_unit
 from model_studies.record import under_key
+from model_studies.result_record import ResultRecord
 from model_studies.spread import quantile_bounds, rank_correlation
 from model_studies.stage_clock import StageClock
 
@@ -140,7 +140,7 @@ class WithinClass:
 
 @brief
 @dataclass(frozen=True)
-class ToleranceStudy(Plottable):
+class ToleranceStudy(ResultRecord):
     """Peak-to-peak of N pairs at L torques."""
 
     torque: FloatArray = field(metadata=in_unit("n_m", "torque"))

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, TypedDict, Unpack
+from typing import TYPE_CHECKING, Any, TypedDict, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -57,6 +57,10 @@ def _by_order(grid: LevelGrid) -> FloatArray:
     for (position, misalignment, distance), entry in grid.nodal.items():
         numbers[misalignment, distance, position] = np.moveaxis(entry, 0, 2)
     return numbers
+
+
+def _of_fields(kind: type[SteDatabase], values: dict[str, Any]) -> SteDatabase:
+    return kind(**values)
 
 
 class _StoredPoint(TypedDict, total=False):
@@ -188,6 +192,10 @@ class SteDatabase(SteFields, Plottable):
     def to_xarray(self) -> xarray.Dataset:
         """Return the same content with names, units and coordinates."""
         return netcdf.content(self).to_xarray()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle and copy by the fields, whose arrays stay read-only; what follows from them is made anew."""
+        return _of_fields, (type(self), {item.name: getattr(self, item.name) for item in fields(self)})
 
     @cached_property
     def _mesh_force(self) -> MeshForce:

@@ -25,7 +25,6 @@ from lineofaction.cli.output import (
     print_headlines,
     print_json,
     print_written,
-    progress_bar,
     table,
 )
 from lineofaction.cli.tolerance_lines import NODES, tolerance_lines, tolerance_warnings
@@ -41,6 +40,7 @@ from lineofaction.gearbox.convert.effects import (
 )
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import JobFailed
+from lineofaction.gearbox.progress_bars import progress_bar
 from lineofaction.gearbox.units import UM
 from lineofaction.report.ste.headlines import static_headlines
 
@@ -170,7 +170,7 @@ def _inserted(axes: dict[str, Any], newton_metre: float) -> Iterator[str]:
     """Yield the values of each axis that were inserted to meet the tolerance; `newton_metre` in N."""
     for axis, (name, unit, word) in ({"force": ("loads", newton_metre, "N m")} | NODES).items():
         if inserted := axes.get(axis, {}).get("inserted"):
-            values = ", ".join(f"{value / unit:.4g}" for value in inserted)
+            values = ", ".join(engineering(value / unit, 4) for value in inserted)
             yield f"{name} inserted for interpolation: {values} {word}"
 
 

@@ -1,4 +1,4 @@
-"""Output of the verbs: JSON or tables on standard output, progress on standard error."""
+"""Output of the verbs on standard output: JSON or tables."""
 
 from __future__ import annotations
 
@@ -8,23 +8,18 @@ import json
 import os
 import re
 import sys
-import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rich.console import Console, Group
 from rich.highlighter import RegexHighlighter
-from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 from rich.text import Text
 from rich.theme import Theme
 
 from lineofaction.cli.verb_warnings import in_lines, warnings_so_far
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.stages import TimeLeft
-from model_studies.progress import silent, stage_name
 
 if TYPE_CHECKING:
     from lineofaction.report.drawing.figure import Table as Drawn
@@ -241,35 +236,6 @@ def csv_text(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows((head, *rows))
     return text.getvalue()
-
-
-@contextmanager
-def progress_bar(stages: Iterable[tuple[str, float]] = ()) -> Iterator[Report]:
-    """Yield ``report(stage, fraction)``; it draws on standard error if that is a terminal, else nothing.
-
-    What is left is that of the whole work: its `stages`, names with their usual shares in the order in which
-    they are done, by the time that those before took. Of work without known stages each bar has its own.
-    """
-    if not sys.stderr.isatty():
-        yield silent
-        return
-    columns = (TextColumn("{task.description:<14}"), BarColumn(), TextColumn("{task.percentage:>3.0f} %"))
-    clocks = (TimeElapsedColumn(), TextColumn("{task.fields[left]}"))
-    left = TimeLeft(stages, time.monotonic())
-    with Progress(*columns, *clocks, console=Console(stderr=True)) as bars:
-        tasks: dict[str, TaskID] = {}
-        announced_costs: dict[str, str] = {}  # a cost that was announced stays
-
-        def report(stage: str, fraction: float) -> None:
-            name = stage_name(stage)
-            if name not in tasks:
-                tasks[name] = bars.add_task(stage, total=1.0, left="")
-            announced_costs[name] = stage if stage != name else announced_costs.get(name, stage)
-            done = min(max(fraction, 0.0), 1.0)
-            text = left.text(name, done, time.monotonic())
-            bars.update(tasks[name], description=announced_costs[name], completed=done, left=text)
-
-        yield report
 
 
 def output_of(output: Path | None, project: Path | None, name: str) -> Path:

@@ -15,7 +15,6 @@ from bounds.types import Json
 from host import cpu_seconds
 from host.directories import cache_home
 from lineofaction.cli.costs import announce_cost, study_cost, tables_cost, written_out
-from lineofaction.cli.interrupts import until_interrupted
 from lineofaction.cli.output import (
     check_writable,
     console,
@@ -24,10 +23,8 @@ from lineofaction.cli.output import (
     print_json,
     print_parts,
     print_written,
-    progress_bar,
 )
 from lineofaction.cli.scene_tables import tabled_scene
-from lineofaction.cli.study_cache import cached_workers
 from lineofaction.cli.subjects import assessed_scene, inputs_of_study
 from lineofaction.cli.verb_warnings import in_lines, messages, warn, warnings_so_far
 from lineofaction.gearbox.convert.case import case_json
@@ -36,8 +33,10 @@ from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.complaint import marks_of_case
 from lineofaction.gearbox.executor import open_executor
 from lineofaction.gearbox.input_file import InputFile
+from lineofaction.gearbox.interrupts import until_interrupted
 from lineofaction.gearbox.number_list import number_list
 from lineofaction.gearbox.problems import BadInput, JobFailed
+from lineofaction.gearbox.progress_bars import progress_bar
 from lineofaction.gearbox.project import result_name
 from lineofaction.gearbox.registry import SUFFIX
 from lineofaction.gearbox.result_files import COMPLAINT, stamp, stamp_scene
@@ -49,6 +48,7 @@ from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.spelling import item_type, spelling_of
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.study import Study
+from lineofaction.gearbox.study_cache import cached_workers
 from lineofaction.report.document import read_run, write_page
 from lineofaction.report.document import write as write_result
 from lineofaction.report.drawing.marks import marked_page_of_case

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, get_origin
+from typing import Any
 
 from bounds.types import Json
 from dynamics.errors import DynamicsError
@@ -457,7 +457,7 @@ def study_of(result: Any) -> Study:
     """Return the study that makes results of this type; raises `BadInput`: none does."""
     for study in STUDIES.values():
         kind = study.run.file.result
-        if isinstance(result, tuple if get_origin(kind) is tuple else kind):
+        if isinstance(result, kind):
             return study
     kind = type(result).__name__
     remedy = "Tables and runs: write them to netCDF, then loa report."

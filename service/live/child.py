@@ -16,6 +16,7 @@ import sys
 import tempfile
 import threading
 from dataclasses import dataclass
+from types import FrameType
 from typing import BinaryIO
 
 from host import kill_process_group, lower_priority
@@ -26,6 +27,10 @@ from service.worker.usage import begin_work, hold_to
 
 _NICENESS = 5
 """Niceness of live workers, less than that of jobs: somebody waits for the answer."""
+_IMPORT_S = 0.05
+"""Time after which a stop that met an import is asked for again."""
+_IMPORTS = "importlib._bootstrap"
+"""Module that every import runs through."""
 
 
 @dataclass(frozen=True)
@@ -103,14 +108,30 @@ class _Stop:
 
     def ask_for(self, number: int) -> None:
         """Let the main thread stop the work on an order; from any thread."""
-        self._requested = number
+        self._requested = max(self._requested, number)
         _thread.interrupt_main()
 
-    def heed(self, _signal: int, _frame: object) -> None:
-        """Stop the work in progress, if it is on that order."""
-        if self._at_work and self._requested == self._begun:
-            self._at_work = False
-            raise _Stopped
+    def heed(self, _signal: int, frame: FrameType | None) -> None:
+        """Stop the work in progress, if it is on that order; an import in progress ends first.
+
+        A package whose import is broken off stays half loaded, and no later import of it succeeds.
+        """
+        if not (self._at_work and self._requested == self._begun):
+            return
+        if _imports(frame):
+            threading.Timer(_IMPORT_S, self.ask_for, (self._requested,)).start()
+            return
+        self._at_work = False
+        raise _Stopped
+
+
+def _imports(frame: FrameType | None) -> bool:
+    """Whether a frame is within an import."""
+    while frame is not None:
+        if frame.f_globals.get("__name__") == _IMPORTS:
+            return True
+        frame = frame.f_back
+    return False
 
 
 if __name__ == "__main__":

@@ -8,7 +8,9 @@ with all their images.
 
 from __future__ import annotations
 
+import copy
 import json
+import pickle
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from importlib import import_module
@@ -28,6 +30,8 @@ from PIL import Image
 from pydantic import ValidationError
 from typer.testing import CliRunner
 
+import lineofaction as loa
+from bounds.brief import MAX_LINES, WIDTH
 from lineofaction.cli.commands import app
 from lineofaction.cli.output import print_json
 from lineofaction.cli.run_study import _show, _writers
@@ -171,6 +175,22 @@ def verb_of_study(reading: Reading) -> None:
     print_json(study.run.figures(result))
 
 
+def python_prompt(reading: Reading) -> None:
+    """Show, copy and compare a result as a user of Python does."""
+    result = loa.read(reading.result.path)
+    lines = repr(result).split("\n")
+    assert 2 < len(lines) <= MAX_LINES and max(map(len, lines)) <= WIDTH, lines
+    assert "<table>" in result._repr_html_()
+    for other in (
+        pickle.loads(pickle.dumps(result)),
+        copy.deepcopy(result),
+        loa.read(reading.result.path),
+    ):
+        assert other is not result and other == result
+    assert result != 0
+    assert result.to_xarray().attrs
+
+
 READERS: tuple[Callable[[Reading], None], ...] = (
     figures_as_json,
     drawings,
@@ -183,6 +203,7 @@ READERS: tuple[Callable[[Reading], None], ...] = (
     exports,
     curves,
     verb_of_study,
+    python_prompt,
 )
 
 

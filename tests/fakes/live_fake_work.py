@@ -28,6 +28,13 @@ def hang(_inputs: dict[str, Any]) -> dict[str, Any]:
         time.sleep(0.05)
 
 
+def load_slowly(_inputs: dict[str, Any]) -> dict[str, Any]:
+    """Import a module that takes a while; return how often an import of it began."""
+    from live_slow_import import attempts  # noqa: PLC0415 (the import is the work)
+
+    return {"attempts": attempts()}
+
+
 def plan(inputs: dict[str, Any]) -> dict[str, Any]:
     """Return a plan; never, where a budget is stated."""
     return hang(inputs) if inputs.get("time_budget_s") else {"prediction": {"stages": {"all": 0.5}}}

@@ -160,10 +160,10 @@ def run_python(code: str, folder: Path, warnings: str = "error") -> subprocess.C
 
 
 @pytest.mark.chain  # by the bodies of its tutorial
-def test_the_helical_example_has_five_lines_and_runs(tmp_path: Path, condensed_bodies: Path) -> None:
+def test_the_helical_example_has_six_lines_and_runs(tmp_path: Path, condensed_bodies: Path) -> None:
     find_condensed(condensed_bodies, tmp_path / "cache" / "lineofaction")
     code = blocks("python")[0]
-    assert len([line for line in code.splitlines() if line]) == 5
+    assert len([line for line in code.splitlines() if line]) == 6
     value, error = map(float, re.findall(r"[\d.]+", run_python(code, tmp_path).stdout))  # "0.565 ± 0.051 µm"
     assert value == pytest.approx(0.56, abs=error)  # docs/tutorials/helical-ev-pair.md
     assert error < 0.2 * value

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bounds.brief import MAX_LINES, WIDTH, Row, brief, described_value, html_of, text_of
+from bounds.brief import MAX_LINES, WIDTH, Row, brief, concise, described_value, html_of, text_of
 
 
 class Side(Enum):
@@ -91,3 +91,29 @@ def test_no_record_takes_more_than_a_dozen_lines(values: list[Any]) -> None:
     lines = repr(kind(*values)).split("\n")
     assert len(lines) <= MAX_LINES
     assert max(map(len, lines)) <= WIDTH
+
+
+def test_long_rows_are_wrapped_while_there_are_lines_and_cut_then() -> None:
+    @brief
+    @dataclass(frozen=True)
+    class Notes:
+        first: str
+        second: str = "end"
+
+    lines = repr(Notes("word " * 40)).split("\n")
+    assert len(lines) == 1 + 3 + 1 and lines[2].startswith(" " * 10 + "word") and lines[-1].endswith("end")
+    lines = repr(Notes("word " * 900)).split("\n")
+    assert len(lines) == MAX_LINES and lines[-2].endswith("…") and lines[-1].endswith("end")
+    assert max(map(len, lines)) <= WIDTH
+
+
+def test_a_call_leaves_out_what_has_its_default() -> None:
+    @concise
+    @dataclass(frozen=True)
+    class Wheel:
+        teeth: int
+        width: float = 0.02
+        slopes: dict[str, float] = field(default_factory=dict)
+
+    assert repr(Wheel(20)) == "Wheel(teeth=20)"
+    assert repr(Wheel(20, 0.03, {"a": 1.0})) == "Wheel(teeth=20, width=0.03, slopes={'a': 1.0})"

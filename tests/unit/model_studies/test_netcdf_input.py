@@ -21,12 +21,13 @@ from lineofaction.gearbox.result_figures import run_json
 from lineofaction.gearbox.result_files import case_of_file, stamped
 from lineofaction.report.document import file_attributes
 from model_studies import netcdf as netcdf_input
-from model_studies.array_file import Stored, read_arrays, write_arrays
+from model_studies.array_file import Stored, arrays_content, read_arrays
 from model_studies.netcdf import UnreadableFile, opened, read_dataset
 
 
 def write_own(file: Path) -> None:
-    write_arrays(file, "own", {"mass": Stored(("row",), "kg", "mass")}, {"mass": np.arange(8.0)}, {})
+    stored = {"mass": Stored(("row",), "kg", "mass")}
+    arrays_content("own", stored, {"mass": np.arange(8.0)}, {}).write(file)
 
 
 WRITERS: dict[str, tuple[Callable[[Path], Any], str]] = {

@@ -31,8 +31,6 @@ def without_a_screen() -> Iterator[None]:
 
 
 def _kinds(result: Any) -> tuple[Any, ...]:
-    if get_origin(result) is tuple:
-        return ()  # several results of one study: loa.plot draws them
     return get_args(result) or (result,)
 
 

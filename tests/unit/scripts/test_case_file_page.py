@@ -6,6 +6,7 @@ from pathlib import Path
 
 import case_file_page
 
+from dynamics.housings import Material
 from fe_contact.flank.modification import FlankModification
 from lineofaction.gearbox.schemas.declared import figures
 
@@ -35,6 +36,12 @@ def test_an_entry_says_the_unit_the_bounds_and_the_default() -> None:
     assert "`tip_relief_shape`\n: Tip relief over its length." in entries
     assert any(entry.endswith(" -1000 to 1000; default 0.") for entry in entries)
     assert any(entry.endswith(" 5 to 85; default 30.") for entry in entries)
+
+
+def test_a_meaning_that_the_name_says_is_left_out() -> None:
+    entries = {figure.field: case_file_page.definition(figure) for figure in figures(Material)}
+    assert entries["youngs_modulus_gpa"].startswith("`youngs_modulus_gpa`\n: 0.001 to 2000; ")
+    assert entries["thermal_expansion_per_k"].startswith("`thermal_expansion_per_k`\n: Coefficient of ")
 
 
 def test_a_list_keeps_the_entries_of_others_and_renews_its_own() -> None:

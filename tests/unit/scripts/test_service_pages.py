@@ -22,7 +22,10 @@ def test_the_tables_are_current(name: str, tables: list[str]) -> None:
 
 def test_a_verb_links_to_its_section_and_a_default_is_one_value() -> None:
     verbs = service_pages.verbs("\n## `loa ste`\n")
-    assert "| [`loa ste`](#loa-ste) | Print one STE curve" in verbs and "| `loa keys add` |" in verbs
+    assert (
+        "| [`loa ste`](#loa-ste) | Print one STE curve of a database. |" in verbs
+        and "| `loa keys add` |" in verbs
+    )
     assert "`samples` (1000)" in service_pages.processes(DESCRIPTION)
     assert service_pages.default({"default": []}) == service_pages.default({}) == ""
     assert service_pages.default({"default": True}) == " (true)"

@@ -81,6 +81,17 @@ def test_an_answer_that_becomes_obsolete_is_stopped_and_the_worker_goes_on(pool:
     assert (found["asked"], found["pid"]) == (["a", "newest"], first)  # it has lost nothing
 
 
+def test_a_stop_breaks_off_no_import(pool: LivePool) -> None:
+    """Else a package stays half loaded, and every later question that needs it fails."""
+    first = answer(pool.ask(order("echo", word="a")))["pid"]
+    loading = pool.ask(order("load_slowly"), SLIDER)
+    until(loading.running)
+    newest = pool.ask(order("echo", word="newest"), SLIDER)
+    assert answer(newest)["pid"] == first
+    assert isinstance(loading.exception(timeout=PATIENCE_S), Superseded | None)
+    assert answer(pool.ask(order("load_slowly"))) == {"attempts": 1}
+
+
 def test_one_that_heeds_no_stop_is_killed(tmp_path: Path) -> None:
     pool = LivePool(tmp_path, AnswerTimes(obsolete_s=0.1, to_stop_s=0.3))
     running = pool.ask(order("deaf"), SLIDER)

@@ -9,10 +9,10 @@ from functools import cached_property
 import numpy as np
 
 from bounds.brief import brief
-from bounds.plottable import Plottable
 from bounds.types import Json
 from fe_contact.types import FloatArray
 from model_studies import in_unit
+from model_studies.result_record import ResultRecord
 from model_studies.spread import quantiles, rank_correlation
 
 ALL = "all"
@@ -55,7 +55,7 @@ def _banded(levels: FloatArray, below: FloatArray, above: FloatArray) -> FloatAr
 
 @brief
 @dataclass(frozen=True)
-class FlankChange(Plottable):
+class FlankChange(ResultRecord):
     """Levels of N pairs with the flanks before and after a change, pair by pair with the same deviations."""
 
     mesh: str

@@ -15,7 +15,6 @@ from pathlib import Path
 import numpy as np
 
 from bounds.brief import brief
-from bounds.plottable import Plottable
 from bounds.types import Json
 from dynamics.assembly.assemble import System, assemble
 from dynamics.errors import InputError, SolveError
@@ -52,6 +51,7 @@ from lineofaction.gearbox.studies.modes.run import modes_cost
 from lineofaction.gearbox.studies.scene_before_tables import scene_before_tables, sized
 from model_studies import in_unit
 from model_studies.record import under_key
+from model_studies.result_record import ResultRecord
 
 REACH = 2.0
 """Least amplification by a mode within reach, 6 dB: response of the mode over its static response."""
@@ -93,7 +93,7 @@ class OrderForce:
 
 @brief
 @dataclass(frozen=True)
-class AnsweredComplaint(Plottable):
+class AnsweredComplaint(ResultRecord):
     """The answer to a complaint: forces and modes near its order."""
 
     complaint: Complaint

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from bounds.brief import brief
-from bounds.plottable import Plottable
 from bounds.types import FloatArray, IntArray, Json
 from dynamics.deflection import Deflection
 from dynamics.effects.ledger import mechanism_of
@@ -15,6 +14,7 @@ from dynamics.scene import Scene
 from dynamics.shafts import Shaft
 from model_studies import in_unit
 from model_studies.record import under_key
+from model_studies.result_record import ResultRecord
 
 HARMONICS = 5
 RIGID_DIAMETER = 0.08
@@ -106,7 +106,7 @@ class Outline:
 
 @brief
 @dataclass(frozen=True)
-class GearboxDeflection(Plottable):
+class GearboxDeflection(ResultRecord):
     """The deflection of a gearbox and the results of its meshes at the deflected alignment."""
 
     deflection: Deflection

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bounds.brief import brief
-from bounds.plottable import Plottable
 from bounds.types import Json
 from dynamics.acoustics import Recording, SoundFigures, sound_figures
 from dynamics.acoustics.sound_quality import is_steady
@@ -27,6 +26,7 @@ from lineofaction.gearbox.studies.computation import Computation, Means, record_
 from lineofaction.gearbox.studies.housings import no_surface, require_surface
 from lineofaction.gearbox.studies.listen import ONE_RECEIVER, REMEDY, Inputs, ListenFigures
 from lineofaction.gearbox.units import MM
+from model_studies.result_record import ResultRecord
 
 PRINCIPAL = "principal"
 """Name of the direction of the largest motion of a point."""
@@ -132,7 +132,7 @@ class Receiver:
 
 @brief
 @dataclass(frozen=True)
-class HeardRun(Plottable):
+class HeardRun(ResultRecord):
     """A run through the housings of a scene."""
 
     run: str

@@ -9,7 +9,6 @@ import numpy as np
 
 from bounds import engineering
 from bounds.brief import brief
-from bounds.plottable import Plottable
 from bounds.types import Json
 from fe_contact.microgeometry.optimization import Outcome, excess, gain_of, outcome_of
 from fe_contact.microgeometry.search import SearchRun
@@ -17,6 +16,7 @@ from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.types import Estimate, FloatArray
 from lineofaction.gearbox.studies.change.result import ALL, AUDIBLE, HIGH, LOW, MEDIAN
 from model_studies import in_unit
+from model_studies.result_record import ResultRecord
 from model_studies.spread import quantiles
 
 FALL = 25.0
@@ -71,7 +71,7 @@ class HeardDesign:
 
 @brief
 @dataclass(frozen=True)
-class HeardOptimization(Plottable):
+class HeardOptimization(ResultRecord):
     """The start and the optimum of a search for the quietest flanks."""
 
     mesh: str

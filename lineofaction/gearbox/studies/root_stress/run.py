@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from bounds.brief import brief
-from bounds.plottable import Plottable
 from bounds.types import Json
 from fe_contact.analysis.flanks.root_stress import root_stress, stress_seconds
 from fe_contact.analysis.flanks.root_stress_history import ROOTS, RootPassage, RootPeak, RootStressHistory
@@ -19,6 +18,7 @@ from lineofaction.gearbox.studies.computation import Means, PointStudy, record_f
 from lineofaction.gearbox.studies.cost import StudyCost, Work
 from lineofaction.gearbox.studies.root_stress import Inputs, RootStressFigures
 from model_studies import in_unit
+from model_studies.result_record import ResultRecord
 
 GEARS = ("pinion", "wheel")
 
@@ -39,7 +39,7 @@ class _GearRoots:
 
 @brief
 @dataclass(frozen=True)
-class Roots(Plottable):
+class Roots(ResultRecord):
     """Tooth-root stress of both gears at one load and one alignment, in SI units."""
 
     pinion: _GearRoots

@@ -7,11 +7,12 @@ from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from bounds.brief import brief
+from bounds.brief import brief, html_of, text_of
+from bounds.plottable import Plottable
 from bounds.types import Json
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.run_plan import predicted_designs
@@ -27,7 +28,10 @@ from lineofaction.gearbox.studies.cost import StudyCost, Work
 from lineofaction.gearbox.studies.sensitivity import Inputs, SensitivityFigures
 from lineofaction.gearbox.units import UM
 from model_studies import Progress, in_unit
-from model_studies.record_file import read_record, write_record
+from model_studies.record_file import read_record, record_content, write_record
+
+if TYPE_CHECKING:
+    import xarray
 
 SCHEMA = "lineofaction sensitivity study"
 _USUAL: tuple[tuple[float, ...], ...] = (
@@ -61,14 +65,25 @@ class PairStudy:
     """Torque on the driving gear, N m; NaN in files of earlier versions."""
 
 
-Studies = tuple[PairStudy, ...]
+class Studies(tuple[PairStudy, ...], Plottable):
+    """Studies of the same numbers of deviations, a pair each."""
+
+    def __repr__(self) -> str:
+        return text_of(self)
+
+    def _repr_html_(self) -> str:
+        return html_of(self)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Return the numbers with names and units, as the file has them; the rest is an attribute."""
+        return record_content(_Stored(tuple(self)), SCHEMA).to_xarray()
 
 
 @dataclass(frozen=True)
 class _Stored:
-    """Studies of the same numbers of deviations, as they are in their file."""
+    """Studies as they are in their file."""
 
-    pairs: Studies
+    pairs: tuple[PairStudy, ...]
 
 
 def write_studies(studies: Studies, path: Path) -> None:
@@ -79,7 +94,7 @@ def write_studies(studies: Studies, path: Path) -> None:
 def read_studies(path: Path) -> Studies:
     """Return the sensitivities that a file holds."""
     stored: _Stored = read_record(path, {SCHEMA: _Stored})
-    return stored.pairs
+    return Studies(stored.pairs)
 
 
 class _SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
@@ -125,11 +140,11 @@ class _SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
         name = f"{gears.pinion.teeth}/{gears.wheel.teeth}"
         force = float(checked.request.load[0])
         torque = float(case.pair.torque(force))
-        return (PairStudy(name, force, case.pair.center_distance, curves, torque),)
+        return Studies((PairStudy(name, force, case.pair.center_distance, curves, torque),))
 
     def joined(self, studies: Mapping[str, Studies]) -> Studies:
         """Return the studies of several cases as one, under the names of their files."""
-        return tuple(replace(study, name=name) for name, group in studies.items() for study in group)
+        return Studies(replace(study, name=name) for name, group in studies.items() for study in group)
 
     def _derived(self, studies: Studies) -> Json:
         return {"pairs": [(study, {"curves": _curves(study)}) for study in studies]}

@@ -16,7 +16,6 @@ import numpy as np
 
 from bounds import Kind
 from bounds.brief import brief
-from bounds.plottable import Plottable
 from bounds.types import Json
 from fe_contact.analysis.run_plan import predicted_designs
 from fe_contact.flank.modification import FlankModification
@@ -35,6 +34,7 @@ from lineofaction.gearbox.studies.computation import CaseStudy, Means, record_fi
 from lineofaction.gearbox.studies.cost import StudyCost, Work
 from lineofaction.gearbox.studies.sweep import Inputs, SweepFigures
 from lineofaction.gearbox.units import UM, factor, unit_name
+from model_studies.result_record import ResultRecord
 
 STEPS = 9
 """Values of an axis whose range is not given."""
@@ -189,7 +189,7 @@ QUANTITIES = {
 
 @brief
 @dataclass(frozen=True)
-class SweepResult(Plottable):
+class SweepResult(ResultRecord):
     """A sweep, and the quantities that are shown."""
 
     sweep: Sweep

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from bounds import engineering
-from bounds.plottable import Plottable
+from bounds.brief import brief
 from bounds.types import BoolArray, FloatArray, Json
 from dynamics.vibration import (
     Direction,
@@ -37,12 +37,14 @@ from lineofaction.gearbox.studies.vibration.figures import (
 )
 from lineofaction.gearbox.units import RPM
 from model_studies.record import under_key
+from model_studies.result_record import ResultRecord
 
 _NO_SHAPE = "Responses from seats to points hold no shapes of modes; a housing by its solid has them."
 
 
+@brief
 @dataclass(frozen=True)
-class MeasuredHousingVibration(Plottable):
+class MeasuredHousingVibration(ResultRecord):
     """Vibration of a measured housing over speed, and through which bearings at one speed and order."""
 
     housing: str

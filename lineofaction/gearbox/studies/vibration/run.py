@@ -12,7 +12,6 @@ import numpy as np
 
 from bounds import engineering
 from bounds.brief import brief
-from bounds.plottable import Plottable
 from bounds.types import FloatArray, Json
 from dynamics.housings import ReducedHousing, write_surface
 from dynamics.vibration import (
@@ -51,6 +50,7 @@ from lineofaction.gearbox.studies.vibration.measured import (
     measured_result,
 )
 from lineofaction.gearbox.units import RPM
+from model_studies.result_record import ResultRecord
 
 MM_PER_S = 1e-3
 _REMEDY = "Give a housing by step_file, mesh_file, modes_file or frf_file: see docs/how-to/vibration.md."
@@ -58,7 +58,7 @@ _REMEDY = "Give a housing by step_file, mesh_file, modes_file or frf_file: see d
 
 @brief
 @dataclass(frozen=True)
-class HousingVibrationResult(Plottable):
+class HousingVibrationResult(ResultRecord):
     """The analysis, and a mode to draw in place of the operating deflection."""
 
     analysis: VibrationAnalysis

@@ -10,6 +10,7 @@ import pytest
 from geared_scenes import BASE_RADIUS, RPM, gear_pair_scene, with_gear
 from planetary_scenes import planetary_scene, published_set
 
+from bounds import engineering
 from bounds.brief import MAX_LINES, WIDTH
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError, ResultError
@@ -58,7 +59,8 @@ def test_the_text_of_a_run_says_its_parts_and_forces_in_a_dozen_lines(result):
     assert lines[0] == f"RunResult, 0.2 s in {result.time.size} samples, completed"
     assert len(lines) <= MAX_LINES and max(map(len, lines)) <= WIDTH
     assert "2 shafts, 1 mesh, 4 bearings, 1 drive" in lines[1]
-    assert f"{result.mesh_force.max():.4g} N" in lines[2]
+    (peaks,) = result.receipt["peaks"]["mesh_force"].values()  # what a terminal prints
+    assert f" to {engineering(peaks['peak'], 4)} N" in lines[2]
 
 
 def test_two_equal_bushings_share_equally(result):

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import copy
 import math
+import pickle
+import sys
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,6 +15,7 @@ import pytest
 from bounds.brief import MAX_LINES, WIDTH
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate
+from host.extras import MissingExtra
 
 
 @pytest.mark.parametrize(
@@ -33,6 +38,26 @@ def test_a_number_has_the_digits_that_its_error_leaves(estimate: Estimate, unit:
 def test_a_unit_of_another_quantity_is_refused() -> None:
     with pytest.raises(ValueError, match="a number in m is not written in MPa; units: m, mm"):
         format(Estimate(1.0, 0.1, "m"), "MPa")
+
+
+def test_half_a_band_is_the_standard_deviation_of_uncertainties(monkeypatch: pytest.MonkeyPatch) -> None:
+    package = SimpleNamespace(ufloat=lambda value, deviation: (value, deviation))  # an extra that CI lacks
+    monkeypatch.setitem(sys.modules, "uncertainties", package)
+    assert Estimate(2.0e-7, 1.0e-8, "m").ufloat() == (2.0e-7, 5.0e-9)
+
+
+def test_without_the_extra_its_name_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "uncertainties", None)
+    with pytest.raises(MissingExtra, match=r"pip install 'lineofaction\[uncertainties\]'"):
+        Estimate(1.0, 0.1, "m").ufloat()
+
+
+def test_a_database_equals_its_copies_which_stay_read_only(spur: SteDatabase) -> None:
+    for other in (pickle.loads(pickle.dumps(spur)), copy.copy(spur), copy.deepcopy(spur)):
+        assert other is not spur and other == spur and hash(other) == hash(spur)
+        assert not other.static_transmission_error.flags.writeable
+    assert spur != replace(spur, error_estimate=2.0 * spur.error_estimate)
+    assert spur != replace(spur, metadata=replace(spur.metadata, warnings=({"message": "no"},)))
 
 
 def test_the_text_of_a_database_says_its_figures_in_a_dozen_lines(spur: SteDatabase) -> None:
