@@ -8,6 +8,7 @@ numbers as they are, arrays by shape and range, records by type.
 from __future__ import annotations
 
 import html
+import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, Field, fields, is_dataclass
 from enum import Enum
@@ -28,6 +29,8 @@ WIDTH = 100
 LISTED = 6
 """Numbers or words of a sequence that are listed; longer ones are counted."""
 
+_UNIT, _NO_BREAK = re.compile(r"(?<=\d) (?=[^\W\d]|[°%])"), "\u00a0"
+"""Blank between a number and a word, and one that no line ends at."""
 _INDENT = 4
 """Blanks before and after the name of a row."""
 _NARROW = 40
@@ -92,7 +95,9 @@ def text_of(record: object) -> str:
 
 def _wrapped(text: str, width: int, count: int) -> list[str]:
     """Return a text in at most `count` lines; the last one is cut where there is more."""
-    lines = wrap(text, width, break_on_hyphens=False) if width > _NARROW else [text]
+    joined = _UNIT.sub(_NO_BREAK, text)  # a number and its unit stay on one line
+    lines = wrap(joined, width, break_on_hyphens=False) if width > _NARROW else [joined]
+    lines = [line.replace(_NO_BREAK, " ") for line in lines]
     if len(lines) <= count:
         return lines
     return [*lines[: count - 1], _cut(" ".join(lines[count - 1 :]), width)]

@@ -14,30 +14,25 @@ from xml.parsers import expat
 from dynamics.errors import InputError
 
 FIELD = "mesh_file"
-
-
 _ALONE = "Write all nodes and elements into one file."
-
-
-_PART = 4096  # bytes
-
-
+_PART = 4096  # bytes that are parsed at once
 Fault = tuple[str, str] | None
 """The bound that a content breaks, and what to do."""
 
 
 def mesh_text(content: bytes) -> TextIOWrapper:
-    """Return the text of a mesh by lines: a lone carriage return ends one, too."""
+    """Return the text of a mesh by lines; a lone carriage return ends a line, too."""
     return TextIOWrapper(BytesIO(content), encoding="utf-8", errors="replace")
 
 
 def check_mesh_content(name: str, content: bytes) -> None:
     """Refuse a mesh that names further files, or on which a reader does not end.
 
-    `name`: of the file; its suffix says the format. Raises `InputError` naming ``mesh_file``.
+    The suffix of the file's `name` says the format. Raises `InputError` naming ``mesh_file``.
     """
     find = _FAULTS.get(PurePath(name).suffix.lower())  # other formats name no files
-    if find and (fault := find(content)):
+    fault = find(content) if find else None
+    if fault:
         raise InputError(FIELD, name, *fault)
 
 

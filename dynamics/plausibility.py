@@ -235,9 +235,8 @@ def _meshes(scene: Scene) -> Iterator[Finding]:
         skew = mesh.misalignment
         text = f"a misalignment of {engineering(1e3 * abs(skew) / face, 2)} mrad"
         for check, scale in (("mesh_misalignment", 1.0), ("mesh_misalignment_over_face", face)):
-            for finding in assessed(
-                check, f"{path}.misalignment", skew, "m", scale=scale, reason=text, skip_zero=True
-            ):
+            field = f"{path}.misalignment"
+            for finding in assessed(check, field, skew, "m", scale=scale, reason=text, skip_zero=True):
                 low = CHECKS["mesh_misalignment"].low or 0.0
                 yield replace(finding, low=low, high=USUAL_MISALIGNMENT * face)
 
@@ -292,10 +291,8 @@ def _supports(mechanism: Mechanism) -> Iterator[Finding]:
         push, total = _push(mechanism, index)
         turns = mechanism.kinematics.sense[index] != 0
         if turns and not rotor.radial_stiffness and push > NEGLIGIBLE_PUSH * total:
-            reason = (
-                f'nothing carries "{rotor.shaft.name}" under {push:.4g} N of its meshes: it is held rigidly'
-            )
-            source = CHECKS["support"].source
+            name, source = rotor.shaft.name, CHECKS["support"].source
+            reason = f'nothing carries "{name}" under {push:.4g} N of its meshes: it is held rigidly'
             yield Finding("support", f"shafts[{index}]", 0.0, 0.0, math.inf, "1", reason, source)
 
 
@@ -305,10 +302,8 @@ def _push(mechanism: Mechanism, index: int) -> tuple[float, float]:
     for mesh, line, force in zip(scene.meshes, mechanism.lines, mechanism.nominal_force, strict=True):
         for name, sign in ((mesh.driver, -1.0), (mesh.driven, 1.0)):
             if scene.gear(name).shaft == scene.shafts[index].name:
-                pushed: FloatArray = (
-                    sign * float(force) * np.array([float(line.force[0]), float(line.force[1])])
-                )
-                total, sum_of_forces = total + pushed, sum_of_forces + float(np.hypot(*pushed))
+                across: FloatArray = sign * float(force) * np.array(line.force[:2], dtype=float)
+                total, sum_of_forces = total + across, sum_of_forces + float(np.hypot(*across))
     return float(np.hypot(*total)), sum_of_forces
 
 

@@ -24,7 +24,6 @@ MESH_FORMATS = {
 """Formats of mesh files by suffix. CalculiX reads and writes the format of Abaqus."""
 MESH_SUFFIXES = tuple(MESH_FORMATS)
 
-
 _YOUNG = Declared(Kind.STIFFNESS, "Pa", between(1e6, 2e12), "Young's modulus", 110e9)
 _POISSON = Declared(Kind.RATIO, "", between(0.0, 0.49), "Poisson's ratio", 0.26)
 _DENSITY = Declared(Kind.INERTIA, "kg/m^3", up_to(1e5), "Density", 7200.0)

@@ -11,12 +11,7 @@ import numpy as np
 from dynamics.types import FloatArray
 
 DOUBLE = 4  # ordinates are real, double precision
-
-
 EVEN = 1  # abscissa by its first value and its increment
-
-
-NO_AXIS = (0, 0, 0, "NONE", "NONE")  # fields of an axis that a function does not have
 SPECTRUM = "amplitude (peak), Hann window"
 
 
@@ -42,6 +37,16 @@ class Quantity:
     label: str
     unit: str
     """`label`, `unit`: Names of the quantity and its unit, at most 20 characters each."""
+
+    @property
+    def record(self) -> str:
+        """The axis in the file."""
+        names = f"{self.label[:20]:<20} {self.unit[:20]:<20}"
+        return f"{self.code:10d}{self.length:5d}{self.force:5d}{0:5d} {names}"
+
+
+NO_AXIS = Quantity(0, 0, 0, "NONE", "NONE")
+"""An axis that a function does not have."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +95,7 @@ def function_dataset(function: NodalFunction) -> str:
     entity = f"{function.entity[:10]:<10}"
     node = f" {entity}{function.node:10d}{function.direction:4d} {'NONE':<10}{0:10d}{0:4d}"
     form = f"{DOUBLE:10d}{function.values.size:10d}{EVEN:10d}"
-    axes = [_axis(quantity) for quantity in (function.abscissa, function.ordinate, None, None)]
+    axes = [axis.record for axis in (function.abscissa, function.ordinate, NO_AXIS, NO_AXIS)]
     return _dataset(
         58,
         [
@@ -104,13 +109,8 @@ def function_dataset(function: NodalFunction) -> str:
     )
 
 
-def _axis(quantity: Quantity | None) -> str:
-    code, length, force, label, unit = vars(quantity).values() if quantity else NO_AXIS
-    return f"{code:10d}{length:5d}{force:5d}{0:5d} {label[:20]:<20} {unit[:20]:<20}"
-
-
 def _numbers(values: FloatArray) -> list[str]:
-    """Return the records of values, four numbers each."""
+    """Return the records of values, four numbers each; the last one may have fewer."""
     full = values.size // 4 * 4
     rows = (("%20.12E" * 4 + "\n") * (full // 4) % tuple(values[:full])).splitlines()
     rest = values[full:]

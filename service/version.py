@@ -5,21 +5,14 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Iterator
-from contextlib import suppress
 from functools import lru_cache
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
+from lineofaction.gearbox.program_version import solver_version
+
+__all__ = ["modules_digest", "program_tag", "solver_version"]
+
 _PACKAGES = ("bounds", "dynamics", "fe_contact", "host", "lineofaction", "model_studies", "service")
-
-
-@lru_cache(maxsize=1)
-def solver_version() -> str:
-    """Return the version of the installed project; code that runs uninstalled says so."""
-    for distribution in ("lineofaction", "lineofaction-client"):
-        with suppress(PackageNotFoundError):
-            return version(distribution)
-    return "uninstalled"
 
 
 @lru_cache(maxsize=1)

@@ -131,7 +131,7 @@ class LevelBand:
 
     @property
     def widths_without(self) -> dict[str, float]:
-        """Return the width that is left once a contribution is known, by its name, the least first, dB."""
+        """Return the width of the band without each contribution, by its name, the narrowest first, dB."""
         left = {
             name: LevelBand(self.nominal, self.below | {name: 0.0}, self.above | {name: 0.0}).width
             for name in self.below
@@ -162,17 +162,18 @@ def band_cases(ranges: Mapping[str, Range], count: int = CASES) -> list[dict[str
 
 
 def level_bands(ranges: Mapping[str, Range], levels: FloatArray) -> tuple[LevelBand, ...]:
-    """Return the bands of several levels over the ranges of what they depend on.
+    """Return the bands of several levels over the ranges of their parameters.
 
     The ends are quantiles (`ENDS`) of joint cases, in which all parameters are even over their ranges and
-    independent; the nominal level always lies inside. The contribution of a parameter is what it changes
-    alone between the same quantiles of its range. Where squares of contributions add up to less than the
-    band, as where one resonance meets another, the rest is `JOINTLY`; where to more, each is reduced alike.
+    independent. The nominal level always lies inside. The contribution of a parameter is the change that it
+    causes alone between the same quantiles of its range. If the squares of the contributions add up to less
+    than the band, as where one resonance meets another, the rest is `JOINTLY`. If they add up to more, all
+    are reduced by the same factor.
 
     Parameters
     ----------
     levels : (C, L) array
-        In dB, of each of the `band_cases` of the ranges.
+        Levels of the `band_cases` of the ranges, dB.
     """
     middle, deviation = levels[0], levels - levels[0]
     first = len(levels) - len(ENDS) * len(ranges)  # row of the first case in which one parameter varies alone
@@ -194,17 +195,14 @@ def _cases(ranges: Mapping[str, Range], count: int) -> Iterator[dict[str, float]
         yield {name: span.at(share) for share, (name, span) in zip(shares, ranges.items(), strict=True)}
 
 
-def _parts(reached: FloatArray, alone: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
-    """Return deviations, at least 0, whose squares add up to `reached` squared; the rest is `JOINTLY`."""
-    square = np.maximum(reached, 0.0) ** 2
+def _parts(total: FloatArray, alone: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+    """Return deviations, at least 0, whose squares add up to `total` squared; the rest is `JOINTLY`."""
+    square = np.maximum(total, 0.0) ** 2
     squares = {name: np.maximum(value, 0.0) ** 2 for name, value in alone.items()}
-    sum_of_squares = np.sum([0.0 * square, *squares.values()], axis=0)
+    sum_of_squares = np.sum([np.zeros_like(square), *squares.values()], axis=0)  # zeros: no parameter at all
     share = np.minimum(square / np.maximum(sum_of_squares, 1e-300), 1.0)  # 1e-300: no division by zero
-    squares = {name: share * value for name, value in squares.items()}
-    return {
-        name: np.sqrt(value)
-        for name, value in (*squares.items(), (JOINTLY, np.maximum(square - sum_of_squares, 0.0)))
-    }
+    deviations = {name: np.sqrt(share * value) for name, value in squares.items()}
+    return {**deviations, JOINTLY: np.sqrt(np.maximum(square - sum_of_squares, 0.0))}
 
 
 def _entries(deviations: Mapping[str, FloatArray], index: int) -> dict[str, float]:

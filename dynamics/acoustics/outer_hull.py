@@ -20,11 +20,11 @@ from dynamics.kernels.compiled import compiled
 from dynamics.types import BoolArray, FloatArray, IntArray
 
 ORDER = 8
-"""Views from 2 ORDER^2 = 128 directions."""
+"""Order of the views, which come from 2 ORDER^2 = 128 directions."""
 PIXELS = 512
-"""Across the sphere about the surface, in a view."""
+"""Pixels of a view across the sphere about the surface."""
 STEEP = 0.2
-"""Least cosine between a face's normal and a view that counts; pixels are too coarse for flatter ones."""
+"""Least cosine between a face's normal and a view: pixels are too coarse for flatter views."""
 MARGIN = 8.0
 """Pixels by which another face must be in front: a face under `STEEP` spans 5 in depth in its own pixel."""
 
@@ -65,13 +65,13 @@ def _free_sky(corners: FloatArray) -> FloatArray:
 
 
 def _visible(corners: FloatArray, view: FloatArray) -> FloatArray:
-    """Return 1 for triangles whose middle nothing hides from a far eye in direction `view`, else 0, (t,)."""
+    """Return 1 for triangles whose middle an eye far away in direction `view` sees, else 0, (t,)."""
     across = np.linalg.svd(view[None])[2]  # last two rows: across the view
     axes = np.stack([across[1], across[2], view], axis=1)
-    turned = np.ascontiguousarray(corners @ axes + np.array([PIXELS / 2.0, PIXELS / 2.0, 0.0]))
+    projected = np.ascontiguousarray(corners @ axes + np.array([PIXELS / 2.0, PIXELS / 2.0, 0.0]))
     nearest = np.full((PIXELS, PIXELS), -np.inf)
-    _draw(turned, nearest)
-    column, row, depth = turned.mean(axis=1).T
+    _draw(projected, nearest)
+    column, row, depth = projected.mean(axis=1).T
     last = PIXELS - 1
     front = nearest[np.clip(column.astype(int), 0, last), np.clip(row.astype(int), 0, last)]
     return np.where(depth >= front - MARGIN, 1.0, 0.0)
@@ -109,7 +109,7 @@ def _rims(triangles: IntArray) -> list[IntArray]:
 
 
 def _walk(first: int, onward: dict[int, list[int]]) -> Iterator[IntArray]:
-    """Take the edges from a node on until it has none; whenever a node comes twice, that part is a rim.
+    """Yield the rims along a walk that uses up the edges: a rim ends where the walk meets a node again.
 
     As many edges enter a node as leave it, so that the walk ends where it began.
     """
@@ -127,8 +127,8 @@ def _walk(first: int, onward: dict[int, list[int]]) -> Iterator[IntArray]:
 def _cap(points: FloatArray, rim: IntArray, first: int) -> tuple[IntArray, FloatArray]:
     """Return triangles (C, 3) that close a rim, and their new nodes as weights of the rim's nodes, (K, R).
 
-    Rings of nodes between the rim and its middle, the last, are as far apart as the nodes of the rim. The new
-    nodes are numbered from `first` on.
+    The new nodes lie on rings, as far apart as the nodes of the rim; the last one is the middle of the rim.
+    They are numbered from `first` on.
     """
     count = rim.size
     even = np.full((count, count), 1.0 / count)
@@ -138,11 +138,10 @@ def _cap(points: FloatArray, rim: IntArray, first: int) -> tuple[IntArray, Float
     inward = [even * k / parts + np.eye(count) * (1.0 - k / parts) for k in range(1, parts)]
     weights = np.concatenate([*inward, even[:1]])
     rings = np.vstack([rim, first + np.arange((parts - 1) * count).reshape(parts - 1, count)])
-    triangles = [
-        np.stack([[b, a, c], [b, c, d]], axis=0).transpose(0, 2, 1).reshape(-1, 3)
-        for a, c in pairwise(rings)
-        for b, d in [(np.roll(a, -1), np.roll(c, -1))]
-    ]
+    triangles = []
+    for a, c in pairwise(rings):  # b and d: the next nodes on the rings of a and c
+        b, d = np.roll(a, -1), np.roll(c, -1)
+        triangles.append(np.stack([[b, a, c], [b, c, d]], axis=0).transpose(0, 2, 1).reshape(-1, 3))
     last = rings[-1]
     middle = np.full(count, first + len(weights) - 1)
     return np.concatenate([*triangles, np.stack([np.roll(last, -1), last, middle], axis=1)]), weights
@@ -207,15 +206,16 @@ def _outside(points: FloatArray, triangles: IntArray) -> BoolArray:
     if not np.any(sky >= OUTSIDE):
         raise InputError("surface", float(sky.max()), f"faces that see {OUTSIDE:.0%} of their sky")
     outside = np.zeros(len(triangles), dtype=bool)
-    for part in _parts(triangles, sky >= JOINED):
+    for part in _areas(triangles, sky >= JOINED):
         outside[part] = np.any(sky[part] >= OUTSIDE)
-    for part in _parts(triangles, ~outside):
-        outside[part] = sky[part].mean() >= POCKET
+    for pocket in _areas(triangles, ~outside):
+        outside[pocket] = sky[pocket].mean() >= POCKET
     return outside
 
 
-def _parts(triangles: IntArray, chosen: BoolArray) -> list[IntArray]:
-    members = np.flatnonzero(chosen)
+def _areas(triangles: IntArray, mask: BoolArray) -> list[IntArray]:
+    """Return the areas of triangles joined by edges, among those of a mask."""
+    members = np.flatnonzero(mask)
     first, second, _ = shared_edges(triangles[members, :3])
     joined = coo_array((np.ones(first.size), (first, second)), shape=(members.size,) * 2)
     count, part = connected_components(joined)

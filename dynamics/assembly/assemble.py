@@ -184,16 +184,17 @@ def _highest_excited_mode(model: Model, arrays: SystemArrays) -> float:
     Modes beyond the frequency to which shafts are resolved do not count.
     """
     elements, meshes = arrays.elements, len(model.mechanism.scene.meshes)
-    rows = arrays.direction[elements.first[:meshes]]
-    bearings = arrays.direction.T @ (elements.stiffness[:, None] * arrays.direction)
-    elastic = [rotor.elastic.highest for rotor in model.mechanism.rotors if rotor.elastic is not None]
-    highest, mesh_stiffness = max(elastic, default=np.inf), model.flanks.mean_stiffness
     per_meter = 1.0 / arrays.scale
-    rows = rows * per_meter  # springs in place of the meshes
-    springs = rows.T @ (mesh_stiffness[:, None] * rows)
-    mass, rest = (per_meter[:, None] * a * per_meter for a in (arrays.mass, arrays.stiffness + bearings))
-    square, shape = eigh(springs + rest, mass)
-    strain = mesh_stiffness @ (rows @ shape) ** 2
+    bearings = arrays.direction.T @ (elements.stiffness[:, None] * arrays.direction)
+    supports = per_meter[:, None] * (arrays.stiffness + bearings) * per_meter
+    # springs take the place of the meshes
+    mesh_rows = arrays.direction[elements.first[:meshes]] * per_meter
+    mesh_stiffness = model.flanks.mean_stiffness
+    springs = mesh_rows.T @ (mesh_stiffness[:, None] * mesh_rows)
+    square, shape = eigh(springs + supports, per_meter[:, None] * arrays.mass * per_meter)
+    strain = mesh_stiffness @ (mesh_rows @ shape) ** 2
+    elastic = [rotor.elastic.highest for rotor in model.mechanism.rotors if rotor.elastic is not None]
+    highest = max(elastic, default=np.inf)
     excited = strain >= MESH_SHARE * np.maximum(square, 0.0)
     frequency = np.sqrt(np.maximum(square, 0.0)) / (2.0 * math.pi)
     return float(np.max(frequency[excited & (frequency <= highest)], initial=0.0))

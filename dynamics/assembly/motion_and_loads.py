@@ -38,19 +38,19 @@ def kinematic_motion(mechanism: Mechanism, freedoms: Freedoms) -> KinematicMotio
     ]
     turns = phases(mechanism)
     rates = (*kinematics.mesh_rate, *(phase.rate for phase in turns))
-    shape = (len(rates), len(laws))
+    numerator = np.zeros((len(rates), len(laws)), dtype=np.int64)
+    denominator, per_revolution = np.ones_like(numerator), np.zeros(numerator.shape)
+    for row, rates_of_row in enumerate(rates):
+        for law, rate in enumerate(rates_of_row):
+            numerator[row, law], denominator[row, law] = rate.numerator, rate.denominator
+            per_revolution[row, law] = float(rate)
     return KinematicMotion(
         speed=Cubics.packed([law.polynomials() for law in laws]),
         full_turns=np.concatenate([full_turns for full_turns, _ in starts]),
         fraction=np.concatenate([fraction for _, fraction in starts]),
-        numerator=np.array([[rate.numerator for rate in row] for row in rates], dtype=np.int64).reshape(
-            shape
-        ),
-        denominator=np.array([[rate.denominator for rate in row] for row in rates], dtype=np.int64).reshape(
-            shape
-        ),
-        per_radian=np.array([[float(rate) for rate in row] for row in rates]).reshape(shape)
-        / (2.0 * math.pi),
+        numerator=numerator,
+        denominator=denominator,
+        per_radian=per_revolution / (2.0 * math.pi),
         offset=np.concatenate([mechanism.phases.position, np.zeros(len(turns))]),
         period=np.array(
             [*(mesh.table.period for mesh in scene.meshes), *(phase.turns for phase in turns)], dtype=np.int64

@@ -58,7 +58,7 @@ def from_catalog(
     """
     CatalogLine(bore, outside_diameter, static_rating, clearance)
     pitch, largest = (bore + outside_diameter) / 2.0, WALL * (outside_diameter - bore) / 2.0
-    # diameter with the greatest number of balls
+    # of the greatest number of balls, which are the smallest
     smallest = pitch * math.sin(FILLED / (2.0 * (NUMBERS[-1] - 1)))
     minimum, maximum = (_filled_rating(diameter, pitch) for diameter in (smallest, largest))
     if not minimum <= static_rating <= maximum:

@@ -37,10 +37,11 @@ class EllipticContact:
             return 1.0
 
         def residual(logarithm: float) -> float:
+            """Return how far radii are off that give an ellipse with b/a of this logarithm."""
             square = math.exp(2.0 * logarithm)
             return math.log(elliprd(0.0, square, 1.0) / elliprd(0.0, 1.0, square)) - math.log(ratio)
 
-        # the root is not above 0; the bracket is, by what rounding needs where the radii are almost equal
+        # the root is at most 0, but rounding may lift that of almost equal radii: the bracket ends above 0
         return math.exp(float(brentq(residual, math.log(MIN_RATIO), 1e-12, xtol=1e-15)))
 
     @property

@@ -4,7 +4,7 @@ Only for steel bearings of good quality; lubrication and contamination (the modi
 
 References
 ----------
-.. [2] ISO/TS 16281:2008, Rolling bearings - Methods for calculating the modified reference rating life for
+.. [1] ISO/TS 16281:2008, Rolling bearings - Methods for calculating the modified reference rating life for
    universally loaded bearings, 4.3 (balls, equations 19 to 30) and 5.3 (rollers, equations 47 to 66), of
    radial bearings of one row.
 """
@@ -20,7 +20,7 @@ from dynamics.bearings import BallBearing, RollerBearing
 from dynamics.checks import positive
 from dynamics.types import FloatArray
 
-BALL_RINGS, ROLLER_RINGS = (0.407, 0.389), (0.378, 0.364)  # inner, outer: of radial bearings
+BALL_RINGS, ROLLER_RINGS = (0.407, 0.389), (0.378, 0.364)  # of [1]_: inner, outer ring of radial bearings
 ROLLER_QUALITY = 0.83  # lambda nu: contained in C, but no more once edge loads are computed
 
 
@@ -34,10 +34,8 @@ class _RatingLife:
     """P_ref, N: the radial load of the same life by ISO 281."""
 
 
-def rating_life(
-    bearing: BallBearing | RollerBearing, load: FloatArray, rating: float, inner_turns: bool = True
-) -> _RatingLife:
-    """Return the life of `bearing` under constant loads of its elements.
+def rating_life(bearing: BallBearing | RollerBearing, load: FloatArray, rating: float) -> _RatingLife:
+    """Return the life of `bearing`, whose inner ring turns against a constant load.
 
     Raises `InputError`: the rating is not positive.
 
@@ -47,20 +45,16 @@ def rating_life(
         Normal loads of the elements, N, see `Reaction`.
     rating : float
         Basic dynamic load rating C, N.
-    inner_turns : bool
-        Whether the load turns against the inner ring; False: against the outer.
     """
     positive("rating", rating)
     ball = isinstance(bearing, BallBearing)
     slope = 10.0 / 3.0 if ball else 4.5  # product of Weibull slope and load exponent
-    # exponents of the mean load: of a ring that turns against the load, and of one that stands
-    turning, standing = (3.0, slope) if ball else (4.0, slope)
-    exponents = (turning, standing) if inner_turns else (standing, turning)
-    limits = (
-        _ball_ratings(bearing, rating)
-        if isinstance(bearing, BallBearing)
-        else _lamina_ratings(bearing, rating)
-    )
+    # exponents of the mean load: of the inner ring, which turns against the load, and of the outer ring
+    exponents = (3.0, slope) if ball else (4.0, slope)
+    if isinstance(bearing, BallBearing):
+        limits = _ball_ratings(bearing, rating)
+    else:
+        limits = _lamina_ratings(bearing, rating)
     stressed = load if ball else load * _edge_factor(load.shape[1])
     damage = 0.0  # of both rings and all laminae; their probabilities of survival multiply
     for limit, exponent in zip(limits, exponents, strict=True):
@@ -99,7 +93,7 @@ def _ring_ratings(
 
 
 def _edge_factor(laminae: int) -> FloatArray:
-    """Return the rise of stress towards the ends of a roller, (laminae,): equation (60)."""
+    """Return the rise of stress towards the ends of a roller, (laminae,): equation 60 of [1]_."""
     if laminae == 1:
         return np.ones(1)
     coordinate = np.abs(2.0 * np.arange(1, laminae + 1) - laminae - 1.0) / (2.0 * laminae - 2.0)

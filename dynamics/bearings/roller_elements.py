@@ -91,6 +91,7 @@ def _figures(bearing: RollerBearing, at: RowPlacement) -> dict[str, float]:
 def _middle(
     laws: RollerElements, entry: int, c: float, s: float, y: FloatArray, row: int
 ) -> tuple[float, float]:
+    """Return approach and tilt of the raceways at the middle of a roller whose angle has cosine c, sine s."""
     turn = y[row + 4] * c - y[row + 3] * s
     across = (y[row] * c + y[row + 1] * s) * laws.cosine[entry]
     return across + y[row + 2] * laws.sine[entry] - laws.arm[entry] * turn, turn
@@ -195,9 +196,9 @@ def rollers_energy(
 
 @compiled
 def roller_reaction(laws: RollerElements, local: LocalState, load: FloatArray) -> tuple[float, float]:
-    """Write all of the first bearing, whose rows and position are the first, and return its energy and slope.
+    """Write forces, derivatives and loads of the first bearing; return its energy and the slope of it.
 
-    `load` (Z, L): the elastic load of every lamina, N.
+    Its rows and its position are the first of `local`. `load` (Z, L): the elastic load of every lamina, N.
     """
     rollers(laws, 0, local, 0, 0)
     angle, step = cage_angle(local, 0), 2.0 * math.pi / laws.rollers[0]

@@ -2,7 +2,9 @@
 
 References
 ----------
-.. [1] ISO 5593:2019, Rolling bearings - Vocabulary: locating and non-locating bearing.
+.. [1] ISO/TS 16281:2008, Rolling bearings - Methods for calculating the modified reference rating life for
+   universally loaded bearings: stiffness of line contact, profiles of rollers.
+.. [2] ISO 5593:2019, Rolling bearings - Vocabulary: locating and non-locating bearing.
 """
 
 from __future__ import annotations
@@ -87,7 +89,7 @@ LOCATING = Declared(
     "one ring of which slides",
     BOTH,
     later=True,
-)
+)  # [2]_
 ALONG, AGAINST = 1, 2  # bits of the directions in which the seats hold the rings: along z, against z
 LOCATED = {BOTH: ALONG | AGAINST, POSITIVE: ALONG, NEGATIVE: AGAINST, NONE: 0}
 """The directions as bits."""
@@ -297,8 +299,10 @@ class RollerBearing(_Row):
         if self.profile != LOGARITHMIC:
             crown = self.crown if self.profile == CROWNED else 0.0
             return np.asarray(crown * (2.0 * coordinate / length) ** 2)
-        straight = 0.0 if tapered or length <= LONG * diameter else length - LONG * diameter
-        factor = 0.00045 if tapered else 0.0005 if straight > 0.0 else 0.00035  # [1]_
+        straight = 0.0  # length of the straight middle, m
+        factor = 0.00045 if tapered else 0.00035  # of [1]_, as the factor of long rollers
+        if not tapered and length > LONG * diameter:
+            straight, factor = length - LONG * diameter, 0.0005
         ratio = np.maximum(2.0 * np.abs(coordinate) - straight, 0.0) / (length - straight)
         return np.asarray(-factor * diameter * np.log1p(-(ratio**2)))
 
@@ -332,15 +336,15 @@ class RollingBearing:
     Its five displacements are those of the shaft's section; force and moment are about the row's center. Rows
     of one bearing, or bearings side by side, are several of these, each at its own position.
 
-    Its rings are held in their seats along the axis, or one slides: a non-locating ball bearing carries no
-    axial force (`locating`). It changes nothing in rows of cylindrical rollers.
+    Its rings are held in their seats along the axis, or one slides (`locating`): a non-locating ball bearing
+    carries no axial force. Rows of cylindrical rollers carry none in either case.
 
     An element of load Q pushes back with ``Q (1 + d p')``, p' the rate at which it is pressed, and never
     pulls (Hunt and Crossley); d follows from `damping_ratio` with the mass of the shaft and its gears divided
     by the number of its bearings.
 
-    `axial_shift` (m) is how far the inner ring stands along z against the outer beside what the preload does;
-    at temperature it has taken the place of the preload as drawn.
+    `axial_shift` (m) is the displacement of the inner ring along z against the outer, in addition to that by
+    the preload. Of a bearing at temperature it also holds that of the preload as drawn.
     """
 
     name: str

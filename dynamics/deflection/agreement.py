@@ -79,18 +79,18 @@ def in_agreement(
         return Agreement(first, 1, 0.0)
     in_scene = {mesh.name: mesh.misalignment for mesh in scene.meshes}
     knots = {name: _first_knots(_misalignments(first, name), in_scene[name]) for name in contacts}
-    last, deflection, change, passes = first, first, float("inf"), 0
+    deflection, passes, change = first, 0, float("inf")
     while passes < PASSES:
         passes += 1
         complete(knots)
         tables = {name: contact.table(knots[name]) for name, contact in contacts.items()}
         meshes = tuple(replace(mesh, table=tables.get(mesh.name, mesh.table)) for mesh in scene.meshes)
+        last = deflection
         deflection = deflect(replace(scene, meshes=meshes), cases, positions, workers=workers)
         change = _change(last, deflection, contacts)
         if change <= TOLERANCE or not deflection.converged:
             break
         knots = {name: _with_knots(row, _misalignments(deflection, name)) for name, row in knots.items()}
-        last = deflection
     return Agreement(deflection, passes, change)
 
 

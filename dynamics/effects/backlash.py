@@ -41,9 +41,8 @@ class Backlash(MeshEffect):
             return Verdict(False, False, "no coast flank given: lift-off has no limit", 0.0)
         backlash, minimum = mesh.mesh.coast.backlash, float(np.min(mesh.train.mean_force[mesh.index]))
         if minimum <= 0.0:
-            return Verdict(
-                True, True, f"the load reverses: the mean force falls to {minimum:.4g} N", backlash
-            )
+            reason = f"the load reverses: the mean force falls to {minimum:.4g} N"
+            return Verdict(True, True, reason, backlash)
         swing = _force_swing(mesh)
         text = f"the mean force stays above {minimum:.4g} N, resonance changes it by up to "
         if swing >= minimum:
@@ -81,7 +80,8 @@ def _force_swing(mesh: LoadedMesh) -> float:
 def _coast_table(mesh: GearMesh, flanks: Flanks, index: int) -> PlainTable:
     """Return the table of a coast flank against the position of the driving flank.
 
-    Seen turned about the line of centers, the gap of a misalignment grows towards the other end.
+    A coast flank is a driving flank seen turned about the line of centers, so that a misalignment opens its
+    gap towards the other end of the face.
     """
     back = mesh.coast
     if back is None:

@@ -103,6 +103,7 @@ def axial_state(bearings: Sequence[RollingBearing]) -> tuple[float, float]:
         return high - low, 0.0
 
     def force(displacement: float, sides: tuple[float, ...] = (1.0, -1.0)) -> float:
+        """Return the axial force of the rows whose contact angles have these signs, N."""
         opposed = (part for part in bearings if math.copysign(1.0, part.row.contact_angle) in sides)
         laws = (row_law(part) for part in opposed)
         return sum(
@@ -116,12 +117,12 @@ def axial_state(bearings: Sequence[RollingBearing]) -> tuple[float, float]:
 
 def _mesh_displacement(rotor: LoadedRotor, rows: Sequence[WarmBearing]) -> float:
     """Return the largest change of the displacement at a mesh, linear between the bearings, m."""
-    mechanism, bearings_rotor = rotor.mechanism, rotor.rotor
-    duties, yields, heights = mechanism.bearing_duty, [], []
+    body = rotor.rotor
+    changes, heights = [], []
     for row in rows:
-        duty = duties[row.drawn.name]
-        yields.append(row_law(row.warm).deflection(duty) - row_law(row.drawn).deflection(duty))
-        heights.append(bearings_rotor.shaft.origin[2] + row.drawn.position - float(bearings_rotor.center[2]))
+        duty = rotor.mechanism.bearing_duty[row.drawn.name]
+        changes.append(row_law(row.warm).deflection(duty) - row_law(row.drawn).deflection(duty))
+        heights.append(body.shaft.origin[2] + row.drawn.position - float(body.center[2]))
     levers = [mesh.lever for mesh in rotor.meshes] or [0.0]
-    line = np.polyfit(heights, yields, 1 if np.ptp(heights) > 0.0 else 0)
+    line = np.polyfit(heights, changes, 1 if np.ptp(heights) > 0.0 else 0)
     return float(np.max(np.abs(np.polyval(line, levers))))

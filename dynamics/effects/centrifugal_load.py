@@ -44,10 +44,10 @@ class CentrifugalLoad(RotorEffect):
         radius = math.hypot(x, y)
         force = body.inertia.mass * radius * float(mechanism.largest_speed[body.carrier]) ** 2
         along = [abs(x * mesh.direction[0] + y * mesh.direction[1]) / radius for mesh in rotor.meshes]
-        pulled, pushed = engineering(force), engineering(rotor.pushed)
+        pulled, pushed = engineering(force), engineering(rotor.resultant)
         reason = f"up to {pulled} N away from the carrier's axis; mesh forces are {pushed} N"
         influence = force / body.radial_stiffness * max(along, default=0.0)
-        return Verdict(force > SHARE * rotor.pushed, True, reason, influence)
+        return Verdict(force > SHARE * rotor.resultant, True, reason, influence)
 
     def frame_terms(self, mechanism: Mechanism, connections: Connections, index: int) -> Sequence[FrameTerm]:
         """Return -m r W^2, r from the carrier's axis to the planet's."""

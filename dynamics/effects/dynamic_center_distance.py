@@ -23,7 +23,7 @@ class DynamicCenterDistance(MeshEffect):
         """Call for the effect where the table has the axis and a shaft can move along the line of centers."""
         if np.size(mesh.mesh.table.center_distance_change) == 1:
             return Verdict(False, False, "the table has one center distance only", 0.0)
-        if reason := mesh.not_read():
+        if reason := mesh.fixed_axes_reason():
             return Verdict(False, False, reason, 0.0)
         if not mesh.moves(CENTER_DISTANCE):
             return Verdict(False, False, "no shaft can move along the line of centers", 0.0)

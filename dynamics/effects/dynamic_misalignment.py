@@ -23,7 +23,7 @@ class DynamicMisalignment(MeshEffect):
         """Call for the effect where the table has the axis and a shaft can tilt in the plane of action."""
         if np.size(mesh.mesh.table.misalignment) == 1:
             return Verdict(False, False, "the table has one misalignment only", 0.0)
-        if reason := mesh.not_read():
+        if reason := mesh.fixed_axes_reason():
             return Verdict(False, False, reason, 0.0)
         if not mesh.moves(MISALIGNMENT):
             return Verdict(False, False, "no shaft can tilt in the plane of action", 0.0)

@@ -82,7 +82,7 @@ def _elastic_of(mechanism: Mechanism, index: int) -> ElasticShaft:
 def _stretches(mechanism: Mechanism, rotor: Rotor) -> bool:
     """Return whether the shaft moves along its axis: a bearing holds it there, and the scene has the freedom.
 
-    The scene has it on request, or for a helical gear if it is not switched off.
+    The scene has the freedom on request, or for a helical gear unless it is switched off.
     """
     scene, additions = mechanism.scene, mechanism.additions
     gears = {gear.name: gear for gear in scene.gears if gear.shaft == rotor.shaft.name}
@@ -171,21 +171,22 @@ class FlexibleShafts(RotorEffect):
     def verdicts(self, rotors: Sequence[LoadedRotor]) -> Sequence[Verdict]:
         """Call for the effect where the nominal force deflects a shaft by a share of its mesh deflection."""
         mechanism, flanks = rotors[0].mechanism, rotors[0].flanks
-        refusals = [_why_rigid(mechanism, index) for index in range(len(rotors))]
-        elastic = [None if refusal else _elastic_of(mechanism, i) for i, refusal in enumerate(refusals)]
-        for index, part in enumerate(elastic):
+        refusals, elastic = [], []
+        for index in range(len(rotors)):
+            refusal = _why_rigid(mechanism, index)
+            part = None if refusal else _elastic_of(mechanism, index)
             if part is not None and part.mass.size == 0:
-                refusals[index], elastic[index] = NOTHING_BENDS, None
-        flexible = _with_elastic(mechanism, elastic)
-        stiffness = (
-            _support_stiffness(flexible) if any(part is not None for part in elastic) else np.empty((0, 0))
-        )
-        return [
-            _Bending(on=False, possible=False, reason=refusal, influence=0.0)
-            if part is None
-            else _influence(flexible, flanks, index, stiffness, part)
-            for index, (refusal, part) in enumerate(zip(refusals, elastic, strict=True))
-        ]
+                refusal, part = NOTHING_BENDS, None
+            refusals.append(refusal)
+            elastic.append(part)
+        verdicts = [_Bending(on=False, possible=False, reason=text, influence=0.0) for text in refusals]
+        if any(part is not None for part in elastic):
+            flexible = _with_elastic(mechanism, elastic)
+            stiffness = _support_stiffness(flexible)
+            for index, part in enumerate(elastic):
+                if part is not None:
+                    verdicts[index] = _influence(flexible, flanks, index, stiffness, part)
+        return verdicts
 
     def extend(self, mechanism: Mechanism, decision: Sequence[Verdict | None]) -> Mechanism:
         """Return the mechanism with the elastic coordinates of the shafts that the effect is on for."""
@@ -209,7 +210,7 @@ def _influence(
     scene, rotors = mechanism.scene, mechanism.rotors
     across = [0, 1, 3, 4] if rotors[index].rigid_kinds else []  # x, y, tilt_x, tilt_y
     along = [2] if elastic.extension.mass.size else []  # z
-    rigid = [6 * index + kind for kind in (*across, *along)]  # freedoms that bearings hold; it does not turn
+    rigid = [6 * index + kind for kind in (*across, *along)]  # the freedoms that bearings hold
     coordinates = elastic_columns(rotors, index)
     axes = np.array([*rigid, *range(coordinates.start, coordinates.stop)])
     rows = {
@@ -219,9 +220,8 @@ def _influence(
         (mechanism.nominal_force[mesh] * row for mesh, row in rows.items()), start=np.zeros(axes.size)
     )
     displacement = np.linalg.lstsq(stiffness[np.ix_(axes, axes)], force, rcond=SINGULAR)[0]
-    displacement[: len(rigid)] -= np.linalg.lstsq(
-        stiffness[np.ix_(rigid, rigid)], force[: len(rigid)], rcond=SINGULAR
-    )[0]
+    rigid_stiffness, rigid_force = stiffness[np.ix_(rigid, rigid)], force[: len(rigid)]
+    displacement[: len(rigid)] -= np.linalg.lstsq(rigid_stiffness, rigid_force, rcond=SINGULAR)[0]
     loads: list[OnShaft] = [*scene.forces, *scene.unbalances]
     if not rows and scene.shafts[index].name in [part.shaft for part in loads]:
         reason = "loads act on the shaft, which no mesh measures"
@@ -264,9 +264,8 @@ def _loads(mechanism: Mechanism, index: int) -> FloatArray:
     for part in scene.forces:
         if part.shaft == scene.shafts[index].name and part.turns_with is None:
             rows = section_rows(rotors, index, rotors[index].shaft.origin[2] + part.position)
-            force += float(mean_factor(part.course, 0.0, 0.0)) * (
-                np.array([*part.force, *part.moment]) @ rows
-            )
+            wrench = np.array([*part.force, *part.moment])
+            force += float(mean_factor(part.course, 0.0, 0.0)) * (wrench @ rows)
     return force
 
 

@@ -61,9 +61,9 @@ def _sliding_gradients(flank: FlankInSpace) -> FloatArray:
 
     With n the unit vector along the line of action, a contact at y n from the pitch point slides at
     (w_1 - w_2) y along z x n, whichever flank it is on. The first row is the relative displacement along that
-    direction, the second the relative rotation times the driver's base radius. Both are positive as the
-    contact slides where the table has y > 0. Where a ring gear drives, the table's y runs against n, and
-    w_1 - w_2 against the sense of the driving flank.
+    direction, the second the relative rotation times the driver's base radius. The signs of both are those of
+    sliding where the table has y > 0. Where a ring gear drives, the table's y runs against n, and w_1 - w_2
+    against the sense of the driving flank.
     """
     scene, rotors, line = flank.mechanism.scene, flank.mechanism.rotors, flank.line
     mesh = scene.meshes[flank.index]
@@ -74,6 +74,7 @@ def _sliding_gradients(flank: FlankInSpace) -> FloatArray:
     rolled[ROTATION] = sign * radius
 
     def slid(center: FloatArray) -> FloatArray:
+        """Return the sliding per displacement and rotation of a gear with this center."""
         return np.concatenate([across, np.cross(line.point - center, across)])
 
     sliding = gear_row(scene, rotors, [(mesh.driver, slid), (mesh.driven, lambda c: -slid(c))])

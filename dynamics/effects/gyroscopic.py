@@ -41,22 +41,17 @@ class Gyroscopic(RotorEffect):
         """
         body, mechanism = rotor.rotor, rotor.mechanism
         if body.tilt_stiffness == 0.0 and body.frame is None:
-            return Verdict(
-                on=False, possible=False, reason="no bushing with tilt stiffness: held rigidly", influence=0.0
-            )
+            reason = "no bushing with tilt stiffness: held rigidly"
+            return Verdict(on=False, possible=False, reason=reason, influence=0.0)
         free = bool(mechanism.freely_turned[rotor.index if body.frame is None else body.frame])
         if body.frame is not None and free:
             reason = "neglected: torques alone turn the carrier's frame, so its speed is unknown"
             return Verdict(on=False, possible=False, reason=reason, influence=0.0)
         if free:
-            return Verdict(
-                on=True,
-                possible=True,
-                reason="torques alone turn the shaft: its speed is not known in advance",
-                influence=0.0,
-            )
+            reason = "torques alone turn the shaft: its speed is not known in advance"
+            return Verdict(on=True, possible=True, reason=reason, influence=0.0)
         share = max(_tilt_share(rotor), _frame_share(rotor))
-        deflection = rotor.pushed / body.radial_stiffness if body.radial_stiffness > 0.0 else 0.0
+        deflection = rotor.resultant / body.radial_stiffness if body.radial_stiffness > 0.0 else 0.0
         reason = f"rotation shifts natural frequencies by up to {engineering(share, 2)} of them"
         return Verdict(on=share > SHARE, possible=True, reason=reason, influence=min(share, 1.0) * deflection)
 

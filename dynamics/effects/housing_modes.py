@@ -33,8 +33,8 @@ class HousingModes(RotorEffect):
     def verdicts(self, rotors: Sequence[LoadedRotor]) -> Sequence[Verdict]:
         """Call for the effect where mesh orders, loads or passing elements come near a housing's first mode.
 
-        All shafts in a housing have its verdict, and where one sits in two, that of the one it is on in.
-        Static motions are the same without it.
+        All shafts in a housing have its verdict. A shaft in two housings has the effect if one of them calls
+        for it. The effect changes no static motion.
         """
         none = Verdict(False, False, "no bearing of it sits in a housing with mass", 0.0)
         return [
@@ -47,7 +47,7 @@ class HousingModes(RotorEffect):
         ]
 
     def extend(self, mechanism: Mechanism, decision: Sequence[Verdict | None]) -> Mechanism:
-        """Give the housings of shafts on which it is on their amplitudes."""
+        """Return the mechanism with the amplitudes of those housings whose shafts the effect is on for."""
         on = {
             housing.name
             for index, verdict in enumerate(decision)
@@ -67,8 +67,8 @@ def _housings_of(mechanism: Mechanism, index: int) -> list[Housing]:
 def _verdict(rotor: LoadedRotor, housing: Housing) -> Verdict:
     """Assess a housing under one of its shafts.
 
-    At the frequency f the inertia of a housing of the first mode f_1 moves a seat by up to (f/f_1)^2 of its
-    static motion more.
+    At the frequency f the inertia of a housing whose first mode has f_1 adds up to (f/f_1)^2 of its static
+    motion to that of a seat.
     """
     scene, kinematics = rotor.mechanism.scene, rotor.mechanism.kinematics
     modal = modal_housing(housing)
@@ -82,7 +82,7 @@ def _verdict(rotor: LoadedRotor, housing: Housing) -> Verdict:
     supports = [part.name for part in rotor.rotor.supports]
     seats = np.array([modal.seat(name)[:2] for name in supports if name in modal.bearings])
     softest = float(np.max(np.sum(seats**2 / modal.stiffness, axis=2)))
-    influence = min(share, 1.0) * (rotor.pushed / len(supports) * softest)  # an equal share of mesh forces
+    influence = min(share, 1.0) * (rotor.resultant / len(supports) * softest)  # an equal share of mesh forces
     reason = f"{source} reach {content[source]:.4g} Hz, the first mode of {housing.name} {first:.4g} Hz"
     if any(at.name in housing.bushings for at in rotor.mechanism.bearings):
         return Verdict(True, False, f"{reason}; it carries bearings that are not linear", influence)

@@ -19,8 +19,9 @@ class Lateral(RotorEffect):
         stiffness = rotor.rotor.radial_stiffness
         if stiffness == 0.0:
             return Verdict(False, False, "no bushing with radial stiffness: held rigidly", 0.0)
-        if not rotor.meshes and rotor.applied:
+        if not rotor.meshes and rotor.load_levers:
             return Verdict(True, True, "loads displace the shaft on its bushings", 0.0)
         if not rotor.meshes:
             return Verdict(False, True, "no mesh on this shaft", 0.0)
-        return Verdict(True, True, "mesh forces displace the shaft on its bushings", rotor.pushed / stiffness)
+        reason = "mesh forces displace the shaft on its bushings"
+        return Verdict(True, True, reason, rotor.resultant / stiffness)

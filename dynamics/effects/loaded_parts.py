@@ -32,7 +32,7 @@ class _MeshOnRotor:
     """Axial over transverse force, tan(base helix angle), >= 0."""
     radius: float
     """Operating pitch radius, m: the axial force's lever across the shaft."""
-    direction: tuple[float, float] = (1.0, 0.0)
+    direction: tuple[float, float]
     """Unit vector across the axis of the force on the rotor, along x and y."""
 
 
@@ -51,13 +51,13 @@ class LoadedRotor:
         return self.mechanism.rotors[self.index]
 
     @property
-    def pushed(self) -> float:
+    def resultant(self) -> float:
         """Resultant across the axis of all nominal mesh forces, N: around a sun they cancel."""
         along_x, along_y = (sum(mesh.force * mesh.direction[k] for mesh in self.meshes) for k in (0, 1))
         return math.hypot(along_x, along_y)
 
     @property
-    def applied(self) -> tuple[float, ...]:
+    def load_levers(self) -> tuple[float, ...]:
         """Distances along the axis from the rotor's center of mass to its lateral forces and unbalances, m.
 
         Weight acts at 0.
@@ -86,8 +86,8 @@ def loaded_rotors(mechanism: Mechanism, flanks: Flanks) -> tuple[LoadedRotor, ..
             carrier = rotors[index].carrier
             if carrier is not None:
                 arm = rotors[index].center - rotors[carrier].center
-                arms = float(arm[2]), axial, float(np.hypot(arm[0], arm[1]))
-                meshes[carrier].append(_MeshOnRotor(float(force), *arms, direction))
+                radius = float(np.hypot(arm[0], arm[1]))
+                meshes[carrier].append(_MeshOnRotor(float(force), float(arm[2]), axial, radius, direction))
     return tuple(
         LoadedRotor(mechanism, flanks, index, tuple(on_rotor)) for index, on_rotor in enumerate(meshes)
     )
@@ -166,7 +166,7 @@ class LoadedMesh:
         """Whether freedoms change the misalignment (0) or the center distance (1)."""
         return bool(np.any(self.axes[axis] != 0.0))
 
-    def not_read(self) -> str | None:
+    def fixed_axes_reason(self) -> str | None:
         """Reason why the table cannot be read along its axes as bodies move; None where it can."""
         if self.mesh.technique != "variable_torque":
             return "the constant-torque technique has one stiffness per position"
@@ -177,7 +177,7 @@ class LoadedMesh:
     def change_along(self, axis: int) -> float:
         """Return the change of the mean transmission error as the nominal force moves the bodies, m.
 
-        Along one axis of the table: misalignment (0) or center distance (1).
+        `axis` is that of the table along which they move: misalignment (0) or center distance (1).
         """
         mesh, mechanism = self.mesh, self.train.mechanism
         pushed = approach(mechanism.scene, mechanism.rotors, self.index, mechanism.lines[self.index])

@@ -46,9 +46,9 @@ def _why(rotor: LoadedRotor) -> str:
         return "a helical mesh tilts the shaft"
     if any(abs(mesh.lever - body.elastic_lever) > limit for mesh in rotor.meshes):
         return "a mesh is off the supports' center"
-    if (rotor.meshes or rotor.applied) and abs(body.elastic_lever) > limit:
+    if (rotor.meshes or rotor.load_levers) and abs(body.elastic_lever) > limit:
         return "the center of mass is off the supports' center"
-    if any(abs(lever - body.elastic_lever) > limit for lever in rotor.applied):
+    if any(abs(lever - body.elastic_lever) > limit for lever in rotor.load_levers):
         return "a load is off the supports' center"
     if any(any(force.moment[:2]) for force in forces if force.shaft == body.shaft.name):
         return "a moment tilts the shaft"

@@ -77,7 +77,9 @@ class Elements(NamedTuple):
     mesh: IntArray
     """Mesh whose position each element reads; from m on the frame or cage whose turn it reads. Shape (E,)."""
     offset: FloatArray
-    """`offset`, `stiffness`: The stiffness is for error norms and first guesses. Shape (R,) each."""
+    """`offset`, `stiffness`: Those of `Element`; the stiffness serves error norms and first guesses. Shape
+    (R,) each.
+    """
     drift: FloatArray
     """Rate of the coordinates per unit speed of each law; 0 for flanks, whose coordinates the kinematic
     motion does not change. Shape (k, R).
@@ -93,33 +95,32 @@ class Elements(NamedTuple):
     @classmethod
     def packed(cls, elements: Sequence[Element], laws: ElementLaws, motions: int) -> Elements:
         """Lay out `elements`, their rows one after the other, in a kinematic motion of that many laws."""
-        sizes = [element.offset.size for element in elements]
-        drift = [
-            np.zeros((size, motions)) if element.drift is None else element.drift
-            for element, size in zip(elements, sizes, strict=True)
-        ]
-        stiffness = [
-            np.zeros(size) if element.stiffness is None else element.stiffness
-            for element, size in zip(elements, sizes, strict=True)
-        ]
-        speed = [np.zeros((2, motions)) if element.speed is None else element.speed for element in elements]
-        carried = np.append(
-            np.flatnonzero(np.any(np.concatenate([np.empty((0, motions)), *drift]), axis=1)), sum(sizes)
-        )
-        turned = np.append(np.flatnonzero([np.any(rates) for rates in speed]), len(sizes))
+        first = np.cumsum([0, *(element.offset.size for element in elements)], dtype=np.int64)
+        rows = int(first[-1])
+        drift, stiffness = np.zeros((rows, motions)), np.zeros(rows)
+        speed = np.zeros((len(elements), 2, motions))
+        for element, start, end, rates in zip(elements, first[:-1], first[1:], speed, strict=True):
+            if element.drift is not None:
+                drift[start:end] = element.drift
+            if element.stiffness is not None:
+                stiffness[start:end] = element.stiffness
+            if element.speed is not None:
+                rates[:] = element.speed
+        drifting_rows = np.flatnonzero(np.any(drift, axis=1))
+        turning_elements = np.flatnonzero(np.any(speed, axis=(1, 2)))
         return by_address(
             cls(
-                np.array([int(element.law) for element in elements], dtype=np.int64),
-                np.array([element.entry for element in elements], dtype=np.int64),
-                np.cumsum([0, *sizes], dtype=np.int64),
-                np.array([element.mesh for element in elements], dtype=np.int64),
-                np.concatenate([np.empty(0), *(element.offset for element in elements)]),
-                np.ascontiguousarray(np.concatenate([np.empty((0, motions)), *drift]).T),
-                np.concatenate([np.empty(0), *stiffness]),
-                np.ascontiguousarray(np.moveaxis(np.array(speed).reshape(len(elements), 2, motions), 2, 0)),
-                int(carried[0]),
-                int(turned[0]),
-                laws,
+                law=np.array([int(element.law) for element in elements], dtype=np.int64),
+                entry=np.array([element.entry for element in elements], dtype=np.int64),
+                first=first,
+                mesh=np.array([element.mesh for element in elements], dtype=np.int64),
+                offset=np.concatenate([np.empty(0), *(element.offset for element in elements)]),
+                drift=np.ascontiguousarray(drift.T),
+                stiffness=stiffness,
+                speed=np.ascontiguousarray(np.moveaxis(speed, 2, 0)),
+                carried=int(drifting_rows[0]) if drifting_rows.size else rows,
+                turned=int(turning_elements[0]) if turning_elements.size else len(elements),
+                laws=laws,
             )
         )
 
@@ -207,9 +208,10 @@ def evaluate_linear(elements: Elements, local: LocalState, e: int) -> None:
 
 @inner
 def power_along_axes(elements: Elements, local: LocalState, e: int) -> tuple[float, float]:
-    """Return the power that the elastic forces along a table's axes give to the bodies, W.
+    """Return two powers by motion along a table's axes, W: on the bodies, and stored in the table.
 
-    And the one that the table stores as it is read elsewhere along them.
+    The elastic forces along the axes give the first. The second is the change of the energy of the table as
+    it is read elsewhere along them.
     """
     power, stored = 0.0, 0.0
     if elements.law[e] == SPATIAL_FLANK:

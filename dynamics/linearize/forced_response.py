@@ -117,7 +117,6 @@ def forced_response(
 
     Parameters
     ----------
-    system : System
     speed : (S,) sequence
         Speeds of the first drive that turns, rad/s, increasing, > 0; the scene decides the sense.
     orders : int
@@ -149,14 +148,16 @@ def forced_response(
     harmonics = excited_harmonics(at, speeds, lines.harmonics)
     if not harmonics.size:
         raise InputError("orders", orders, NOTHING_EXCITES, "Give a mesh a table, or let a load vary.")
-    steady, *largest = varied_vibration(at, speeds, harmonics, progress)
+    steady, by_static_error, by_blocked_force = varied_vibration(at, speeds, harmonics, progress)
     response, power = response_of(at, speeds, steady), power_balance(at, speeds, steady)
     response = replace(response, floor=varied_floor(at, speeds, lines, response))
-    floor, floor_error = (np.empty((0, 0)),) * 2 if response.floor is None else response.floor.of_bearings()
+    floor, floor_error = np.empty((0, 0)), np.empty((0, 0))
+    if response.floor is not None:
+        floor, floor_error = response.floor.of_bearings()
     seconds["response"] = cpu_seconds() - began
     return ForcedResponse(
         **vars(response),
-        excitation_difference=_difference(*largest),
+        excitation_difference=_difference(by_static_error, by_blocked_force),
         natural_frequency=frequency,
         **power.fields,
         bearing_floor=floor,

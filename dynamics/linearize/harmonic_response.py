@@ -266,9 +266,7 @@ def _static_loads(at: Excited, harmonics: IntArray) -> ComplexArray:
             continue
         entry = elements.entry[mesh]
         tilting, _, sliding = (int(row) for row in laws.row[entry])
-        if (
-            laws.per_face[entry] > 0.0
-        ):  # the load moves along the face; the row's force is moment times per_face
+        if laws.per_face[entry] > 0.0:  # the load moves along the face; the row has moment times per_face
             moment = -cycle.force[:, tilting] / laws.per_face[entry]
             loads[0, mesh] = harmonics_of(at, mesh, moment, harmonics)
         if sliding > 0:  # 0: the flank has no row of friction
@@ -311,12 +309,9 @@ def bearing_forces(at: Excited, omega: FloatArray, u: ComplexArray) -> ComplexAr
     for part in speed_blocks(omega.shape, 4 * rows.shape[1]):
         q = u[part].reshape(omega[part].size, u.shape[2])
         rate = 1j * omega[part].reshape(-1, 1) * q
-        local = (q @ rows) @ tangent
-        local = local + (rate @ rows) @ viscous
-        real, imaginary = (
-            system.bearing_force(np.ascontiguousarray(part_of(local.T)), part_of(q), part_of(rate)) - static
-            for part_of in (np.real, np.imag)
-        )
+        local = (q @ rows) @ tangent + (rate @ rows) @ viscous
+        real = system.bearing_force(np.ascontiguousarray(local.real.T), q.real, rate.real) - static
+        imaginary = system.bearing_force(np.ascontiguousarray(local.imag.T), q.imag, rate.imag) - static
         force[:, :, part] = (real + 1j * imaginary).reshape(force[:, :, part].shape)
     return force
 

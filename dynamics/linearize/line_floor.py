@@ -20,9 +20,9 @@ from dynamics.types import ComplexArray, FloatArray, IntArray
 
 WIDEST = 0.01
 """Widest step between two frequencies, over the frequency, where no mode is near."""
-OF_MODE = 0.25
-"""Largest step over the damping ratio of the nearest mode, or over the relative distance from it where that
-is larger.
+MODE_STEP = 0.25
+"""Widest step over the damping ratio of the nearest mode, or over the relative distance from it where that is
+larger.
 """
 LINE_ERROR = 1.0 / 7.0
 """Largest error of a straight line between two frequencies, over second derivative times square of the step:
@@ -81,18 +81,22 @@ class LineFloor:
         """
         changed = np.max(self.changed, axis=0, initial=0.0) if changed is None else changed
         form, products = _real_terms(matrix), _products(self.inputs)
-        bent, sizes = [_of_three(np.abs(term)) for term in _real_terms(self._bent(matrix))], np.abs(products)
+        sizes = np.abs(products)
+        error_form = [_largest_nearby(np.abs(term)) for term in _real_terms(self._line_error(matrix))]
         first, last = self._bin(self.frequency[[0, -1]])
-        made = np.zeros((3, self.pace.size, int(last - first) + 1))
+        bins = int(last - first) + 1
+        moment, power, error = np.zeros((3, self.pace.size, bins))  # moment: power times frequency
         for row, pace in enumerate(self.pace):
             hertz = self.harmonic * pace
-            power = np.maximum(self._along(hertz, products, form), 0.0)
-            off = self._along(hertz, sizes, bent) + changed[row] * power
-            for part, values in zip(made, (power * hertz, power, off), strict=True):
-                part[row] = np.bincount(self._bin(hertz) - first, values, part.shape[1])
+            line_power = np.maximum(self._along(hertz, products, form), 0.0)
+            line_error = self._along(hertz, sizes, error_form) + changed[row] * line_power
+            index = self._bin(hertz) - first
+            moment[row] = np.bincount(index, line_power * hertz, bins)
+            power[row] = np.bincount(index, line_power, bins)
+            error[row] = np.bincount(index, line_error, bins)
         middle = 10.0 ** (((np.arange(first, last + 1) + 0.5) / BINS - 0.5) / 10.0)
-        mean = np.divide(made[0], made[1], out=np.tile(middle, (self.pace.size, 1)), where=made[1] > 0.0)
-        return FloorPower(mean, made[1], made[2])
+        mean = np.divide(moment, power, out=np.tile(middle, (self.pace.size, 1)), where=power > 0.0)
+        return FloorPower(mean, power, error)
 
     def of_bearing(self, index: int) -> FloorPower:
         """Return the mean square of the force on a bearing, all directions together, N^2."""
@@ -115,7 +119,7 @@ class LineFloor:
         """Return bins of frequencies; the edges of third octaves are among theirs."""
         return np.floor((10.0 * np.log10(hertz) + 0.5) * BINS).astype(np.int64)
 
-    def _bent(self, matrix: ComplexArray) -> ComplexArray:
+    def _line_error(self, matrix: ComplexArray) -> ComplexArray:
         """Return the error of a straight line midway between two frequencies, for forms (G, e, e)."""
         step = np.diff(self.frequency)[:, None, None]
         bend = 2.0 * np.diff(np.diff(matrix, axis=0) / step, axis=0) / (step[1:] + step[:-1])
@@ -123,8 +127,8 @@ class LineFloor:
         return np.concatenate([curvature_error[:1], curvature_error, curvature_error[-1:]])
 
 
-def _of_three(size: FloatArray) -> FloatArray:
-    """Return the largest of each size (G,) and its neighbors: the curvature of an inflection is 0."""
+def _largest_nearby(size: FloatArray) -> FloatArray:
+    """Return the largest of each size (G,) and its neighbors, since the curvature at an inflection is 0."""
     wide = np.pad(size, 1, mode="edge")
     return np.maximum(np.maximum(wide[:-2], wide[2:]), size)
 
@@ -137,6 +141,7 @@ def _real_terms(matrix: ComplexArray) -> list[FloatArray]:
 
 
 def _products(inputs: ComplexArray) -> list[FloatArray]:
+    """Return the products (L,) of inputs that the terms of a form multiply, squares first."""
     single = range(len(inputs))
     squares = [np.square(np.abs(term)) for term in inputs]
     mixed = [2.0 * inputs[a].conj() * inputs[b] for a in single for b in single[a + 1 :]]
@@ -171,6 +176,6 @@ def floor_frequencies(at: Excited, lowest: float, highest: float) -> FloatArray:
     natural, ratio = modes.frequency[elastic], np.maximum(modes.damping_ratio[elastic], MIN_RATIO)
     hertz = [lowest]
     while hertz[-1] < highest:
-        near = OF_MODE * np.maximum(ratio, np.abs(hertz[-1] / natural - 1.0))
+        near = MODE_STEP * np.maximum(ratio, np.abs(hertz[-1] / natural - 1.0))
         hertz.append(hertz[-1] * (1.0 + min(WIDEST, float(np.min(near, initial=WIDEST)))))
     return np.array([*hertz[:-1], highest])

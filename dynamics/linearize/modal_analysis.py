@@ -167,7 +167,6 @@ def modal_analysis(
 
     Parameters
     ----------
-    system : System
     speed : (S,) sequence
         Speeds of the first drive or free rotation that turns, rad/s, increasing, >= 0; may be empty.
     orders : int

@@ -22,8 +22,6 @@ from dynamics.linearize.steady_vibration import Excited, Steady, gyroscopic_term
 from dynamics.types import ComplexArray, FloatArray
 
 LOADS = "loads"
-
-
 FRAMES = "rotating frames"
 
 
@@ -106,7 +104,7 @@ def _losses(
     """Yield name, kind and power (S, H) of parts; one part may come several times.
 
     The sum of all parts with damping about the equilibrium, driving flanks by their mean tangents, is the
-    damping of `LinearSystem`; what gyroscopic and frame terms do comes last.
+    damping of `LinearSystem`. The power of gyroscopic and frame terms comes last.
     """
     elements = element_absorbers(at.system, at.linear, at.cycles, at.time)
     system = at.system

@@ -267,11 +267,6 @@ def harmonics_of(at: Excited, index: int, values: FloatArray, harmonics: IntArra
     return amplitudes
 
 
-def _empty_by_freedom(shape: tuple[int, ...], freedoms: int, columns: int) -> ComplexArray:
-    """Return an empty array (S, H, n, c) for displacements, which lies freedom by freedom in memory."""
-    return np.moveaxis(np.empty((freedoms, columns, *shape), dtype=complex), (2, 3), (0, 1))
-
-
 def _solve(
     at: Excited,
     force: ComplexArray,
@@ -292,17 +287,18 @@ def _solve(
     per_meter = 1.0 / at.linear.scale
     mass, damping, total = _per_meter(at.linear)
     pushed = _right_sides(force, rows, second) * per_meter[:, None]
-    saved, watched = 1 if rows is None else 1 + len(rows), at.system.arrays.direction[at.system.driving_rows]
+    saved = 1 if rows is None else 1 + len(rows)  # columns of the displacements
+    watched = at.system.arrays.direction[at.system.driving_rows]
     largest = np.zeros((len(watched), omega.shape[1]))
-    displacement = _empty_by_freedom(omega.shape, pushed.shape[2], saved)
-    modal = at.system.arrays.sparse.modal
+    by_freedom = np.empty((pushed.shape[2], saved, *omega.shape), dtype=complex)  # its order in memory
+    displacement, modal = np.moveaxis(by_freedom, (2, 3), (0, 1)), at.system.arrays.sparse.modal
     first = _first_eliminated(modal.first, terms)
     small = modal_elimination(modal, per_meter, total, damping, mass) if first else None
     tried = fractions and small is None and not terms
     by_modes = PartialFractions.of(total, mass, damping) if tried else None
     parts = np.stack([total, mass, damping]).astype(complex)
     maximum = max(float(np.max(np.abs(pushed[..., 0]), initial=0.0)), 1e-300)
-    left, farthest = np.float64(0.0), np.zeros(per_meter.size)  # residual force, and largest displacements
+    residual, farthest = np.float64(0.0), np.zeros(per_meter.size)  # farthest: the largest displacements
     for part in speed_blocks(omega.shape, per_meter.size**2):
         exciting = pushed if pushed.shape[0] == 1 else pushed[part]
         right = np.broadcast_to(exciting, (*omega[part].shape, *pushed.shape[2:]))
@@ -320,7 +316,7 @@ def _solve(
                 turning = [matrix[:, :first, :first] for matrix in swept]
                 solution = small.solve(omega[part], right, turning)
                 miss = np.abs(small.product(omega[part], solution[..., :1], turning) - right[..., :1])
-        left = np.maximum(left, np.max(miss, initial=0.0))  # not a number, if any of them is
+        residual = np.maximum(residual, np.max(miss, initial=0.0))  # not a number, if any of them is
         farthest = np.maximum(farthest, np.max(np.abs(solution[..., 0]), axis=(0, 1), initial=0.0))
         displacement[part] = solution[..., :saved] * per_meter[:, None]
         if second is not None:
@@ -329,9 +325,9 @@ def _solve(
         if progress is not None:
             progress(min(part.stop, omega.shape[0]) / omega.shape[0])
     elastic = np.max(np.abs(total) @ farthest, initial=0.0)
-    if not np.maximum(left, np.finfo(float).eps * elastic) <= ROUNDED * maximum:
+    if not np.maximum(residual, np.finfo(float).eps * elastic) <= ROUNDED * maximum:
         raise unbounded(at.linear, omega)
-    return displacement, float(left / maximum), largest
+    return displacement, float(residual / maximum), largest
 
 
 def _per_meter(linear: LinearSystem) -> tuple[FloatArray, FloatArray, FloatArray]:

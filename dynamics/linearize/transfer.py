@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
@@ -51,7 +51,8 @@ from model_studies.cached_file import keep_cached, read_cached
 BLOCK = 4_000_000  # complex displacements held at once
 SAME = 1e-9  # difference of gradients over the largest, below which rows are the same
 VERSION = 1
-"""Raised with every change of the numbers of a transfer function, or of what is kept with them."""
+"""Version of cached files, raised with every change of the fields of a transfer function or of their numbers.
+"""
 
 _SOLVED = 6e-8
 """CPU seconds of a line at a speed by freedoms squared: 3.5 to 9e-8 for 47 to 170 of them."""
@@ -205,7 +206,7 @@ class FlankTransfer(ArrayFile):
     ) -> ComplexArray:
         """Return the changes (S, H, 1 + R, d) of `inputs` of flanks, to first order in d small `changes`.
 
-        Differentiated, (1 + X A) dv = de' - dX (A v + G u_0).
+        They follow from the derivative (1 + X A) dv = de' - dX (A v + G u_0).
         """
         opposing = self._opposing(flanks.tangent - self.tangent, flanks.viscous - self.viscous, self.motion)
         motion = np.einsum("rshc,shc->rsh", self.motion, inputs)[..., None]
@@ -219,8 +220,9 @@ class FlankTransfer(ArrayFile):
     def varied_inputs(self, at: Excited, flanks: FlankExcitation) -> tuple[ComplexArray, float]:
         """Return `inputs` of flanks with tangents that vary with position, and the residual left, relative.
 
-        `at` is the scene about its equilibrium with them. With B = (1 + X A)^-1 they take v from the inputs
-        as in a scene of the receptances A B. Raises `SolveError` where nothing bounds the vibration.
+        `at` is the scene about its equilibrium with these flanks. With B = (1 + X A)^-1 the varying part of
+        the tangents acts as in a scene of the receptances A B, and its forces are subtracted from v. Raises
+        `SolveError` where nothing bounds the vibration.
         """
         inputs, count = self.inputs(flanks), at.cycles[-1].rows.stop
         opposing = self._opposing(flanks.tangent - self.tangent, flanks.viscous - self.viscous, self.motion)
@@ -284,28 +286,21 @@ def flank_transfer(
     system: System,
     speed: FloatArray,
     orders: int = 10,
-    time: float = 0.0,
     cache: Path | None = None,
-    progress: Callable[[float], None] | None = None,
 ) -> FlankTransfer:
-    """Return the transfer functions of a scene about its loaded equilibrium.
+    """Return the transfer functions of a scene about its equilibrium under the loads at t = 0.
 
     With tables of long periods the lines are the `strongest_lines` of the scene's flanks, the mesh orders
     always among them.
 
     Parameters
     ----------
-    system : System
     speed : (S,) array
         Speeds of the first drive that turns, rad/s, increasing, > 0.
     orders : int
         Harmonics of the mesh frequency of the first mesh that turns.
-    time : float
-        When loads are taken, s.
     cache : Path, optional
-        Directory in which they are kept by their content; None: neither read nor written.
-    progress : callable, optional
-        Called with the fraction of the speeds done.
+        Directory in which they are stored by their content; None: neither read nor written.
 
     Raises
     ------
@@ -319,14 +314,14 @@ def flank_transfer(
     if not speed.size:
         raise InputError("speed", [], "at least one speed")
     integer("orders", orders, 1, SAMPLES // 4)
-    at = excited(system, time, orders)
+    at = excited(system, 0.0, orders)
     harmonics = possible_lines(at, orders, speed)
     _require_memory(at, speed.size, harmonics.size)
     file = None if cache is None else cache / f"transfer-{_content_key(at, speed, harmonics, orders)}.nc"
     cached = read_cached(file, FlankTransfer.from_netcdf, ResultError)
     if cached is not None:
         return cached
-    transfer = _computed(at, speed, harmonics, orders, progress)
+    transfer = _computed(at, speed, harmonics, orders)
     keep_cached(transfer, file, FlankTransfer.to_netcdf)
     return transfer
 
@@ -334,7 +329,7 @@ def flank_transfer(
 def transfer_seconds(system: System, speed: FloatArray, orders: int) -> float:
     """Return the cost of `flank_transfer` with these arguments, CPU s: within a factor of 2 from 0.05 s on.
 
-    Raises `InputError`, `SolveError` as it.
+    Raises `InputError` and `SolveError` as `flank_transfer` does.
     """
     lines = possible_lines(excited(system, 0.0, orders), orders, speed)
     return _SOLVED * speed.size * lines.size * system.freedoms.column.size**2
@@ -389,13 +384,7 @@ def excitation_of(at: Excited, harmonics: IntArray) -> FlankExcitation:
     return FlankExcitation(static, force, tangent, viscous, start.mesh_force)
 
 
-def _computed(
-    at: Excited,
-    speed: FloatArray,
-    harmonics: IntArray,
-    orders: int,
-    progress: Callable[[float], None] | None,
-) -> FlankTransfer:
+def _computed(at: Excited, speed: FloatArray, harmonics: IntArray, orders: int) -> FlankTransfer:
     """Solve a block of speeds at a time."""
     flanks, rows, parts = excitation_of(at, harmonics), _rows(at), _parts(at)
     gradient, inputs = at.system.arrays.direction[rows], 1 + rows.size
@@ -408,8 +397,6 @@ def _computed(
         force.append(_bearing_columns(at, steady.omega, u, rows))
         omega.append(steady.omega)
         residual = max(residual, steady.residual)
-        if progress is not None:
-            progress(min(start + block, speed.size) / speed.size)
     return FlankTransfer(
         bearing=at.system.supports.name,
         freedom=at.linear.freedom,
@@ -439,11 +426,11 @@ def _bearing_columns(at: Excited, omega: FloatArray, u: ComplexArray, rows: IntA
     by_input = np.moveaxis(u, 3, 2).reshape(speeds, harmonics * inputs, freedoms)
     force = bearing_forces(at, np.repeat(omega, inputs, axis=1), by_input)
     force = force.reshape(*force.shape[:2], speeds, harmonics, inputs)
-    total, none = at.system.arrays.elements.offset.size, np.zeros((rows.size, freedoms))
-    unit = np.zeros((total, rows.size))
+    unit = np.zeros((at.system.arrays.elements.offset.size, rows.size))
     unit[rows, np.arange(rows.size)] = 1.0
-    of_none = at.system.bearing_force(np.zeros((total, 1)), none[:1], none[:1])
-    direct = at.system.bearing_force(unit, none, none) - of_none  # (b, 3 or 6, R)
+    rest = np.zeros((rows.size, freedoms))
+    static = at.system.bearing_force(np.zeros((len(unit), 1)), rest[:1], rest[:1])
+    direct = at.system.bearing_force(unit, rest, rest) - static  # (b, 3 or 6, R)
     force[..., 1:] -= direct[:, :, None, None]
     return np.asarray(force)
 

@@ -92,8 +92,8 @@ def varied_vibration(
 ) -> tuple[Steady, FloatArray, FloatArray]:
     """Return the vibration at `speed` (S,) in `harmonics` (H,) with tangents that vary.
 
-    And the largest transmission errors over the speeds with mean tangents, excited by static errors and by
-    blocked forces, (m, H) each, m.
+    Two measures of the excitations follow it: the largest transmission errors over the speeds with mean
+    tangents, excited by static errors and by blocked forces, (m, H) each, m.
     """
     rows = at.system.arrays.direction[: at.cycles[-1].rows.stop if at.cycles else 0]
     watched = at.system.arrays.direction[at.system.driving_rows]
@@ -207,11 +207,13 @@ class DirectBalance:
         harmonic, row, imaginary = (np.array(side) for side in zip(*columns, strict=True))
         if harmonic.size > DIRECT:
             return cls(np.zeros((0, 0, 0), dtype=complex), harmonic, row, imaginary)
-        pressing, first = np.zeros((harmonics, rows, harmonic.size), dtype=complex), 0
+        pressing = np.zeros((harmonics, rows, harmonic.size), dtype=complex)
+        first = 0
         for part in parts:
             part_pressing = _pressing(part)
-            at = slice(first, first + part_pressing.shape[2])
-            pressing[part.line_index, part.rows, at], first = part_pressing, at.stop
+            end = first + part_pressing.shape[2]
+            pressing[part.line_index, part.rows, first:end] = part_pressing
+            first = end
         return cls(pressing, harmonic, row, imaginary)
 
     def solve(self, receptance: ComplexArray, source: ComplexArray) -> tuple[ComplexArray, FloatArray]:
@@ -220,9 +222,8 @@ class DirectBalance:
         `receptance` (S, H + 1, R', R') are receptances of the rows, and `source` (S, H + 1, R') coefficients
         of the coordinates that press with the mean tangents.
         """
-        answer = np.matmul(receptance[:, self.harmonic, self.row, None], self.pressing[self.harmonic])[
-            ..., 0, :
-        ]
+        row_receptance = receptance[:, self.harmonic, self.row, None]
+        answer = np.matmul(row_receptance, self.pressing[self.harmonic])[..., 0, :]
         matrix = np.where(self.imaginary[:, None], answer.imag, answer.real) + np.eye(self.size)
         sources = source[:, self.harmonic, self.row]
         right = np.where(self.imaginary, sources.imag, sources.real)
@@ -238,7 +239,7 @@ def _felt(part: _Varying) -> IntArray:
 
 
 def _unknowns(part: _Varying) -> list[tuple[int, int, bool]]:
-    """Return harmonic, row and which part of the coefficient each unknown of a flank is."""
+    """Return the harmonic and the row of every unknown of a flank, and whether it is an imaginary part."""
     lines = part.line_index.tolist()
     rows = (part.rows.start + _felt(part)).tolist()
     return [

@@ -39,19 +39,14 @@ def with_common_base_pitches(scene: Scene) -> tuple[Scene, Corrections]:
     return replace(scene, gears=gears), dict(corrected)
 
 
-def _pairs(scene: Scene) -> tuple[object, ...]:
-    return (scene.gears, *((mesh.driver, mesh.driven) for mesh in scene.meshes))
-
-
-@cached_by(_pairs)
+@cached_by(lambda scene: (scene.gears, *((mesh.driver, mesh.driven) for mesh in scene.meshes)))
 def _corrections(scene: Scene) -> Corrections:
     """Return the necessary corrections; raises `InputError`."""
     _check(scene)
     corrected: Corrections = {}
     for train in _trains(scene):
-        radius, teeth = (
-            np.array([getattr(gear, name) for gear in train]) for name in ("base_radius", "teeth")
-        )
+        radius = np.array([gear.base_radius for gear in train])
+        teeth = np.array([gear.teeth for gear in train])
         per_tooth = radius / teeth
         if np.ptp(per_tooth) <= EQUAL * per_tooth.max():
             continue
@@ -77,10 +72,10 @@ def _check(scene: Scene) -> None:
 
 
 def _trains(scene: Scene) -> Sequence[list[GearBody]]:
+    """Return the gears of each train: a mesh joins the trains that its two gears are in."""
     trains: list[set[str]] = []
     for mesh in scene.meshes:
-        joined = {mesh.driver, mesh.driven}
-        separate = [train for train in trains if not train & joined]
-        joined.update(*(train for train in trains if train & joined))
-        trains = [*separate, joined]
+        pair = {mesh.driver, mesh.driven}
+        separate = [train for train in trains if not train & pair]
+        trains = [*separate, pair.union(*(train for train in trains if train & pair))]
     return [[gear for gear in scene.gears if gear.name in train] for train in trains]

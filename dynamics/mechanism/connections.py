@@ -74,6 +74,7 @@ def condensed_housings(scene: Scene, rotors: Bodies) -> list[Housing]:
 def _gather_seats(scene: Scene, rotors: Bodies, names: Sequence[str]) -> Seats:
     """Lay out the bearings of `scene` that are seats; `names` are those of all supports."""
     chosen, condensed = seated(scene, rotors), condensed_housings(scene, rotors)
+    # the seats of a housing lie next to each other: they share a block of the matrices
     housed = [name for housing in condensed for name in housing.bushings]
     order = [*housed, *(name for name in names if name in chosen and name not in housed)]
     supports = {part.name: (i, part) for i, rotor in enumerate(rotors) for part in rotor.supports}
@@ -188,14 +189,14 @@ class Connections:
         grounded = (~supports.carried)[:, None]
         rows = np.repeat(grounded[seats.support, 0], SEAT)
         return (
-            self._pushed(freedoms, supports.stiffness * grounded, seats.stiffness * rows, tilted),
-            self._pushed(freedoms, supports.damping * grounded, seats.damping * rows, tilted),
+            self._ground_force(freedoms, supports.stiffness * grounded, seats.stiffness * rows, tilted),
+            self._ground_force(freedoms, supports.damping * grounded, seats.damping * rows, tilted),
         )
 
-    def _pushed(
+    def _ground_force(
         self, freedoms: Freedoms, springs: FloatArray, matrix: FloatArray, tilted: bool
     ) -> FloatArray:
-        """Force on the ground of the plain `springs` (b, 3) and of the seats' `matrix` (5 s, 5 s)."""
+        """Return the force on the ground by plain `springs` (b, 3) and by the seats' `matrix` (5 s, 5 s)."""
         supports, seats = self.supports, self.seats
         plain = springs[:, :, None] * freedoms.keep(supports.motion)
         if not tilted:

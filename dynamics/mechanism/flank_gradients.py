@@ -33,13 +33,13 @@ def table_sense(scene: Scene, index: int, sense: int) -> int:
 
 
 def common_face_width(scene: Scene, index: int) -> float:
-    """Axial length over which both gears' faces overlap, m."""
+    """Return the axial length over which the faces of both gears overlap, m."""
     low, high = common_face(scene, index)
     return high - low
 
 
 def middle_from_driver(scene: Scene, index: int, line: LineOfAction, sense: int) -> float:
-    """Face position of the middle of the common face from that of the table's driving gear, m."""
+    """Return the face position of the middle of the common face from that of the table's driving gear, m."""
     mesh = scene.meshes[index]
     gear = scene.gear(mesh.driver)
     if gear.internal:
@@ -78,7 +78,8 @@ def distance_gradient(scene: Scene, rotors: Bodies, index: int, line: LineOfActi
     offset = np.subtract(second.origin, first.origin)
     offset = offset * np.array([1.0, 1.0, 0.0]) / np.hypot(offset[0], offset[1])
 
-    def pulled(center: FloatArray) -> FloatArray:
+    def motion(center: FloatArray) -> FloatArray:
+        """Return the displacement away from the driver per displacement and rotation of a gear."""
         return np.concatenate([offset, cross((line.point[2] - center[2]) * UNIT_Z, offset)])
 
-    return gear_row(scene, rotors, [(mesh.driver, lambda c: -pulled(c)), (mesh.driven, pulled)])
+    return gear_row(scene, rotors, [(mesh.driver, lambda c: -motion(c)), (mesh.driven, motion)])

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,6 +20,14 @@ from dynamics.types import BoolArray, FloatArray, IntArray
 
 COUPLED = ("x", "tilt_y", "bending_x", "y", "tilt_x", "bending_y", "z", "stretch", "rotation", "twist")
 """Order of a flexible shaft's freedoms: what bearings couple stays together, in the smallest blocks."""
+
+
+class _Freedom(NamedTuple):
+    """A freedom of a rotor or a housing."""
+
+    name: str
+    column: int
+    turns: bool
 
 
 @dataclass(frozen=True)
@@ -41,7 +50,7 @@ class Freedoms:
     """Whether each is a rotation or a twist about the axis. Shape (n,)."""
 
     def keep(self, matrix: FloatArray) -> FloatArray:
-        """Return a matrix whose last axis holds all freedoms of all rotors as one of the free ones."""
+        """Return a matrix over the freedoms of all bodies, its last axis, as one over the free ones."""
         return np.ascontiguousarray(np.asarray(matrix, dtype=float) @ self.motion)
 
     def find(self, rotor: int, kind: int) -> int:
@@ -52,25 +61,29 @@ class Freedoms:
 
 def find_freedoms(rotors: Bodies, kinematics: Kinematics, added: Sequence[Collection[str]]) -> Freedoms:
     """Gather the freedoms `added` to each rotor, and the rotation of every shaft without a rigid drive."""
-    freedoms: list[tuple[str, int, bool]] = []
+    freedoms: list[_Freedom] = []
     for index, rotor in enumerate(rotors):
         free = {*added[index], *rotor.rigid_kinds}
         if index not in kinematics.imposed:
             free.add("rotation")
-        candidates = [(kind, 6 * index + k, k == ROTATION) for k, kind in enumerate(FREEDOMS) if kind in free]
+        kinds = [
+            _Freedom(kind, 6 * index + k, k == ROTATION) for k, kind in enumerate(FREEDOMS) if kind in free
+        ]
         if rotor.elastic is not None:
             first, twists = elastic_columns(rotors, index).start, rotor.elastic.twists
-            candidates += [(kind, first + k, bool(twists[k])) for k, kind in enumerate(rotor.elastic.kinds)]
-            candidates.sort(key=lambda part: COUPLED.index(part[0].rstrip("_0123456789")))
-        freedoms += [(f"{rotor.shaft.name}.{kind}", column, turns) for kind, column, turns in candidates]
+            elastic = enumerate(rotor.elastic.kinds)
+            kinds += [_Freedom(kind, first + k, bool(twists[k])) for k, kind in elastic]
+            # names of elastic kinds end in a number
+            kinds.sort(key=lambda part: COUPLED.index(part.name.rstrip("_0123456789")))
+        freedoms += [part._replace(name=f"{rotor.shaft.name}.{part.name}") for part in kinds]
     for index, housing in enumerate(rotors.housings):
         first = housing_columns(rotors, index).start
-        freedoms += [(f"{housing.name}.{kind}", first + k, False) for k, kind in enumerate(housing.kinds)]
-    column = np.array([part[1] for part in freedoms], dtype=np.int64)
-    motion = carried_motion(rotors, column)[:, column]
+        modes = enumerate(housing.kinds)
+        freedoms += [_Freedom(f"{housing.name}.{kind}", first + k, turns=False) for k, kind in modes]
+    column = np.array([part.column for part in freedoms], dtype=np.int64)
     return Freedoms(
-        tuple(part[0] for part in freedoms),
-        column,
-        np.ascontiguousarray(motion),
-        np.array([part[2] for part in freedoms], dtype=np.bool_),
+        name=tuple(part.name for part in freedoms),
+        column=column,
+        motion=np.ascontiguousarray(carried_motion(rotors, column)[:, column]),
+        turns=np.array([part.turns for part in freedoms], dtype=np.bool_),
     )

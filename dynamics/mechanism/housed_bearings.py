@@ -27,7 +27,8 @@ def housed_bearings(scene: Scene, rotors: Bodies) -> tuple[BearingElement, ...]:
         return ()
     names, lever = gather_supports(rotors, frozenset()).name, tilt_lever(scene)
     unit, bearings = np.diag([1.0, 1.0, 1.0, lever, lever]), []
-    for name in (name for housing in rotors.housings for name in housing.bearings):
+    housed = [name for housing in rotors.housings for name in housing.bearings]
+    for name in housed:
         part = supports[name][1]
         acting = np.any((part.seat_stiffness != 0.0) | (part.seat_damping != 0.0), axis=0)
         directions = unit[acting]

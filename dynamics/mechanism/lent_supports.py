@@ -25,7 +25,7 @@ def with_couplings(scene: Scene, rotors: Sequence[Rotor]) -> tuple[Rotor, ...]:
     stiff = [coupling for coupling in scene.couplings if coupling.stiffness is not None]
     sides = [(c, a, b) for c in stiff for a, b in ((c.first, c.second), (c.second, c.first))]
     supported = list(rotors)
-    while True:
+    while True:  # a rotor that gets a support may lend it on: start again until no coupling adds one
         for side in sides:
             coupling, floating, behind = side
             index, support = scene.shaft_index(floating), supported[scene.shaft_index(behind)]

@@ -81,19 +81,14 @@ def excitations(scene: Scene, kinematics: Kinematics, shaft: str, harmonics: int
         moving = ", ".join(s.name for s, turn in zip(scene.shafts, turns, strict=True) if turn)
         raise InputError("shaft", shaft, f"a shaft that turns: {moving}")
     rates = rates / unit
-    parts = [
-        *(
-            Excitation(MESH, mesh.name, "", float(rate), harmonics)
-            for mesh, rate in zip(scene.meshes, rates, strict=True)
-        ),
-        *(
-            Excitation(SHAFT, part.name, "", abs(float(turn)) / unit, TURNS)
-            for part, turn in zip(scene.shafts, turns, strict=True)
-        ),
-        *_of_planets(scene, turns / unit, rates, harmonics),
-        *_of_bearings(scene, np.abs(turns) / unit),
-    ]
-    return tuple(part for part in parts if part.rate > SAME)
+    parts = []
+    for mesh, rate in zip(scene.meshes, rates, strict=True):
+        parts.append(Excitation(MESH, mesh.name, "", float(rate), harmonics))
+    for part, turn in zip(scene.shafts, turns, strict=True):
+        parts.append(Excitation(SHAFT, part.name, "", abs(float(turn)) / unit, TURNS))
+    parts += _of_planets(scene, turns / unit, rates, harmonics)
+    parts += _of_bearings(scene, np.abs(turns) / unit)
+    return tuple(excitation for excitation in parts if excitation.rate > SAME)
 
 
 def shaft_rates(scene: Scene, kinematics: Kinematics, shaft: str) -> dict[str, float]:

@@ -57,7 +57,7 @@ def with_planets(
     planet = scene.shaft(shaft)
     bearings = planet_parts(scene, shaft)[1]
     copied = {name: [numbered(name, index) for index in range(1, number)] for name in bearings}
-    of_pin = {numbered(shaft, index): error for index, error in enumerate(pin_errors or ())}
+    error_by_planet = {numbered(shaft, index): error for index, error in enumerate(pin_errors or ())}
     laws: dict[str, Any] = {kind: _on_copies(getattr(scene, kind), copied) for kind in BEARING_PARTS}
     return replace(
         scene,
@@ -68,7 +68,7 @@ def with_planets(
         gears=_with_copies(scene.gears, shaft, number),
         discs=_with_copies(scene.discs, shaft, number),
         planet_bearings=tuple(
-            _with_error(bearing, of_pin.get(bearing.shaft))
+            _with_error(bearing, error_by_planet.get(bearing.shaft))
             for bearing in _with_copies(scene.planet_bearings, shaft, number)
         ),
         meshes=(*scene.meshes, *_mesh_copies(scene, shaft, number)),
@@ -107,8 +107,7 @@ def _with_copies(parts: Sequence[Part], shaft: str, number: int) -> tuple[Part, 
 
 def _mesh_copies(scene: Scene, shaft: str, number: int) -> list[GearMesh]:
     of_shaft = {gear.name for gear in scene.gears if gear.shaft == shaft}
-    engaged = planet_parts(scene, shaft)[0]
-    meshes = [mesh for mesh in scene.meshes if mesh.name in engaged]
+    meshes = [mesh for mesh in scene.meshes if {mesh.driver, mesh.driven} & of_shaft]
     return [_copied_mesh(mesh, of_shaft, index) for index in range(1, number) for mesh in meshes]
 
 
@@ -120,7 +119,7 @@ def _on_copies(laws: Sequence[Any], copied: Mapping[str, Sequence[str]]) -> tupl
 
 
 def _turns(number: int, angles: Sequence[float] | None) -> list[Turn]:
-    """Angles from the first planet in revolutions: exact where equally spaced."""
+    """Return the angles from the first planet in revolutions, exact where they are equally spaced."""
     if angles is None:
         return [Fraction(index, number) for index in range(number)]
     if len(angles) != number or angles[0] != 0.0:
@@ -157,7 +156,8 @@ def _check_steps(offsets: Mapping[str, Sequence[Turn]], teeth: Mapping[str, int]
     A gear of z teeth that must be o teeth ahead lets the shaft stand at (o + k)/z turns, k = 0 to z - 1.
     """
     names = list(offsets)
-    for gear, name in zip(names[:1] * len(names), names[1:], strict=False):
+    for name in names[1:]:
+        gear = names[0]
         for index, (ahead, offset) in enumerate(zip(offsets[gear], offsets[name], strict=True)):
             angles = ((ahead + k) * Fraction(teeth[name], teeth[gear]) - offset for k in range(teeth[gear]))
             off = min((float(angle - round(angle)) for angle in angles), key=abs)

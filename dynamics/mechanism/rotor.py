@@ -70,7 +70,7 @@ class Rotor:
         return nearest_on(position, self.shaft.length)
 
     def lever(self, support: Bushing | PlanetBearing) -> float:
-        """Axial distance of `support` from the center of mass, m."""
+        """Return the axial distance of `support` from the center of mass, m."""
         return float(self.shaft.origin[2] + support.position - self.center[2])
 
     @cached_property
@@ -155,11 +155,9 @@ def _damped(support: Support, share: float, tilting: float) -> Support:
     """
 
     def damping(specified: float | None, stiffness: float) -> float:
-        return (
-            2.0 * support.damping_ratio * float(np.sqrt(stiffness * share))
-            if specified is None
-            else specified
-        )
+        if specified is not None:
+            return specified
+        return 2.0 * support.damping_ratio * float(np.sqrt(stiffness * share))
 
     support = replace(
         support,

@@ -37,11 +37,11 @@ def warmed_bearings(scene: Scene) -> Scene:
             rows[bearing.name] = _warm_row(scene, warm, bearing)
         except InputError as error:
             raise error.within(f"rolling_bearings[{index}]") from None
-    growth = {part.name: _outgrown(scene, warm, part) for part in scene.bushings}
+    growth = {part.name: _growth(scene, warm, part) for part in scene.bushings}
     return replace(
         scene,
         rolling_bearings=tuple(rows[part.name].warm for part in scene.rolling_bearings),
-        bushings=tuple(_pushed(part, growth[part.name]) for part in scene.bushings),
+        bushings=tuple(_preloaded(part, growth[part.name]) for part in scene.bushings),
         temperatures=replace(warm, bearings=rows),
     ).with_bearing_laws(lambda law: law.after_growth(growth.get(law.bushing, 0.0)))
 
@@ -54,7 +54,7 @@ def _warm_row(scene: Scene, warm: Temperatures, bearing: RollingBearing) -> Warm
     )
     walls = _seat(warm, shaft, bearing.position), _wall(warm, bearing)
     rings = warm_rings(bearing.row, bearing.fits, strain, *walls)
-    shift = row_law(bearing).shift + _outgrown(scene, warm, bearing)
+    shift = row_law(bearing).shift + _growth(scene, warm, bearing)
     try:
         row = replace(bearing.row, clearance=bearing.row.clearance + rings.play)
     except InputError as error:
@@ -72,11 +72,11 @@ def _warm_row(scene: Scene, warm: Temperatures, bearing: RollingBearing) -> Warm
 def _seat(warm: Temperatures, shaft: Shaft, position: float) -> Cylinder:
     """Return the shaft in a bearing: solid steel where it has no sections."""
     strain = warm.strain(shaft.thermal_expansion, shaft.temperature)
-    ends = accumulate(section.length for section in shaft.sections)
-    under = [part for part, end in zip(shaft.sections, ends, strict=True) if position <= end]
     if not shaft.sections:
         return Cylinder(0.0, 1.0, strain=strain)  # the fits give the diameter of the seat
-    seat = under[0] if under else shaft.sections[-1]
+    ends = accumulate(section.length for section in shaft.sections)
+    sections = zip(shaft.sections, ends, strict=True)
+    seat = next((section for section, end in sections if position <= end), shaft.sections[-1])
     return Cylinder(seat.bore_diameter, seat.outer_diameter, seat.youngs_modulus, seat.poissons_ratio, strain)
 
 
@@ -86,7 +86,7 @@ def _wall(warm: Temperatures, bearing: RollingBearing) -> Cylinder:
     return Cylinder(0.0, outer, material.youngs_modulus, material.poissons_ratio, strain)
 
 
-def _outgrown(scene: Scene, warm: Temperatures, bearing: Bushing | RollingBearing) -> float:
+def _growth(scene: Scene, warm: Temperatures, bearing: Bushing | RollingBearing) -> float:
     """Return the expansion of the shaft along z relative to the housing at a bearing, m.
 
     Bearings that hold the shaft along z move by 0 on the average: a single one locates it, a pair shares the
@@ -116,10 +116,10 @@ def _holds_axially(scene: Scene, bearing: Bushing | RollingBearing) -> bool:
     return float(bearing.seat_stiffness[2, 2]) > 0.0 or any(law.holds_axially for law in laws)
 
 
-def _pushed(bushing: Bushing, growth: float) -> Bushing:
+def _preloaded(bushing: Bushing, growth: float) -> Bushing:
     """Return a bushing whose shaft has grown by `growth` (m) along z: its springs push back as preload."""
     if growth == 0.0:
         return bushing
     force = np.zeros(5) if bushing.preload is None else np.array(bushing.preload)
-    pushed = force - bushing.seat_stiffness[:, 2] * growth
-    return replace(bushing, preload=tuple(float(value) for value in pushed))
+    force = force - bushing.seat_stiffness[:, 2] * growth
+    return replace(bushing, preload=tuple(float(value) for value in force))

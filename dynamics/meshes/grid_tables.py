@@ -46,42 +46,39 @@ class GridTables(NamedTuple):
     def _layout(cls, tables: Sequence[MeshTable]) -> GridTables:
         by_id = {id(table): table for table in tables}  # flanks of one table share its numbers
         numbers = {key: _numbers(table) for key, table in by_id.items()}
-        begins = dict(zip(by_id, np.cumsum([0, *(number.size for number in numbers.values())]), strict=False))
-        axes = [
-            np.ravel(getattr(t, name)) for t in tables for name in ("misalignment", "center_distance_change")
-        ]
+        ends = np.cumsum([number.size for number in numbers.values()])
+        begins = {key: end - numbers[key].size for key, end in zip(by_id, ends, strict=True)}
+        axes, shape = [], []
+        for table in tables:
+            axes += [np.ravel(table.misalignment), np.ravel(table.center_distance_change)]
+            shape.append([axes[-2].size, axes[-1].size, np.size(table.position)])
         starts = np.cumsum([0, *(axis.size for axis in axes)])[:-1].reshape(-1, 2)
-        shape = [
-            [np.size(t.misalignment), np.size(t.center_distance_change), np.size(t.position)] for t in tables
-        ]
         return cls(
-            pack_tables(tables),
-            np.array(shape, dtype=np.int64).reshape(-1, 3),
-            np.array([numbers[id(table)].shape[4] for table in tables], dtype=np.int64),
-            np.ascontiguousarray(starts, dtype=np.int64),
-            np.concatenate([*axes, np.empty(0)]).astype(float),
-            np.array([begins[id(table)] for table in tables], dtype=np.int64),
-            joined([number.ravel() for number in numbers.values()], ()),
+            base=pack_tables(tables),
+            shape=np.array(shape, dtype=np.int64).reshape(-1, 3),
+            channels=np.array([numbers[id(table)].shape[4] for table in tables], dtype=np.int64),
+            axis_first=np.ascontiguousarray(starts, dtype=np.int64),
+            axis=np.concatenate([*axes, np.empty(0)]).astype(float),
+            first=np.array([begins[id(table)] for table in tables], dtype=np.int64),
+            number=joined([number.ravel() for number in numbers.values()], ()),
         )
 
     def with_table(self, flank: int, table: MeshTable) -> GridTables:
         """Return the tables with another one of a flank, behind all others."""
         layout = GridTables._layout([table])
-        shape, channels, axis_first, first = (
-            array.copy() for array in (self.shape, self.channels, self.axis_first, self.first)
+        tables = GridTables(
+            base=self.base.with_table(flank, table),
+            shape=self.shape.copy(),
+            channels=self.channels.copy(),
+            axis_first=self.axis_first.copy(),
+            axis=np.concatenate([self.axis, layout.axis]),
+            first=self.first.copy(),
+            number=np.concatenate([self.number, layout.number]),
         )
-        shape[flank], channels[flank] = layout.shape[0], layout.channels[0]
-        axis_first[flank] = layout.axis_first[0] + self.axis.size
-        first[flank] = self.number.size
-        return GridTables(
-            self.base.with_table(flank, table),
-            shape,
-            channels,
-            axis_first,
-            np.concatenate([self.axis, layout.axis]),
-            first,
-            np.concatenate([self.number, layout.number]),
-        )
+        tables.shape[flank], tables.channels[flank] = layout.shape[0], layout.channels[0]
+        tables.axis_first[flank] = layout.axis_first[0] + self.axis.size
+        tables.first[flank] = self.number.size
+        return tables
 
     def overwrite(self, flank: int, table: MeshTable) -> None:
         """Write another table as `PackedTables.overwrite` does."""
@@ -118,7 +115,7 @@ def _packed(tables: tuple[MeshTable, ...]) -> GridTables:
 
 
 def _numbers(table: MeshTable) -> FloatArray:
-    """Return (M, D, P, L, channels, orders)."""
+    """Return the numbers of a table, (M, D, P, L, channels, orders)."""
     shape = np.shape(table.deflection)
     orders = list(product(*((0, 1) if size > 1 else (0,) for size in shape[:2]), (0, 1)))
     numbers = np.empty((*shape, 2 + 2 * len(LEVERS), len(orders)))

@@ -18,7 +18,7 @@ from dynamics.meshes.mesh_table import MeshTable
 from dynamics.types import FloatArray, IntArray
 
 BUCKETS_PER_KNOT = 4  # equal buckets of position per knot, from which a look-up starts
-MIN = 4  # knots of a table that can be decimated
+MIN = 4  # least number of knots of a decimated table
 
 
 @with_numbers("offset")
@@ -53,7 +53,7 @@ class PackedTables(NamedTuple):
     def decimated(self, every: int = 2) -> PackedTables:
         """Return the tables on each `every`-th knot of position, with the values and slopes at these knots.
 
-        Tables of fewer than LEAST knots in what is left stay as they are.
+        Tables that would be left with fewer than `MIN` knots stay as they are.
         """
         _, flank, part_of = np.unique(self.offset[:, 0], return_index=True, return_inverse=True)
         parts = [_decimated(_part(self, int(index)), every) for index in flank]
@@ -116,6 +116,7 @@ def _decimated(table: _Table, every: int) -> _Table:
     cubic = table.row.reshape(knot.size - 1, level.size, 2, 4)
     start, stop, width = indices[:-1], indices[1:] - 1, np.diff(knot)[:, None, None]
     first, last, span = cubic[start], cubic[stop], np.diff(knot[indices])[:, None, None]
+    # Hermite's cubics between retained knots; at the end of a cubic, 1, all its powers are 1
     value, rise = first[..., 0], first[..., 1] / width[start] * span
     fall = (last @ np.array([0.0, 1.0, 2.0, 3.0])) / width[stop] * span
     step = last.sum(axis=-1) - value
@@ -145,12 +146,16 @@ def _joined(
     """Lay out different tables, and of each flank the one it uses: processors keep the rows of few tables."""
     sizes = [(part.knot.size, part.bucket.size, len(part.row), part.level.size) for part in parts]
     starts = np.cumsum([(0, 0, 0, 0), *sizes], axis=0)
-    offset = [(*starts[k][:2], sizes[k][1], *starts[k][2:], sizes[k][3]) for k in part_of]
+    offset = []
+    for k in part_of:
+        first_knot, first_bucket, first_row, first_level = starts[k]
+        buckets, levels = parts[k].bucket.size, parts[k].level.size
+        offset.append((first_knot, first_bucket, buckets, first_row, first_level, levels))
     return PackedTables(
         offset=np.array(offset, dtype=np.int64).reshape(-1, 6),
         shift=shift,
         period=period,
-        density=np.array([float(sizes[k][1]) for k in part_of]) / period,
+        density=np.array([float(parts[k].bucket.size) for k in part_of]) / period,
         knot=joined([part.knot for part in parts], ()),
         per_width=joined([np.append(1.0 / np.diff(part.knot), 0.0) for part in parts], ()),
         bucket=joined([part.bucket for part in parts], ()).astype(np.int64, copy=False),
@@ -189,7 +194,7 @@ def _bucket_starts(knot: FloatArray) -> IntArray:
 
 
 def _cubic(value: FloatArray, slope: FloatArray, width: FloatArray) -> FloatArray:
-    """Coefficients (P, L, 4) on each interval, the last of which joins the last knot to the first."""
+    """Return coefficients (P, L, 4) on each interval, the last of which joins the last knot to the first."""
     end, rise, fall = np.roll(value, -1, axis=0), slope * width, np.roll(slope, -1, axis=0) * width
     step = end - value
     return np.stack([value, rise, 3.0 * step - 2.0 * rise - fall, rise + fall - 2.0 * step], axis=-1)

@@ -41,7 +41,8 @@ class PeriodicCurve:
         if len(phase) != len(amplitude):
             raise InputError("phase", len(phase), f"as many values as amplitudes ({len(amplitude)})")
         order = 2.0 * np.pi * np.arange(1, len(amplitude) + 1)
-        knots = np.arange(PER_HARMONIC * max(len(amplitude), 1)) / (PER_HARMONIC * max(len(amplitude), 1))
+        count = PER_HARMONIC * max(len(amplitude), 1)
+        knots = np.arange(count) / count
         angle = np.outer(knots, order) + np.asarray(phase, dtype=float)
         size = np.asarray(amplitude, dtype=float)
         return cls(knots, mean + np.cos(angle) @ size, -np.sin(angle) @ (size * order))
@@ -71,6 +72,7 @@ class PeriodicCurve:
         k = np.searchsorted(knots[1:-1], at, side="right")
         after = (k + 1) % self.position.size
         width = knots[k + 1] - knots[k]
+        # Hermite's cubic: value + slope x + start x^2 + bend x^3
         secant = (self.value[after] - self.value[k]) / width
         bend = (self.slope[k] + self.slope[after] - 2.0 * secant) / width**2
         start = (secant - self.slope[k]) / width - bend * width
@@ -103,8 +105,10 @@ def stiffness_table(
     (k, k_slope), (e, e_slope) = stiffness(position), error(position)
     if np.any(k <= 0.0):
         raise InputError("value", float(np.min(k)), "above 0 N/m at all positions, as a stiffness")
-    twice = np.ones((1, 1, 1, 2))  # over misalignments, center distances, positions, and the two levels
+    # gives curves the shape of a table: misalignments, center distances, positions, and the two levels
+    twice = np.ones((1, 1, 1, 2))
     level = np.array([0.0, LEVEL])
+    sliding = None if teeth is None else standard_sliding(teeth, position)
     return PlainTable(
         position=position,
         level=level,
@@ -114,8 +118,8 @@ def stiffness_table(
         deflection_slope=e_slope[:, None] - level * (k_slope / k**2)[:, None] + 0.0 * twice,
         stiffness=k[:, None] * twice,
         stiffness_slope=k_slope[:, None] * twice,
-        sliding_share=None if teeth is None else standard_sliding(teeth, position)[0][:, None] * twice,
-        sliding_lever=None if teeth is None else standard_sliding(teeth, position)[1][:, None] * twice,
+        sliding_share=None if sliding is None else sliding[0][:, None] * twice,
+        sliding_lever=None if sliding is None else sliding[1][:, None] * twice,
     )
 
 

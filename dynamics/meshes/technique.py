@@ -7,6 +7,7 @@ table: the force by position and deflection, or the secant stiffness at the nomi
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -59,8 +60,6 @@ def table_at(table: MeshTable, misalignment: float, center_distance_change: floa
             return values
         return np.asarray(np.einsum("m,d,mdpl->pl", weight_m, weight_d, values)[None, None])
 
-    levers = {name: coefficient(name) for name in LEVERS if getattr(table, name, None) is not None}
-
     return PlainTable(
         position=np.asarray(table.position, dtype=float),
         level=np.asarray(table.level, dtype=float),
@@ -71,8 +70,14 @@ def table_at(table: MeshTable, misalignment: float, center_distance_change: floa
         stiffness=coefficient("stiffness"),
         stiffness_slope=coefficient("stiffness_slope"),
         period=table.period,
-        **levers,
+        **{name: coefficient(name) for name in _present(table, LEVERS)},
     )
+
+
+def _present(table: MeshTable, names: Sequence[str]) -> dict[str, FloatArray]:
+    """Return the optional quantities of a table that it has, by name."""
+    values = {name: getattr(table, name, None) for name in names}
+    return {name: value for name, value in values.items() if value is not None}
 
 
 @identity_cached
@@ -90,7 +95,7 @@ def secant_table(table: PlainTable, force: float) -> PlainTable:
             "nominal_force", force, "a force at which the transmission error is above 0 everywhere"
         )
     zero, stiffness = np.zeros_like(ste), force / ste
-    weight = np.array([np.interp(force, table.level, unit) for unit in np.eye(table.level.size)])[:, None]
+    weight = _linear_weights(table.level, force)[:, None]
     stiffness_slope = -stiffness * slope / ste
 
     def shaped(first: FloatArray, second: FloatArray) -> FloatArray:
@@ -106,11 +111,7 @@ def secant_table(table: PlainTable, force: float) -> PlainTable:
         stiffness=shaped(stiffness, stiffness),
         stiffness_slope=shaped(stiffness_slope, stiffness_slope),
         period=table.period,
-        **{
-            name: np.repeat(values @ weight, 2, axis=-1)
-            for name in LEVERS
-            if (values := getattr(table, name)) is not None
-        },
+        **{name: np.repeat(lever @ weight, 2, axis=-1) for name, lever in _present(table, LEVERS).items()},
     )
 
 
@@ -123,6 +124,11 @@ def _weights(field: str, knots: FloatArray, value: float) -> FloatArray:
     if not knots[0] <= value <= knots[-1]:
         bound = from_to(float(knots[0]), float(knots[-1]), "m", note=", the table's")
         raise InputError(field, value, bound, "Compute the table for this operating point.")
+    return _linear_weights(knots, value)
+
+
+def _linear_weights(knots: FloatArray, value: float) -> FloatArray:
+    """Return the weights of the knots in linear interpolation: each is the interpolant of a unit vector."""
     return np.array([np.interp(value, knots, unit) for unit in np.eye(knots.size)])
 
 
@@ -157,7 +163,7 @@ def table_at_operating_point(
 
 
 def _hermite_weights(knots: FloatArray, at: float) -> FloatArray:
-    """Hermite weights of the values and the slopes at all `knots` (k,), (2, k)."""
+    """Return the weights of values and slopes at `knots` (k,) in Hermite's interpolation, (2, k)."""
     weight = np.zeros((2, knots.size))
     if knots.size == 1:
         weight[0, 0] = 1.0
@@ -176,8 +182,9 @@ def mirrored(table: MeshTable, thickness: float) -> PlainTable:
     position = np.mod(thickness - table.position, float(table.period))
     position[position >= table.period] = 0.0  # a tiny negative one rounds up to a whole period
     order = np.argsort(position)
+    sign = np.array([1.0, -1.0]).reshape(2, 1, 1, 1, 1)  # of values, and of derivatives in position
 
-    def turned(values: FloatArray) -> FloatArray:
+    def reordered(values: FloatArray) -> FloatArray:
         return np.ascontiguousarray(np.take(values, order, axis=-2))
 
     return PlainTable(
@@ -185,15 +192,11 @@ def mirrored(table: MeshTable, thickness: float) -> PlainTable:
         level=table.level,
         misalignment=table.misalignment,
         center_distance_change=table.center_distance_change,
-        deflection=turned(table.deflection),
-        deflection_slope=-turned(table.deflection_slope),
-        stiffness=turned(table.stiffness),
-        stiffness_slope=-turned(table.stiffness_slope),
+        deflection=reordered(table.deflection),
+        deflection_slope=-reordered(table.deflection_slope),
+        stiffness=reordered(table.stiffness),
+        stiffness_slope=-reordered(table.stiffness_slope),
         period=table.period,
-        **{name: turned(values) for name in LEVERS if (values := getattr(table, name, None)) is not None},
-        **{
-            name: np.array([1.0, -1.0]).reshape(2, 1, 1, 1, 1) * turned(values)
-            for name in DERIVATIVES
-            if (values := getattr(table, name, None)) is not None
-        },
+        **{name: reordered(values) for name, values in _present(table, LEVERS).items()},
+        **{name: sign * reordered(values) for name, values in _present(table, DERIVATIVES).items()},
     )

@@ -52,8 +52,8 @@ def allowed_levels(
         for model in (ElementalRadiators(), EquivalentRadiatedPower())
     )
     # exact level = level - error: the upper error gives the lower bound
-    low, high = (plane - plane_off[1 - end] for end in (0, 1))
-    first, last = (monopoles - monopoles_off[1 - end] for end in (0, 1))
+    low, high = plane - plane_off[1], plane - plane_off[0]
+    first, last = monopoles - monopoles_off[1], monopoles - monopoles_off[0]
     disjoint = (first > high) | (last < low)
     by_velocity = (disjoint & (ka > INTERIOR)[:, None]) | ~resolved[:, None]
     by_monopoles = disjoint & ~by_velocity
@@ -66,7 +66,7 @@ def allowed_levels(
 class EstimatedRadiation(HousingRadiation):
     """Radiation resistance by monopoles with the power of every single mode corrected to the estimate.
 
-    It stays positive semidefinite.
+    The resistance stays positive semidefinite.
     """
 
     correction: FloatArray
@@ -85,7 +85,7 @@ class EstimatedRadiation(HousingRadiation):
     def error_band(self, frequency: float, mode_power: FloatArray) -> tuple[float, float]:
         """Return the bounds of the error of the level at a frequency, Hz, as `RadiationModel` does.
 
-        It is the mean of the bands of the first modes, weighted with the power that each of them radiates
+        They are the means of those of the first modes, weighted with the power that each of them radiates
         alone, `mode_power` (m,) in W.
         """
         count, total_power = len(mode_power), max(float(mode_power.sum()), MIN)

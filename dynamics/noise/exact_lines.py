@@ -87,7 +87,7 @@ def corrected_radiation(
     cache: Path | None = None,
     budget: float = BUDGET,
 ) -> CorrectedRadiation:
-    """Return the estimate, in usual air, corrected line by line, each time at that which may be the loudest.
+    """Return the estimate, in usual air, corrected line by line; the next line is that which may be loudest.
 
     Raises `InputError`, `SolveError` as `radiated_sound` and `surface_pressure` do.
 
@@ -109,7 +109,7 @@ def corrected_radiation(
     sound = radiated_sound(response, housing, bearings, radiation)
     while point := _next_point(sound, radiation, (*omitted, *(line.frequency for line in lines))):
         hertz, at = point.frequency, (point.speed_index, point.order_index)
-        if LINES in (len(lines), len(omitted)):
+        if len(lines) == LINES or len(omitted) == LINES:
             omitted[hertz] = f"further lines, at {engineering(hertz, 4)} Hz first: {LINES} at most"
             break
         seconds = line_cost(housing, hertz).seconds
@@ -177,7 +177,13 @@ def _exact_line(
     metadata = RadiationMetadata(panels, meter.finish(), hertz, 0.0, outer.inner_area, outer.cap_area)
     hermitian = 0.5 * (matrix + matrix.conj().T)
     line = HousingRadiation(
-        np.array([hertz]), hermitian[None], outer.surface, outer.hull.area, AIR.impedance, NAME, metadata
+        frequency=np.array([hertz]),
+        matrix=hermitian[None],
+        surface=outer.surface,
+        area=outer.hull.area,
+        impedance=AIR.impedance,
+        model_name=NAME,
+        metadata=metadata,
     )
     keep_cached(line, file, HousingRadiation.to_netcdf)
     return line
@@ -205,7 +211,8 @@ def with_exact_lines(estimate: EstimatedRadiation, lines: Sequence[HousingRadiat
     knots = [_knot(estimate, at) for at in estimate.frequency[away].tolist()]
     closer = np.diff(np.log(hertz)) < 2.0 * np.log(BLEND)
     for line, below, above in zip(rising, [False, *closer], [*closer, False], strict=True):
-        knots += _knots_of_line(estimate, line, [side for side, met in ((-1, below), (1, above)) if not met])
+        sides = ([] if below else [-1]) + ([] if above else [1])
+        knots += _knots_of_line(estimate, line, sides)
     knots.sort(key=lambda knot: knot.frequency)
     frequency, matrix, correction, mode_error, by_velocity = zip(*knots, strict=True)
     return replace(
@@ -222,7 +229,8 @@ def _knots_of_line(
     estimate: EstimatedRadiation, line: HousingRadiation, sides: Sequence[int]
 ) -> Iterator[_Knot]:
     """Yield the knots of a line, and the knots at which it ends at its `sides`, -1 below and 1 above it."""
-    hertz, lowest, highest = (float(at) for at in (line.frequency[0], *estimate.frequency[[0, -1]]))
+    hertz = float(line.frequency[0])
+    lowest, highest = float(estimate.frequency[0]), float(estimate.frequency[-1])
     for at in (hertz, *(hertz * FLAT**side for side in sides)):
         knot = _knot(estimate, at)
         error = np.broadcast_to([[-EXACT], [EXACT]], knot.mode_error.shape)
@@ -237,6 +245,10 @@ def _knot(estimate: EstimatedRadiation, hertz: float) -> _Knot:
     row = int(np.abs(estimate.frequency - hertz).argmin())
     knots = np.searchsorted(estimate.frequency, [knot for knot, _ in estimate.weights(hertz)])
     shares = [share for _, share in estimate.weights(hertz)]
-    matrix = np.tensordot(shares, estimate.matrix[knots], 1)
-    rest = estimate.correction[row], estimate.mode_error[:, row], estimate.by_velocity[row]
-    return _Knot(hertz, matrix, *rest)
+    return _Knot(
+        frequency=hertz,
+        matrix=np.tensordot(shares, estimate.matrix[knots], 1),
+        correction=estimate.correction[row],
+        mode_error=estimate.mode_error[:, row],
+        by_velocity=estimate.by_velocity[row],
+    )

@@ -34,8 +34,8 @@ from model_studies.record import under_key
 from model_studies.workers import InProcess, Workers, divided
 
 TOLERANCE = 0.5
-"""Tolerance of the power of each mode in the middle of two frequencies, dB; the frequencies that are added
-leave a quarter of it.
+"""Tolerance of the power of each mode in the middle of two frequencies, dB. The middle is computed, too, and
+between it and the ends a quarter of the error is left.
 """
 NOTHING = 1e-6
 """Resistance over the largest of all modes, below which a mode radiates nothing."""
@@ -59,7 +59,7 @@ BAND = 10.0**0.05
 WORK = "radiation resistance by {}"
 """Name of a model over a range of frequencies in the log of runs."""
 RADIATION_VERSION = 3
-"""Raised with every change of the numbers of a resistance, or of what is kept with them."""
+"""Version of cached files, raised with every change of the fields of a resistance or of their numbers."""
 STAGE = "radiation"
 MIN_COST = 1.0
 """CPU seconds."""
@@ -101,10 +101,24 @@ def _constant_knots(low: float, high: float, matrix: ComplexArray) -> _Knots:
     return _Knots(frequency, np.broadcast_to(matrix, (frequency.size, *matrix.shape)), 4.0 * CONSTANT_ERROR)
 
 
+class _Interval(NamedTuple):
+    """The interval between two computed frequencies of an octave, Hz."""
+
+    octave: int
+    left: float
+    right: float
+
+    @property
+    def middle(self) -> float:
+        """Geometric mean of the ends, Hz."""
+        return float(np.sqrt(self.left * self.right))
+
+
 def _interpolation_error(
-    left: float, middle: float, right: float, matrices: dict[float, ComplexArray], modes: FloatArray
+    interval: _Interval, matrices: dict[float, ComplexArray], modes: FloatArray
 ) -> float:
-    """Return the error of the power of a mode in the middle by interpolation between two ends, dB."""
+    """Return the error of the power of a mode in the middle by interpolation between the ends, dB."""
+    left, middle, right = interval.left, interval.middle, interval.right
     ends = ModalResistance(np.array([left, right]), np.stack([matrices[left], matrices[right]]))
     expected = ends.alone(np.array([middle]), modes)[0]
     power = np.einsum("mk,mn,nk->k", modes, matrices[middle], modes, optimize=True).real
@@ -127,12 +141,14 @@ def _knots_of(
 ) -> list[_Knots]:
     """Return frequencies of each range, in Hz, between which R/f^2 is linear within `TOLERANCE`.
 
-    The middle of each interval is computed and kept. Where it is missed by more, both halves are looked at in
-    turn, all of a width together. The error of what is kept is about a quarter of that stated. `resistances`
-    yields matrices (r, r); `modes` (r, m) are vectors whose power is compared.
+    The middle of each interval is computed and added. Where interpolation misses it by more, both halves
+    become intervals; all intervals of a width are computed together. With the middles added the error is
+    about a quarter of that stated. `resistances` yields matrices (r, r); `modes` (r, m) are vectors whose
+    power is compared.
     """
     computed: list[dict[float, ComplexArray]] = [{} for _ in ranges]
-    error, pending = [0.0] * len(ranges), []
+    error = [0.0] * len(ranges)
+    pending: list[_Interval] = []
 
     def compute(points: Points) -> None:
         for (index, frequency), matrix in zip(points, resistances(points), strict=True):
@@ -140,19 +156,19 @@ def _knots_of(
 
     for index, (low, high) in enumerate(ranges):
         count = max(int(np.ceil(np.log(high / low) / np.log(WIDEST))), 1)
-        start = np.geomspace(low, high, count + 1).tolist()
-        pending += [(index, *ends) for ends in pairwise(start)]
-    compute(list(dict.fromkeys((index, end) for index, *ends in pending for end in ends)))
+        ends = np.geomspace(low, high, count + 1).tolist()
+        pending += [_Interval(index, left, right) for left, right in pairwise(ends)]
+    ends_of_all = [(part.octave, end) for part in pending for end in (part.left, part.right)]
+    compute(list(dict.fromkeys(ends_of_all)))  # neighbors share an end
     while pending:
-        middles = [float(np.sqrt(left * right)) for _, left, right in pending]
-        compute([(index, middle) for (index, *_), middle in zip(pending, middles, strict=True)])
+        compute([(part.octave, part.middle) for part in pending])
         halves = []
-        for (index, left, right), middle in zip(pending, middles, strict=True):
-            deviation = _interpolation_error(left, middle, right, computed[index], modes)
-            if deviation > TOLERANCE and right / left > CLOSEST:
-                halves += [(index, left, middle), (index, middle, right)]
+        for part in pending:
+            deviation = _interpolation_error(part, computed[part.octave], modes)
+            if deviation > TOLERANCE and part.right / part.left > CLOSEST:
+                halves += [part._replace(right=part.middle), part._replace(left=part.middle)]
             else:
-                error[index] = max(error[index], deviation)
+                error[part.octave] = max(error[part.octave], deviation)
         pending = halves
     knots = [(np.array(sorted(matrices)), matrices) for matrices in computed]
     return [
@@ -268,7 +284,7 @@ def housing_radiation(
     """Return the radiation resistance of a housing from the lowest to the highest of some frequencies.
 
     Frequencies at which it is computed lie closer until the power of every mode is interpolated within about
-    0.1 dB (`knots`). Panels are as coarse as each octave allows. Above the frequency that the mesh resolves
+    0.1 dB. Panels are as coarse as each octave allows. Above the frequency that the mesh resolves
     (six edges of a panel in a wavelength) equivalent radiated power takes the model's place. Raises
     `InputError`: the housing has no surface, a frequency is not above zero, or what the model refuses.
 
@@ -302,13 +318,13 @@ def housing_radiation(
         parts.append(_constant_knots(first, high, cast(ComplexArray, air.impedance * outer.surface)))
     error = 0.25 * max(part.error for part in parts)
     return HousingRadiation(
-        np.concatenate([part.frequency for part in parts]),
-        np.concatenate([part.matrix for part in parts]),
-        outer.surface,
-        outer.hull.area,
-        air.impedance,
-        model.model_name,
-        RadiationMetadata(panels, cost, resolved, error, outer.inner_area, outer.cap_area),
+        frequency=np.concatenate([part.frequency for part in parts]),
+        matrix=np.concatenate([part.matrix for part in parts]),
+        surface=outer.surface,
+        area=outer.hull.area,
+        impedance=air.impedance,
+        model_name=model.model_name,
+        metadata=RadiationMetadata(panels, cost, resolved, error, outer.inner_area, outer.cap_area),
     )
 
 
@@ -365,7 +381,7 @@ def cached_radiation(
     Parameters
     ----------
     cache : Path, optional
-        Directory of kept results and of what is known of the host; None: neither read nor written.
+        Directory of cached results and of what is known of the host; None: neither read nor written.
         Results that take less than a second are not stored.
     progress : callable, optional
         Called as progress("radiation", fraction), before costly work with its predicted cost behind it.
@@ -373,9 +389,9 @@ def cached_radiation(
         Workers as in `housing_radiation`.
     """
     ends = float(np.min(frequencies)), float(np.max(frequencies))
-    file = (
-        None if cache is None else cache / f"radiation-{content_key(housing, model, ends, air or Air())}.nc"
-    )
+    file = None
+    if cache is not None:
+        file = cache / f"radiation-{content_key(housing, model, ends, air or Air())}.nc"
     cached = read_cached(file, HousingRadiation.from_netcdf, ResultError)
     if cached is not None:
         return cached

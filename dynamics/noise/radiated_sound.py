@@ -76,9 +76,9 @@ def _no_bins() -> FloatArray:
 class RadiatedSound(ArrayFile, Plottable):
     """Sound power at S speeds in H orders, each as in a steady state; b bearings and m modes of housings.
 
-    Orders add up in power, and so do several housings. Shares of bearings add up to the power; to those of
-    modes what the kept modes lack statically is missing. A share is negative where a part cancels others.
-    Fields state unit, meaning and dimensions of arrays.
+    Orders add up in power, and so do several housings. Shares of bearings add up to the power, those of modes
+    to the power without the static motion by the other modes. A share is negative where a part cancels
+    others. Fields state unit, meaning and dimensions of arrays.
     """
 
     SCHEMA = "lineofaction radiated sound"
@@ -116,8 +116,8 @@ class RadiatedSound(ArrayFile, Plottable):
     (S,).
     """
     metadata: Json = field(default_factory=dict, metadata=under_key("facts"))
-    """Plain JSON: `radiation` by housing (`HousingRadiation.facts`, `model_name`, `area`, and
-    `valid_frequency` in Hz, to which the modes kept carry the motion).
+    """Plain JSON: `radiation` by housing (`HousingRadiation.metadata`, `model_name`, `area`, and
+    `valid_frequency` in Hz, up to which the modes of the reduction carry the motion).
     """
     panel_node: FloatArray = field(
         default_factory=lambda: np.empty((0, 3)),
@@ -171,6 +171,7 @@ class RadiatedSound(ArrayFile, Plottable):
             **{name: np.concatenate([getattr(sound, name) for sound in sounds]) for name in by_part},
         }
         radiation = {name: about for sound in sounds for name, about in sound.metadata["radiation"].items()}
+        floors = [sound.floor for sound in sounds]
         return cls(
             speed=first.speed,
             order=first.order,
@@ -180,7 +181,7 @@ class RadiatedSound(ArrayFile, Plottable):
             in_contact=first.in_contact,
             metadata={"radiation": radiation},
             **joined,
-            **_floor_fields([floor for sound in sounds if (floor := sound.floor) is not None]),
+            **_floor_fields([floor for floor in floors if floor is not None]),
         )
 
     @property
@@ -253,12 +254,10 @@ def radiated_sound(
         Name of the housing.
     """
     names = tuple(seat.name for seat in housing.seats) if bearings is None else tuple(bearings)
-    if radiation.matrix.shape[1] != len(housing.stiffness):
-        raise InputError(
-            "radiation",
-            radiation.matrix.shape[1],
-            f"one of {len(housing.stiffness)} coordinates, the housing's",
-        )
+    coordinates = radiation.matrix.shape[1]
+    if coordinates != len(housing.stiffness):
+        bound = f"one of {len(housing.stiffness)} coordinates, the housing's"
+        raise InputError("radiation", coordinates, bound)
     force = seat_forces(response, housing, names).reshape(response.frequency.size, 1, -1)
     owner = np.repeat(np.arange(len(names)), [len(seat.motions) for seat in housing.seats])
     alone = np.where(owner == np.arange(len(names))[:, None], force, 0.0)  # force of each bearing alone
@@ -343,20 +342,20 @@ def _point(sound: RadiatedSound, s: int, h: int) -> LoudPoint:
     powers = np.array([power, sound.bearing_alone[bearing, s, h], sound.without_bearing[bearing, s, h]])
     weighted: FloatArray = sound_power_level(np.maximum(powers, 0.0)) + a_weighting(hertz)
     return LoudPoint(
-        s,
-        h,
-        float(sound.order[h]),
-        float(sound.speed[s]),
-        hertz,
-        float(sound_power_level(power)),
-        float(weighted[0]),
-        float(sound.efficiency[s, h]),
-        housing_mode + 1,
-        float(sound.natural_frequency[mode]),
-        float(sound.mode_share[mode, s, h]) / power,
-        sound.mode_housing[mode],
-        sound.bearing[bearing],
-        float(weighted[1]),
-        float(weighted[2]),
-        bool(sound.in_contact[s]),
+        speed_index=s,
+        order_index=h,
+        order=float(sound.order[h]),
+        speed=float(sound.speed[s]),
+        frequency=hertz,
+        level=float(sound_power_level(power)),
+        weighted_level=float(weighted[0]),
+        efficiency=float(sound.efficiency[s, h]),
+        mode=housing_mode + 1,
+        natural_frequency=float(sound.natural_frequency[mode]),
+        mode_share=float(sound.mode_share[mode, s, h]) / power,
+        mode_housing=sound.mode_housing[mode],
+        bearing=sound.bearing[bearing],
+        bearing_level=float(weighted[1]),
+        level_without_bearing=float(weighted[2]),
+        in_contact=bool(sound.in_contact[s]),
     )

@@ -87,8 +87,12 @@ def scene_sound(
     power = RadiatedSound.of_all(sounds)
     points = loudest(power)
     panels = [_panels(response, housings, point, radiation) for point in points]
+    if panels:  # those of all housings at the loudest point, as one surface
+        joined = PanelSound.of_all(panels[0])
+        nodes, corners = joined.hull.nodes, joined.hull.triangles
+        power = replace(power, panel_node=nodes, panel_corner=corners, panel_power=joined.power)
     return SceneSound(
-        power=_with_panels(power, panels[0]) if panels else power,
+        power=power,
         housings=housings,
         models=models,
         regions=tuple(
@@ -109,13 +113,6 @@ def _panels(
         panel_sound(response, housing.body, housing.bearings, housing.radiation, at, radiation.model)
         for housing in housings
     ]
-
-
-def _with_panels(power: RadiatedSound, panels: Sequence[PanelSound]) -> RadiatedSound:
-    """Return the sound of all housings with the panels of all of them as one surface."""
-    joined = PanelSound.of_all(panels)
-    nodes, corners = joined.hull.nodes, joined.hull.triangles
-    return replace(power, panel_node=nodes, panel_corner=corners, panel_power=joined.power)
 
 
 def _regions(

@@ -141,8 +141,8 @@ def sound_sensitivities(
     model, speed, orders
         Arguments of `forced_power`; the level is the `largest_level`.
     scenes : callable
-        Function of a figure of the flanks that returns a function from its value to the scene. Its level is
-        computed by `flank_transfer`.
+        Function of a figure of the flanks that returns a function from its value to the scene. The level of
+        such a scene is computed by `flank_transfer`.
     progress : callable
         Called as progress("sensitivities", fraction).
 

@@ -151,7 +151,8 @@ def _bearing_stiffness(model: SoundModel, factor: float) -> SoundModel:
 
 
 def _stiffened(bearing: Bearing, factor: float) -> Bearing:
-    matrix = bearing.stiffness and tuple(tuple(factor * value for value in row) for row in bearing.stiffness)
+    rows = bearing.stiffness
+    matrix = None if rows is None else tuple(tuple(factor * value for value in row) for row in rows)
     return replace(
         bearing,
         radial_stiffness=factor * bearing.radial_stiffness,
@@ -193,7 +194,8 @@ def responses_of_band(scene: Scene, *, mounted: bool) -> int:
     """
     bare = SoundModel(scene, {}, {})
     of_scene = sum(guess.varied(bare, 2.0) is not bare for guess in GUESSES.values())
-    return 2 + 2 * (len(("housing_damping", "housing_frequency")) + mounted + of_scene) + CASES
+    of_housings = 2 + mounted  # damping and frequencies, and stiffness of mounts
+    return 2 + 2 * (of_housings + of_scene) + CASES
 
 
 Powers = Callable[[SoundModel], tuple[FloatArray, OrderPower]]
@@ -230,9 +232,11 @@ class SoundBand:
 
     @property
     def _bands(self) -> list[LevelBand]:
+        """All bands, in the order of the levels of `_levels`."""
         return [self.largest_total, self.mean_total, *self.largest, *self.there, *self.total]
 
     def _of_bands(self, bands: Sequence[LevelBand]) -> SoundBand:
+        """Return the same with other bands in the order of `_bands`."""
         rows, orders = iter(bands), self.order.size
         return replace(
             self,
@@ -263,14 +267,14 @@ class SoundBand:
         row = {round(value, _SAME_ORDER): index for index, value in enumerate(self.order.tolist())}
         widest = max(range(self.order.size), key=lambda index: self.largest[index].width)
         rows = [row.get(round(value, _SAME_ORDER), -1) for value in order.tolist()]
-        own_loudest = self.speed[np.argmax(power.weighted_power, axis=1)]
-        taken = [widest if index < 0 else index for index in rows]
+        loudest_speed = self.speed[np.argmax(power.weighted_power, axis=1)]
+        sources = [widest if index < 0 else index for index in rows]
         return replace(
             self,
             order=order,
-            loudest_speed=np.where(np.array(rows) < 0, own_loudest, self.loudest_speed[taken]),
-            largest=tuple(self.largest[index] for index in taken),
-            there=tuple(self.there[index] for index in taken),
+            loudest_speed=np.where(np.array(rows) < 0, loudest_speed, self.loudest_speed[sources]),
+            largest=tuple(self.largest[index] for index in sources),
+            there=tuple(self.there[index] for index in sources),
         )
 
     def with_power_error(
@@ -291,9 +295,9 @@ class SoundBand:
 
         def levels(off: FloatArray) -> FloatArray:
             shifted = replace(power, power=power.power * 10.0 ** (off / 10.0))
-            if (floor := power.floor) is not None:  # off as much as the orders together
+            if power.floor is not None:  # off as much as the orders together
                 part = (shifted.power.sum(axis=0) / power.power.sum(axis=0))[:, None]
-                shifted = replace(shifted, floor=floor._replace(power=part * floor.power))
+                shifted = replace(shifted, floor=power.floor._replace(power=part * power.floor.power))
             return _levels(self.order, loudest, self.order, shifted)
 
         nominal_levels = levels(np.zeros(power.power.shape))
@@ -313,10 +317,10 @@ def sound_band(
 ) -> SoundBand:
     """Return the bands of the levels that a scene radiates in its linear response.
 
-    Guesses vary over the whole chain, as damping and stiffness change the bearing forces too: a linear
-    response for each of `cases` joint cases and two of each guess alone, one of the nominal values, and one
-    with half of the housings' modes. What that changes is taken for the error of the number of modes, both
-    ways.
+    Guesses vary over the whole chain, as damping and stiffness change the bearing forces too. There is a
+    linear response for each of `cases` joint cases, two of each guess alone, one of the nominal values, and
+    one with half of the housings' modes. The change by the last one counts as the error of the number of
+    modes, both ways.
 
     Parameters
     ----------
@@ -350,12 +354,13 @@ def sound_band(
         lambda housing, part: with_modes(housing, max(int(part * len(housing.frequency)), 1)), model, 0.5
     )
     others = {"mode_number": fewer, **(alternatives or {})}
-    count, done = 1 + len(others) + 2 * len(ranges) + cases, [0]
+    count, done = 1 + len(others) + 2 * len(ranges) + cases, 0
 
     def powers(varied: SoundModel) -> tuple[FloatArray, OrderPower]:
+        nonlocal done
         result = forced_power(varied, speed, orders)
-        done[0] += 1
-        progress("band", min(done[0] / count, 1.0))
+        done += 1
+        progress("band", min(done / count, 1.0))
         return result
 
     return _band(model, np.asarray(speed, dtype=float), ranges, cases, others, powers)
@@ -404,7 +409,8 @@ def _band(
         varied_model = model
         for name, value in values.items():
             varied_model = varied_model if value == 1.0 else GUESSES[name].varied(varied_model, value)
-        return _levels(order, loudest, *((order, nominal) if varied_model is model else powers(varied_model)))
+        varied_order, power = (order, nominal) if varied_model is model else powers(varied_model)
+        return _levels(order, loudest, varied_order, power)
 
     level_cases = np.array([levels(values) for values in band_cases(ranges, cases)])
     bands = list(level_bands(ranges, level_cases))
@@ -456,9 +462,8 @@ def mean_power(speed: FloatArray, power: FloatArray) -> float:
 def _speed_step_error(speed: FloatArray, power: FloatArray) -> float:
     """Return the difference of the mean over every other speed and the last from the mean over all, dB."""
     alternate = np.unique([*range(0, power.size, 2), power.size - 1])
-    coarse, fine = sound_power_level(
-        [mean_power(speed[alternate], power[alternate]), mean_power(speed, power)]
-    )
+    means = [mean_power(speed[alternate], power[alternate]), mean_power(speed, power)]
+    coarse, fine = sound_power_level(means)
     return float(abs(coarse - fine))
 
 
@@ -472,9 +477,8 @@ def _peak_error(speed: FloatArray, power: FloatArray) -> float:
     if not (0 < at < power.size - 1 and power[at] > 0.0):
         return 0.0
     near = slice(at - 1, at + 2)
-    bend, slope, height = np.polyfit(
-        speed[near] - speed[at], power[at] / np.maximum(power[near], 1e-30 * power[at]), 2
-    )
+    reciprocal = power[at] / np.maximum(power[near], 1e-30 * power[at])
+    bend, slope, height = np.polyfit(speed[near] - speed[at], reciprocal, 2)
     minimum = height - slope**2 / (4.0 * bend) if bend > 0.0 else 1.0
     return float(-10.0 * np.log10(np.clip(minimum, 10.0 ** (-MAX_PEAK_ERROR / 10.0), 1.0)))
 
@@ -482,7 +486,7 @@ def _peak_error(speed: FloatArray, power: FloatArray) -> float:
 def largest_level(speed: FloatArray, power: OrderPower) -> float:
     """Return the largest A-weighted level of all orders together, dB(A), a peak between the speeds counted.
 
-    Smooth in whatever shifts a resonance, where the speeds resolve it.
+    The level is a smooth function of everything that shifts a resonance, if the speeds resolve it.
     """
     total = power.total_weighted_power
     return float(sound_power_level(total.max())) + _peak_error(speed, total)

@@ -143,9 +143,8 @@ class SoundPressure:
     def form(self, transfer: ForceLines, model: SoundModel) -> QuantityForm:
         """Return the mean square of the sound pressure, Pa^2."""
         hertz = transfer.frequency
-        path = pressure_transfer(
-            _housing(model, self.housing), np.array(self.microphone), hertz.ravel()
-        ).reshape(*hertz.shape, -1, 1)
+        housing, microphone = _housing(model, self.housing), np.array(self.microphone)
+        path = pressure_transfer(housing, microphone, hertz.ravel()).reshape(*hertz.shape, -1, 1)
         force = _seats(transfer, model, self.housing)
         return _mean_square(transfer, "Pa2", PRESSURE, np.swapaxes(force @ path, 2, 3), sounds=True)
 
@@ -154,7 +153,7 @@ class SoundPressure:
 class EquivalentSoundPower:
     """Sound power of all housings with a surface, as if parts of planes radiated it, dB(A) re 1e-12 W.
 
-    Too loud at low frequency, and alike so for all that a scene is compared with.
+    The power is too high at low frequency, by the same factor in all scenes that are compared.
     """
 
     def form(self, transfer: ForceLines, model: SoundModel) -> QuantityForm:
@@ -181,7 +180,7 @@ class Together:
 
 
 class _OneInput(NamedTuple):
-    """Forces (b, 3 or 6, S, H, 1) as they are."""
+    """Forces (b, 3 or 6, S, H, 1) of a response or a run as those of one input."""
 
     bearing: tuple[str, ...]
     frequency: FloatArray

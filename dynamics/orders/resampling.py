@@ -45,9 +45,9 @@ def driving_shaft(result: RunResult, mesh: int = 0) -> str:
     return str(next(gear["shaft"] for gear in result.case["gears"] if gear["name"] == driver))
 
 
-def driving_speed(result: RunResult, mesh: int = 0) -> FloatArray:
-    """Return the speed of the `driving_shaft`, rad/s without sign, (n,)."""
-    return np.asarray(np.abs(result.speed[result.shaft.index(driving_shaft(result, mesh))]))
+def driving_speed(result: RunResult) -> FloatArray:
+    """Return the speed of the `driving_shaft` of the first mesh, rad/s without sign, (n,)."""
+    return np.asarray(np.abs(result.speed[result.shaft.index(driving_shaft(result))]))
 
 
 def highest_valid_order(result: RunResult, mesh: int = 0) -> int:
@@ -76,14 +76,10 @@ def checked_order(result: RunResult, field: str, value: int | None, mesh: int = 
         rate = value * top * sampling["rate"] / sampling["pass_frequency"]
         passed = f"the output passes {sampling['pass_frequency']:.4g} Hz"
         bound = at_most(valid, note=f": {passed}, and the mesh frequency reaches {top:.4g} Hz")
-        wider = (
-            f" and outputs.band of {value * top:.4g} Hz"
-            if value * top > sampling.get("band", math.inf)
-            else ""
-        )
-        suggestion = (
-            f"Run with outputs.mesh_orders = {value}{wider}, or outputs.sample_rate of {rate:.4g} Hz or more."
-        )
+        suggestion = f"Run with outputs.mesh_orders = {value}"
+        if value * top > sampling.get("band", math.inf):
+            suggestion += f" and outputs.band of {value * top:.4g} Hz"
+        suggestion += f", or outputs.sample_rate of {rate:.4g} Hz or more."
         raise InputError(field, value, bound, suggestion)
     return value
 
@@ -128,6 +124,7 @@ def low_passed(values: FloatArray, frequency: float) -> FloatArray:
     middle = frequency * (1.0 + 0.5 * TRANSITION)
     if frequency * (1.0 + TRANSITION) >= NYQUIST:
         return np.array(values, dtype=float)
+    # Kaiser's estimate of the length of a filter by attenuation and width of its transition
     half = int(np.ceil((REMOVED - 7.95) / (2.285 * 2.0 * np.pi * TRANSITION * frequency) / 2.0))
     taps = firwin(2 * half + 1, middle, window=("kaiser", kaiser_beta(REMOVED)), fs=1.0)
     return np.asarray(fftconvolve(values, taps)[half : half + np.size(values)])
@@ -153,16 +150,15 @@ def resample_to_position(
     position = wrapped[0] + np.concatenate([[0.0], np.cumsum(step)])
     grid = np.arange(np.ceil(position[0] * per_pitch), np.floor(position[-1] * per_pitch) + 1.0) / per_pitch
     if grid.size <= per_pitch:
-        raise InputError(
-            "result", f"{position[-1] - position[0]:.3g} base pitches", "longer than one base pitch"
-        )
+        length = f"{position[-1] - position[0]:.3g} base pitches"
+        raise InputError("result", length, "longer than one base pitch")
     time = np.interp(grid, position, result.time)
     index = np.clip(np.searchsorted(result.time, time, side="right") - 1, 0, result.time.size - 2)
     part = (time - result.time[index]) / (result.time[index + 1] - result.time[index])
-    return grid, time, _at(np.asarray(values, dtype=float), index, part)
+    return grid, time, _interpolated_at(np.asarray(values, dtype=float), index, part)
 
 
-def _at(values: FloatArray, index: IntArray, part: FloatArray) -> FloatArray:
+def _interpolated_at(values: FloatArray, index: IntArray, part: FloatArray) -> FloatArray:
     """Interpolate `values` (..., T) of a uniform grid at (N,) places, `part` of the way after `index`."""
     rows = values.reshape(-1, values.shape[-1])  # one at a time: the finer grid is four times as long
     coordinate = FINER * (index + part)

@@ -68,9 +68,9 @@ def order_waterfall(
 ) -> Waterfall:
     """Return the spectra over mesh orders, up to `highest`, of blocks of `pitches` base pitches.
 
-    Blocks overlap by that share of their length. Orders are 1/`pitches` apart. A multiple of a gear's teeth
-    puts the orders of its shaft on lines. Without `highest` they reach to the tenth mesh order, or as far as
-    the output holds. Raises `InputError`: the run is shorter than one block, has no such series, or its
+    `overlap` is a share of their length. Orders are 1/`pitches` apart: if that is a multiple of a gear's
+    teeth, the orders of its shaft are lines. Without `highest` they reach to the tenth mesh order, or as far
+    as the output holds. Raises `InputError`: the run is shorter than one block, has no such series, or its
     output does not hold the order.
     """
     unit = unit_of(series)
@@ -94,8 +94,8 @@ def order_track(
 ) -> Waterfall:
     """Return the amplitudes of the mesh orders 0 to `highest` in blocks of `pitches` base pitches.
 
-    The lines of `order_waterfall` at multiples of the mesh frequency. Raises `InputError`: the run is shorter
-    than one block, or its output does not hold the order.
+    They are lines of `order_waterfall`. Raises `InputError`: the run is shorter than one block, or its output
+    does not hold the order.
     """
     waterfall = order_waterfall(result, series, pitches, highest, mesh)
     orders = np.arange((waterfall.line.size - 1) // pitches + 1)
@@ -110,7 +110,7 @@ def frequency_waterfall(
     mesh: int = 0,
     window: str = "hann",
 ) -> Waterfall:
-    """Return the spectra over frequency of blocks of `block` seconds that overlap by that share.
+    """Return the spectra over frequency of blocks of `block` seconds; `overlap` is a share of it.
 
     Raises `InputError`: the run is shorter than one block, or has no such series.
     """
@@ -145,13 +145,13 @@ def _waterfall(
     """
     time, frequency = (np.array([values_over[block].mean() for block in blocks]) for values_over in series)
     return Waterfall(
-        spectra[0].frequency[:lines],
-        time,
-        frequency,
-        np.stack([spectrum.amplitude[..., :lines] for spectrum in spectra], axis=-2),
-        np.stack([values[..., block].std(axis=-1) for block in blocks], axis=-1),
-        spectra[0].unit,
-        spectra[0].noise_bandwidth,
+        line=spectra[0].frequency[:lines],
+        time=time,
+        mesh_frequency=frequency,
+        amplitude=np.stack([spectrum.amplitude[..., :lines] for spectrum in spectra], axis=-2),
+        rms=np.stack([values[..., block].std(axis=-1) for block in blocks], axis=-1),
+        unit=spectra[0].unit,
+        noise_bandwidth=spectra[0].noise_bandwidth,
     )
 
 

@@ -119,23 +119,23 @@ def motion(
     for f, force in enumerate(system.flanks.nominal_force):
         static_deflections(system.flanks.static, f, observed.position[f], float(force), static[f])
     return _PeriodicMotion(
-        time,
-        observed.position[:meshes],
-        observed.coordinate[driving],
-        static,
-        observed.force[driving],
-        observed.force[coast],
-        system.bearing_force(observed.force, q, v),
-        np.ascontiguousarray(q.T),
-        np.ascontiguousarray(v.T),
-        np.arange(samples // 2 + 1) / pitches,
+        time=time,
+        position=observed.position[:meshes],
+        dynamic_transmission_error=observed.coordinate[driving],
+        static_transmission_error=static,
+        mesh_force=observed.force[driving],
+        coast_force=observed.force[coast],
+        bearing_force=system.bearing_force(observed.force, q, v),
+        displacement=np.ascontiguousarray(q.T),
+        velocity=np.ascontiguousarray(v.T),
+        order=np.arange(samples // 2 + 1) / pitches,
     )
 
 
 def _figures_of(problem: PeriodicProblem, orbits: Sequence[Orbit], swept: int) -> dict[str, Any]:
     """Return the figures of all `orbits` by the names of `SteadyStates`; NaN where no motion was found.
 
-    The first `swept` of them are of sweeps, with the steps of their own speeds.
+    The first `swept` of them are those of sweeps; the steps of each fit its speed.
     """
     meshes, bearings = len(problem.system.scene.meshes), len(problem.system.supports.name)
     per_mesh = np.full((len(PER_MESH), len(orbits), meshes), np.nan)
@@ -158,7 +158,7 @@ def _figures_of(problem: PeriodicProblem, orbits: Sequence[Orbit], swept: int) -
 
 
 def _figures(problem: PeriodicProblem, orbit: Orbit) -> tuple[FloatArray, FloatArray]:
-    """Return the seven figures of every mesh (7, m), and the alternating force on every bearing (b,)."""
+    """Return the figures `PER_MESH` of every mesh (7, m), and the alternating force on every bearing (b,)."""
     series = motion(problem, orbit, FINE)
     error, force = series.dynamic_transmission_error, series.mesh_force
     coasting = np.zeros(force.shape[0])
@@ -185,10 +185,11 @@ def sweep(
 ) -> tuple[Orbit, ...]:
     """Return the motion at each of `speeds` (rad/s) in turn, settled from the one before, with its own steps.
 
-    It stays on its branch up to the fold and jumps there, as a slow run does: rising and falling speeds give
-    the two sides of a hysteresis. Where it settles on no motion of the period sought (a longer period, chaos)
-    the status says so, and the sweep goes on from there. `progress` is called with the fraction of the
-    steps done; what it raises ends the sweep. Raises `InputError`: a speed is zero or of the other sense.
+    The motion stays on its branch up to the fold and jumps there, as a slow run does: rising and falling
+    speeds give the two sides of a hysteresis. If it does not settle on a motion of the requested period (a
+    longer period, chaos), the status says so, and the sweep goes on from there. `progress` is called with the
+    fraction of the steps done; what it raises ends the sweep. Raises `InputError`: a speed is zero or of the
+    other sense.
     """
     state, orbits = problem.rest, []
     problems = [problem.at(float(speed)) for speed in speeds]
@@ -285,7 +286,6 @@ def steady_states(
 
     Parameters
     ----------
-    system : System
     speed : (S,) sequence
         Speeds of the first drive that turns, rad/s, increasing, > 0; the scene decides the sense.
     branch : bool
@@ -365,9 +365,8 @@ def _swept(shared: tuple[PeriodicProblem, int], speeds: FloatArray) -> tuple[Orb
 def _sweep_seconds(problem: PeriodicProblem, courses: Sequence[FloatArray], periods: int) -> float:
     first = float(courses[0][0])
     motions = motion_periods(problem.rest.size // 2, periods, expected_iterations(problem, first, periods))
-    return (
-        period_seconds(problem, first) * steps_share(problem, courses[0]) * motions * sum(map(len, courses))
-    )
+    seconds = period_seconds(problem, first) * steps_share(problem, courses[0])
+    return seconds * motions * sum(map(len, courses))
 
 
 def _study(
@@ -409,7 +408,7 @@ def _study(
 
 
 def _jumps(figures: dict[str, Any], speeds: int) -> list[tuple[int, tuple[float, float]]]:
-    """Return where a sweep leaves its motion for that of the other: beside the speeds that have two.
+    """Return the curves that jump, with the speeds before and after: next to speeds that have two motions.
 
     The first `speeds` figures are of rising speeds, as many after them of falling ones.
     """

@@ -109,7 +109,7 @@ def filtered(system: System, states: States, seen: Observed) -> _Signals:
         coordinate += system.arrays.direction[:, n:] @ displacement.T
     else:
         coordinate[modal.row] = seen.coordinate[modal.row]
-    q, v = (np.concatenate(parts, axis=1) for parts in ((q, displacement), (v, rate)))
+    q, v = np.concatenate([q, displacement], axis=1), np.concatenate([v, rate], axis=1)
     return _Signals(q, v, coordinate, force, static)
 
 
@@ -124,7 +124,7 @@ def histories(
     scene = system.scene
     q, v, quanta = signals.q, signals.v, states.quanta
     outputs = scene.outputs
-    force, moment = _on_the_ground(system, laws, signals.force, q, v, quanta)
+    force, moment = _ground_reactions(system, laws, signals.force, q, v, quanta)
     driving = system.driving_rows
     return {
         "time": time,
@@ -171,7 +171,7 @@ def checked_series(
         "least_mesh_force": states.minimum[:, driving].T,
         "largest_mesh_force": states.largest[:, driving].T,
         **_axis_series(system, seen.coordinate, seen.force),
-        "bearing_force": _on_the_ground(system, laws, seen.force, states.q, states.v, states.quanta)[0],
+        "bearing_force": _ground_reactions(system, laws, seen.force, states.q, states.v, states.quanta)[0],
     }
 
 
@@ -185,18 +185,19 @@ def _contact(system: System, force: FloatArray) -> FloatArray:
 def _accelerations(
     system: System, laws: FloatArray, time: FloatArray, signals: _Signals, quanta: IntArray
 ) -> dict[str, FloatArray]:
-    """Accelerations of the freedoms, and of the shafts at their bearings."""
-    none = {"acceleration": np.empty((0, len(quanta))), "bearing_acceleration": np.empty((0, 3, len(quanta)))}
+    """Return accelerations of the freedoms, and of the shafts at their bearings; empty if not requested."""
+    samples = len(quanta)
+    series = {"acceleration": np.empty((0, samples)), "bearing_acceleration": np.empty((0, 3, samples))}
     if not system.scene.outputs.accelerations:
-        return none
-    acceleration, series = _acceleration(system, laws[ACCELERATION], time, signals), dict(none)
+        return series
+    acceleration = _acceleration(system, laws[ACCELERATION], time, signals)
     if system.scene.outputs.displacements:
         series["acceleration"] = acceleration
     if system.scene.outputs.bearing_forces:
         moves = system.freedoms.keep(system.supports.motion + system.supports.seat)
         bearings, _, freedoms = moves.shape
-        seats = (moves.reshape(3 * bearings, freedoms) @ acceleration).reshape(bearings, 3, len(quanta))
-        series["bearing_acceleration"] = _seen_from_the_ground(system, seats, laws, quanta)
+        seats = (moves.reshape(3 * bearings, freedoms) @ acceleration).reshape(bearings, 3, samples)
+        series["bearing_acceleration"] = _in_fixed_frame(system, seats, laws, quanta)
     return series
 
 
@@ -214,7 +215,7 @@ def _acceleration(system: System, laws: FloatArray, time: FloatArray, signals: _
     return np.asarray(np.linalg.solve(arrays.mass, force - arrays.direction.T @ signals.force))
 
 
-def _on_the_ground(
+def _ground_reactions(
     system: System, laws: FloatArray, local: FloatArray, q: FloatArray, v: FloatArray, quanta: IntArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return forces and moments on the ground, (b, 3, T) each; (0, 3, T) each if not requested.
@@ -226,10 +227,10 @@ def _on_the_ground(
         return none, none
     reaction = system.bearing_force(local, q, v)  # (b, 3 or 6, T): force, then moment
     force, moment = reaction[:, :3], reaction[:, 3:]
-    turned = _seen_from_the_ground(system, np.ascontiguousarray(force), laws, quanta)
+    fixed = _in_fixed_frame(system, np.ascontiguousarray(force), laws, quanta)
     if not _holds_tilt(system):
-        return turned, none
-    return turned, _seen_from_the_ground(system, np.ascontiguousarray(moment), laws, quanta)
+        return fixed, none
+    return fixed, _in_fixed_frame(system, np.ascontiguousarray(moment), laws, quanta)
 
 
 def _holds_tilt(system: System) -> bool:
@@ -240,9 +241,7 @@ def _holds_tilt(system: System) -> bool:
     return any(bool(np.any(matrix)) for matrix in (*matrices, system.seats.preload.reshape(-1, SEAT)[:, 3:]))
 
 
-def _seen_from_the_ground(
-    system: System, force: FloatArray, laws: FloatArray, quanta: IntArray
-) -> FloatArray:
+def _in_fixed_frame(system: System, force: FloatArray, laws: FloatArray, quanta: IntArray) -> FloatArray:
     """Rotate vectors of bearings in a carrier's frame into the fixed one, (b, 3, T), in place."""
     ratio = system.kinematics.float_ratio
     turned = laws[FULL_TURNS] + laws[FRACTION] + quanta.T / QUANTA_PER_TURN
@@ -257,7 +256,7 @@ def _seen_from_the_ground(
 
 
 def _coupling_torque(system: System, q: FloatArray, v: FloatArray) -> FloatArray:
-    """Torque about +z from the first shaft of each coupling on the second, (c, T)."""
+    """Return the torque about +z from the first shaft of each coupling on the second, (c, T)."""
     couplings = system.couplings
     strains = system.freedoms.keep(couplings.motion)  # relative motions per freedom, (c, 6, n)
     strains = strains[..., : q.shape[1]]  # without modal freedoms, where q lacks them
@@ -278,7 +277,7 @@ def _mesh_frequency(system: System, speed: FloatArray, v: FloatArray) -> FloatAr
 
 
 def _coast_force(system: System, force: FloatArray) -> FloatArray:
-    """Force of the coast flanks, (m, T); (0, T) where no mesh has one."""
+    """Return the force of the coast flanks, (m, T); (0, T) where no mesh has one."""
     meshes, coast = len(system.scene.meshes), system.flanks.coast
     coasting = np.zeros((meshes if coast else 0, force.shape[1]))
     for element, mesh in enumerate(coast, start=meshes):
@@ -287,7 +286,7 @@ def _coast_force(system: System, force: FloatArray) -> FloatArray:
 
 
 def _speed(system: System, laws: FloatArray, v: FloatArray) -> FloatArray:
-    """Speed of every shaft about +z, (s, T)."""
+    """Return the speed of every shaft about +z, (s, T)."""
     speed = system.kinematics.float_ratio @ laws
     for column, freedom in enumerate(system.freedoms.column):
         if freedom < 6 * len(system.rotors) and freedom % 6 == ROTATION:  # six freedoms a rigid shaft

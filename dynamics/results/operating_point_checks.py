@@ -44,14 +44,12 @@ class HeldOperatingPointChecks:
 
     def __init__(self, system: System) -> None:
         self._system = system
-        self._axes = [
-            _Axis(axis, index, _gradient(system, axis, index))
-            for axis, field in enumerate(FIELDS)
-            for index, mesh in enumerate(system.scene.meshes)
-            if any(
-                row.possible and not row.on for row in system.ledger.adding(field) if row.part == mesh.name
-            )
-        ]
+        self._axes: list[_Axis] = []
+        for axis, field in enumerate(FIELDS):
+            off = {row.part for row in system.ledger.adding(field) if row.possible and not row.on}
+            for index, mesh in enumerate(system.scene.meshes):
+                if mesh.name in off:
+                    self._axes.append(_Axis(axis, index, _gradient(system, axis, index)))
         self._range = [(0.0, 0.0)] * len(self._axes)  # lowest and highest operating point so far, m
 
     def see(self, _series: SeriesBlock, states: States) -> None:
@@ -59,10 +57,7 @@ class HeldOperatingPointChecks:
         for k, axis in enumerate(self._axes):
             point = states.q @ axis.gradient[: states.q.shape[1]]
             low, high = self._range[k]
-            self._range[k] = (
-                float(np.min(point, initial=low)),
-                float(np.max(point, initial=high)),
-            )
+            self._range[k] = float(np.min(point, initial=low)), float(np.max(point, initial=high))
 
     def checks(self) -> list[Check]:
         """Return one check per mesh and axis.
@@ -77,17 +72,14 @@ class HeldOperatingPointChecks:
         system, quantity = self._system, WHAT[axis]
         mesh, force = system.scene.meshes[index], float(system.flanks.nominal_force[index])
         change = _change(mesh, force, axis, farthest)
-        reported = (
-            f"bodies moved by up to {farthest:.3g} m, which "
-            f"changes the mean by {engineering(100.0 * change, 2)} %"
-        )
+        percent = engineering(100.0 * change, 2)
         return Check(
-            system.ledger.effect_adding(FIELDS[axis]),
-            f"{quantity} stays at the operating point",
-            mesh.name,
-            abs(change) <= (system.scene.tolerance or USUAL_TOLERANCE),
-            reported,
-            {"farthest": farthest, "change": change},
+            effect=system.ledger.effect_adding(FIELDS[axis]),
+            assumption=f"{quantity} stays at the operating point",
+            part=mesh.name,
+            holds=abs(change) <= (system.scene.tolerance or USUAL_TOLERANCE),
+            reason=f"bodies moved by up to {farthest:.3g} m, which changes the mean by {percent} %",
+            figures={"farthest": farthest, "change": change},
         )
 
 
@@ -95,10 +87,9 @@ def _change(mesh: GearMesh, force: float, axis: int, shift: float) -> float:
     """Return the relative change of the mean transmission error at `force` by `shift` (m) along an axis."""
     level = int(np.argmin(np.abs(np.asarray(mesh.table.level) - force)))
     point = np.array([mesh.misalignment, mesh.center_distance_change])
-    means = [
-        float(np.mean(table_at_operating_point(mesh.table, *at).deflection[..., level]))
-        for at in (point, point + shift * np.eye(2)[axis])
-    ]
+    shifted = point + shift * np.eye(2)[axis]
+    tables = [table_at_operating_point(mesh.table, *at) for at in (point, shifted)]
+    means = [float(np.mean(table.deflection[..., level])) for table in tables]
     return means[1] / means[0] - 1.0 if means[0] != 0.0 else 0.0
 
 

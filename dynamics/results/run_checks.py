@@ -44,10 +44,7 @@ class _AxisChecks:
             values, (low, high) = series[FIELDS[axis]][mesh], self._range[axis, mesh]
             first, last = self._ends(axis, mesh)
             self._beyond[axis, mesh] += int(np.count_nonzero((values < first) | (values > last)))
-            self._range[axis, mesh] = (
-                float(np.min(values, initial=low)),
-                float(np.max(values, initial=high)),
-            )
+            self._range[axis, mesh] = float(np.min(values, initial=low)), float(np.max(values, initial=high))
 
     def checks(self) -> list[Check]:
         """Return one check per mesh and axis in use.
@@ -109,13 +106,12 @@ def _force_checks(scene: Scene, largest: FloatArray, beyond: FloatArray | None =
     `largest` (m,) are the largest transverse mesh forces, N, by mesh. `beyond` (m,) are the shares of samples
     above the highest load. Both are figures of the checks.
     """
-    return [
-        _force_check(
-            scene, index, float(largest[index]), {} if beyond is None else {"beyond": float(beyond[index])}
-        )
-        for index, mesh in enumerate(scene.meshes)
-        if mesh.table.level.size > 2
-    ]
+    checks = []
+    for index, mesh in enumerate(scene.meshes):
+        share = {} if beyond is None else {"beyond": float(beyond[index])}
+        if mesh.table.level.size > 2:  # a table of two levels is a closed form
+            checks.append(_force_check(scene, index, float(largest[index]), share))
+    return checks
 
 
 def checked_ledger(system: System, largest: FloatArray) -> Json:
@@ -125,7 +121,8 @@ def checked_ledger(system: System, largest: FloatArray) -> Json:
     """
     checks = _force_checks(system.scene, largest)
     entries = [check.to_json() for check in checks]
-    if wrong := ending(entries, system.scene.on_violation):
+    wrong = ending(entries, system.scene.on_violation)
+    if wrong:
         raise SolveError(f"violated assumptions of the study: {wrong}")
     return {**system.ledger.to_json(), "checks": entries}
 
@@ -148,16 +145,14 @@ def _force_check(scene: Scene, index: int, largest: float, share: Mapping[str, f
             f"above it the table is extrapolated linearly, up to {STRAIGHT_ON:g} times. Compute it with "
             f"torques up to {rounded:g} N m, it ends at {highest * radius:.4g} N m"
         )
-    figures = {**share, "largest": largest}
-    name, valid = scene.meshes[index].name, times <= STRAIGHT_ON
     return Check(
         effect="",
         assumption="force inside the table",
-        part=name,
+        part=scene.meshes[index].name,
         holds=times <= 1.0,
         reason=reason,
-        figures=figures,
-        valid=valid,
+        figures={**share, "largest": largest},
+        valid=times <= STRAIGHT_ON,
     )
 
 

@@ -215,11 +215,12 @@ class RunResult(Plottable):
         }
         coordinates["time"] = ("time", self.time, {"units": "s", "long_name": "time"})
         coordinates["direction"] = ("direction", np.array(DIRECTIONS, dtype=object))
-        data = {
-            name: (series.dimensions, values, {"units": series.units, "long_name": series.long_name})
-            for name, series in SERIES.items()
-            if (values := getattr(self, name)).size
-        }
+        data = {}
+        for name, series in SERIES.items():
+            values = getattr(self, name)
+            if values.size:
+                about = {"units": series.units, "long_name": series.long_name}
+                data[name] = (series.dimensions, values, about)
         return xarray.Dataset(data, coordinates, attributes(vars(self)))
 
     def to_netcdf(self, path: str | Path) -> None:
@@ -276,7 +277,7 @@ SERIES = OVER_TIME | _STORED
 
 
 class RunFile:
-    """Writes beside the final name; `publish` moves the file there whole, leaving without it removes it."""
+    """The file of a run, written next to its final name; `publish` moves it there whole, else it vanishes."""
 
     def __init__(self, path: Path) -> None:
         import h5py  # noqa: PLC0415 - needed for files only
@@ -337,8 +338,9 @@ class RunFile:
     def _variable(self, name: str, series: Stored, values: FloatArray) -> Any:
         """Make one variable; one without time is written at once."""
         if series.dimensions[-1] == "time":
-            before, options = values.shape[:-1], {"shape": (*values.shape[:-1], 0), "dtype": float}
-            options |= {"maxshape": (*before, None), "chunks": (*before, CHUNK)}
+            parts = values.shape[:-1]
+            shapes = {"shape": (*parts, 0), "maxshape": (*parts, None), "chunks": (*parts, CHUNK)}
+            options: dict[str, Any] = {**shapes, "dtype": float}
         else:
             options = {"data": values}
         variable = self._file.create_dataset(name, **options, **PACKING, track_order=True)
@@ -367,12 +369,11 @@ def _from_dataset(dataset: xarray.Dataset) -> RunResult:
         for name in NAMED
     }
     sizes = {"direction": len(DIRECTIONS), **{str(key): size for key, size in dataset.sizes.items()}}
-    fields |= {
-        name: np.asarray(dataset[name].values, dtype=float)
-        if name in dataset
-        else np.empty([0, *(sizes.get(dimension, 0) for dimension in series.dimensions[1:])])
-        for name, series in SERIES.items()
-    }
+    for name, series in SERIES.items():
+        if name in dataset:
+            fields[name] = np.asarray(dataset[name].values, dtype=float)
+        else:
+            fields[name] = np.empty([0, *(sizes.get(dimension, 0) for dimension in series.dimensions[1:])])
     energy = json.loads(dataset.attrs["energy"])
     return RunResult(
         time=np.asarray(dataset["time"].values, dtype=float),

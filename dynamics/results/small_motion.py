@@ -102,12 +102,11 @@ def _approaches(system: System) -> Iterator[_Limit]:
         module = 2.0 * driver.base_radius / (driver.teeth * math.cos(line.working_pressure_angle))
         rows = np.stack([_parting_row(system, mesh, float(line.point[2]), axis) for axis in (0, 1)])
         if np.any(rows):
-            first, second = (
-                np.array(system.scene.shaft(system.scene.gear(name).shaft).origin[:2])
-                for name in (mesh.driver, mesh.driven)
-            )
+            first, second = system.scene.gear(mesh.driver).shaft, system.scene.gear(mesh.driven).shaft
+            ends = system.scene.shaft(second).origin[:2], system.scene.shaft(first).origin[:2]
+            line_of_centers = np.subtract(*ends)
             bound = WORKING_DEPTH * module
-            yield _Limit("change of center distance", mesh.name, bound, rows=rows, line=second - first)
+            yield _Limit("change of center distance", mesh.name, bound, rows=rows, line=line_of_centers)
 
 
 def _parting_row(system: System, mesh: GearMesh, z: float, axis: int) -> FloatArray:

@@ -102,7 +102,8 @@ def _alike_across(matrix: FloatArray) -> bool:
     """Whether a matrix in x, y, z, tilt_x, tilt_y (and rotation) is the same turned by any angle about z."""
     rotation_matrix = np.eye(matrix.shape[0])
     c, s = np.cos(IRRATIONAL), np.sin(IRRATIONAL)
-    rotation_matrix[:2, :2] = rotation_matrix[3:5, 3:5] = [[c, -s], [s, c]]
+    rotation_matrix[:2, :2] = [[c, -s], [s, c]]
+    rotation_matrix[3:5, 3:5] = rotation_matrix[:2, :2]
     off = np.abs(rotation_matrix @ matrix @ rotation_matrix.T - matrix)
     return bool(np.all(off <= ISOTROPY * np.max(np.abs(matrix), initial=0.0)))
 
@@ -218,16 +219,15 @@ def _check_tooth_angles(scene: Scene) -> None:
 
 def _check_names(scene: Scene) -> None:
     """Check that parts have unique names, and name shafts and gears of the scene."""
-    for kind, parts in scene.parts.items():
-        if kind in NAMED:
-            distinct(kind, [part.name for part in parts])
+    for kind in NAMED:
+        distinct(kind, [part.name for part in getattr(scene, kind)])
     bearings = (*scene.ground_bearings, *scene.planet_bearings)
     distinct("planet_bearings", [bearing.name for bearing in bearings])
-    shafts, gears = ([part.name for part in parts] for parts in (scene.shafts, scene.gears))
-    for kind, parts in scene.parts.items():
-        for index, part in enumerate(parts):
-            if kind in ON_A_SHAFT:
-                one_of(f"{kind}[{index}].shaft", part.shaft, shafts)
+    shafts = [shaft.name for shaft in scene.shafts]
+    gears = [gear.name for gear in scene.gears]
+    for kind in ON_A_SHAFT:
+        for index, part in enumerate(getattr(scene, kind)):
+            one_of(f"{kind}[{index}].shaft", part.shaft, shafts)
     for index, force in enumerate(scene.forces):
         if force.turns_with is not None:
             one_of(f"forces[{index}].turns_with", force.turns_with, shafts)
@@ -276,11 +276,7 @@ def _check_references(scene: Scene) -> None:
         raise InputError("drives[0].speed", 0.0, "not zero all the time", suggestion)
 
 
-def _bodies_and_loads(scene: Scene) -> tuple[object, ...]:
-    return (*scene.parts.values(), scene.gravity, scene.temperatures)
-
-
-@cached_by(_bodies_and_loads)
+@cached_by(lambda scene: (*scene.parts.values(), scene.gravity, scene.temperatures))
 def _check_parts(scene: Scene) -> None:
     """All parts fit each other; once for scenes that differ by their run alone."""
     _check_names(scene)

@@ -66,10 +66,8 @@ class BeamSection:
 
     def __post_init__(self) -> None:
         declared_fields(self)
-        ends = zip(
-            ("bore_diameter", "end_bore_diameter"), self.bore_diameters, self.outer_diameters, strict=True
-        )
-        for field, bore, outer in ends:
+        fields = ("bore_diameter", "end_bore_diameter")
+        for field, bore, outer in zip(fields, self.bore_diameters, self.outer_diameters, strict=True):
             if bore >= outer:
                 raise InputError(field, bore, below(outer, "m", "the outer diameter"))
 
@@ -149,6 +147,5 @@ class BeamSection:
         mass = float(weight @ cut.area)
         center = float(weight @ (cut.area * z)) / mass
         diametral = float(weight @ cut.second_moment)
-        return Inertia(
-            mass, 2.0 * diametral, diametral + float(weight @ (cut.area * (z - center) ** 2))
-        ), center
+        transverse = diametral + float(weight @ (cut.area * (z - center) ** 2))
+        return Inertia(mass, 2.0 * diametral, transverse), center

@@ -28,8 +28,6 @@ TEMPERATURE = Declared(
 EXPANSION = Declared(
     Kind.RATIO, "1/K", between(0.0, 1e-3), "Coefficient of thermal expansion", STEEL_EXPANSION, later=True
 )
-
-
 _MASS = Declared(Kind.INERTIA, "kg", between(0.0, 1e9), "Mass", 2.0)
 _POLAR = Declared(
     Kind.INERTIA, "kg m^2", between(0.0, 1e12), "Moment of inertia about the axis of rotation", 4e-4
@@ -74,10 +72,8 @@ def hollow_cylinder(
     density : float
         kg/m^3.
     """
-    outer, bore = (
-        positive("outer_diameter", outer_diameter) / 2.0,
-        not_negative("bore_diameter", bore_diameter) / 2.0,
-    )
+    outer = positive("outer_diameter", outer_diameter) / 2.0
+    bore = not_negative("bore_diameter", bore_diameter) / 2.0
     if bore >= outer:
         bound = below(outer_diameter, "m", "the outer diameter")
         raise InputError("bore_diameter", bore_diameter, bound)

@@ -22,9 +22,10 @@ ACROSS, ALONG, TURN = (0, 4), 2, 5  # freedoms of a node: bending in the plane x
 
 @dataclass(frozen=True)
 class Disc:
-    """A rigid body on a shaft: a gear. `position` of its center along the shaft, m."""
+    """A rigid body on a shaft: a gear."""
 
     position: float
+    """Position of its center along the shaft, m."""
     inertia: Inertia
 
 
@@ -99,8 +100,8 @@ def _frequencies(beam: TimoshenkoBeam, discs: Sequence[Disc], imposed: float | N
 class ElasticShaft:
     """Elastic coordinates of a shaft: bending in x z, bending alike in y z, extension, torsion.
 
-    They are measured against the motion of the shaft as a rigid body about its center of mass with which they
-    share no kinetic energy; torsion against the rotation at `imposed` where that is imposed.
+    They are relative to the motion of the shaft as a rigid body about its center of mass, with which they
+    share no kinetic energy. If the rotation is imposed, torsion is relative to the rotation there.
     """
 
     position: FloatArray
@@ -192,9 +193,10 @@ def elastic_shaft(
 ) -> ElasticShaft:
     """Return the elastic coordinates of a shaft of `sections` with `discs` on it, held by nothing.
 
-    Timoshenko beam elements between sections, discs and `points`, halved until the frequencies of interest
-    are within 0.1 %; reduced after Craig and Bampton to what `points` act on and to as many modes with these
-    held as keep the frequencies of interest within 1 %. Deflections under forces at these points are exact.
+    Timoshenko beam elements lie between sections, discs and `points`; they are halved until the frequencies
+    of interest are within 0.1 %. They are reduced after Craig and Bampton to the motions of the points and to
+    as many modes with these held as keep the frequencies of interest within 1 %. Deflections under forces at
+    the points are exact.
 
     Parameters
     ----------
@@ -211,12 +213,12 @@ def elastic_shaft(
     pairs = list(zip(nodes, points, strict=True))
     bent = [2 * k for k, g in pairs if g.across] + [2 * k + 1 for k, g in pairs if g.tilt]
     return ElasticShaft(
-        beam.position,
-        elastic_modes(across, bent, highest),
-        elastic_modes(along, [k for k, g in pairs if g.along], highest),
-        elastic_modes(turn, [k for k, g in pairs if g.turn], highest),
-        turn.mass,
-        highest,
-        damping_ratio,
-        error,
+        position=beam.position,
+        bending=elastic_modes(across, bent, highest),
+        extension=elastic_modes(along, [k for k, g in pairs if g.along], highest),
+        torsion=elastic_modes(turn, [k for k, g in pairs if g.turn], highest),
+        polar=turn.mass,
+        highest=highest,
+        damping_ratio=damping_ratio,
+        mesh_error=error,
     )

@@ -40,6 +40,7 @@ from dynamics.linearize.mode_energy import freedom_parts
 from dynamics.linearize.operating_speeds import leading_law, mesh_frequencies
 from dynamics.mechanism.additions import SPEED_DEPENDENCE
 from dynamics.mechanism.bearing_elements import BearingElement
+from dynamics.meshes import CoastFlank
 from dynamics.motion.observation import local_state, observe, observe_laws
 from dynamics.motion.sampled_states import States
 from dynamics.plausibility import scene_findings
@@ -89,7 +90,7 @@ class RunContext:
         decision: Decision,
         before: EarlierRun,
     ) -> RunContext:
-        """Gather them; `before` is the run that this one repeats."""
+        """Gather the facts; `before` is the run that this one repeats."""
         with clock.stage("influence_estimates"):
             influences = _known_influences(decision, system)
         clock.book("influence_estimates", decision.taken)
@@ -115,9 +116,8 @@ def effect_ledger(run: RunContext) -> Json:
 
 
 def _checked(entry: Json, checks: Sequence[Check]) -> Json:
-    effect_checks = [
-        check for check in checks if (check.effect, check.part) == (entry["effect"], entry["part"])
-    ]
+    key = entry["effect"], entry["part"]
+    effect_checks = [check for check in checks if (check.effect, check.part) == key]
     return {
         "checked": "; ".join(check.reason for check in effect_checks) or NOT_CHECKED,
         "holds": all(check.holds for check in effect_checks) if effect_checks else None,
@@ -181,7 +181,7 @@ def _resolved_case(system: System) -> Json:
 
 
 def _plain(part: Any) -> Any:
-    """Return the fields of a dataclass, of a number of NumPy the number."""
+    """Return the fields of a dataclass, or a number of NumPy as a number of Python."""
     if is_dataclass(part):
         return {item.name: getattr(part, item.name) for item in fields(part)}
     return float(part)
@@ -206,18 +206,18 @@ def _mesh(system: System, index: int) -> Json:
         "working_pressure_angle": line.working_pressure_angle,
         "line_of_action": [float(value) for value in line.force],
         "point_of_action": [float(value) for value in line.point],
-        "coast": coast
-        and {
-            "backlash": coast.backlash,
-            "thickness": coast.thickness,
-            "own_table": coast.table is not None,
-        },
+        "coast": None if coast is None else _coast(coast),
         "table": {
             "positions": np.size(mesh.table.position),
             "levels": np.size(mesh.table.level),
             "period": int(mesh.table.period),
         },
     }
+
+
+def _coast(coast: CoastFlank) -> Json:
+    table = coast.table is not None
+    return {"backlash": coast.backlash, "thickness": coast.thickness, "own_table": table}
 
 
 def _modes_of_run(system: System) -> Json:
@@ -260,7 +260,8 @@ def _over_speed(system: System, linear: LinearSystem) -> Json:
 
 def _moves(freedom: Sequence[str], kinetic_energy: FloatArray) -> list[Json]:
     """Return the motions of each mode, "shaft, how", with shares in the energy (m, n), the largest first."""
-    names, moves = [f"{shaft}, {direction}" for shaft, direction in freedom_parts(freedom)], []
+    names = [f"{shaft}, {direction}" for shaft, direction in freedom_parts(freedom)]
+    moves = []
     for shares in kinetic_energy.tolist():
         summed = dict.fromkeys(names, 0.0)
         for name, share in zip(names, shares, strict=True):
@@ -287,17 +288,18 @@ def _bearings_at_rest(system: System) -> Json:
     first = elements.law.size - len(system.bearings)
     return {
         "rolling_bearings": {
-            at.name: _carried(elements, local, e, at, bearings[at.name])
+            at.name: _bearing_state(elements, local, e, at, bearings[at.name])
             for e, at in enumerate(system.bearings, start=first)
             if e in rows
         }
     }
 
 
-def _carried(
+def _bearing_state(
     elements: Elements, local: LocalState, e: int, at: BearingElement, bearing: RollingBearing
 ) -> Json:
-    rows, law, turned = slice(elements.first[e], elements.first[e + 1]), row_law(bearing), elements.mesh[e]
+    rows, law = slice(elements.first[e], elements.first[e + 1]), row_law(bearing)
+    turned = elements.mesh[e]  # position that the cage's angle is; -1: elements are averaged
     shift = local.coordinate[rows] / np.diag(at.local_rows)
     shift[2] += law.shift
     angle = 2.0 * np.pi * float(local.position[turned]) if turned >= 0 else 0.0
@@ -351,23 +353,20 @@ Description = Callable[[RunContext, dict[str, Any]], dict[str, Any]]
 def described(run: RunContext, about: dict[str, Any]) -> dict[str, Any]:
     """Return `documents` with those that the scene alone decides, and the ledger: all fields but the series.
 
-    That is the resolved case, modes, what is implausible, bearings at rest, the error of neglected effects.
+    The scene decides the resolved case, modes, implausible values, bearings at rest, the error of neglected
+    effects, and the orders above the band of the output, which a full receipt has.
     """
     receipt = about["receipt"]
     neglected = neglected_effects(run.system.ledger, run.influences)
     error = receipt["error"] | ({"left_out_effects": neglected} if neglected else {})
+    orders_above = linear_orders(run.system) if run.scene.outputs.receipt == "full" else {}
     return about | {
-        "receipt": receipt | {"error": error} | _bearings_at_rest(run.system) | _orders_above(run),
+        "receipt": receipt | {"error": error} | _bearings_at_rest(run.system) | orders_above,
         "effect_ledger": effect_ledger(run),
         "case": _resolved_case(run.system),
         "warnings": [finding.to_json() for finding in scene_findings(run.scene)],
         "modes": _modes_of_run(run.system),
     }
-
-
-def _orders_above(run: RunContext) -> Json:
-    """Return the orders above the band of the output where the receipt is to have all."""
-    return linear_orders(run.system) if run.scene.outputs.receipt == "full" else {}
 
 
 def undescribed(run: RunContext, about: dict[str, Any]) -> dict[str, Any]:
@@ -377,7 +376,7 @@ def undescribed(run: RunContext, about: dict[str, Any]) -> dict[str, Any]:
 
 
 def _known_influences(decision: Decision, system: System) -> Mapping[str, Influence]:
-    """Return the influence of effects as decided by, else estimated where the receipt is to have it."""
+    """Return the influences by which effects were decided; else estimates, if the receipt is a full one."""
     scene = decision.scene
     if decision.influences or scene.outputs.receipt != "full":
         return decision.influences
@@ -406,7 +405,8 @@ def finer(integration: Integration) -> Integration:
 def with_longest_step(integration: Integration, longest: float) -> Integration:
     """Return `integration` with adaptive steps of at most `longest`, s.
 
-    The smallest step shrinks alike: as many levels are between both, so the run shares its compiled code.
+    The smallest step shrinks by the same factor: the number of step sizes between them stays, and so the run
+    shares compiled code.
     """
     factor = min(longest / integration.largest_step, 1.0)
     return replace(
@@ -429,9 +429,8 @@ def tolerance_check(error: Json, integration: Integration) -> Check | None:
     estimate, tolerance = float(steps["rms"]), integration.tolerance
     reason = f"{engineering(1e9 * estimate, 2)} nm rms stated, {engineering(1e9 * tolerance, 2)} nm requested"
     if steps.get("chaotic"):
-        reason = (
-            f"chaotic motion: levels are within {engineering(steps['levels']['rms'], 2)} dB, traces are not"
-        )
+        level = engineering(steps["levels"]["rms"], 2)
+        reason = f"chaotic motion: levels are within {level} dB, traces are not"
     elif not steps["met"]:
         reason = f"{reason}: lower the tolerance"
     return Check("", "errors of the steps are within the tolerance", "time steps", steps["met"], reason)
@@ -451,11 +450,11 @@ def _statistics(system: System, end: Ending) -> StepStatistics:
     implicit = system.scene.integration.method == "implicit"
     stages = IMPLICIT_STAGES_PER_STEP * max(count[Count.ACCEPTED] + count[Count.REJECTED], 1)
     return StepStatistics(
-        count[Count.ACCEPTED],
-        count[Count.REJECTED],
-        count[Count.NEWTON_FAILED],
-        count[Count.NEWTON_TOTAL] / stages if implicit else 0.0,
-        count[Count.MAX_NEWTON],
-        float(end.step_range[0]),
-        float(end.step_range[1]),
+        accepted=count[Count.ACCEPTED],
+        rejected=count[Count.REJECTED],
+        newton_failures=count[Count.NEWTON_FAILED],
+        newton_mean=count[Count.NEWTON_TOTAL] / stages if implicit else 0.0,
+        newton_most=count[Count.MAX_NEWTON],
+        smallest_step=float(end.step_range[0]),
+        largest_step=float(end.step_range[1]),
     )

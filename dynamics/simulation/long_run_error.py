@@ -25,7 +25,7 @@ from dynamics.results.order_fit import order_amplitudes, orders_seen
 from dynamics.scene import Integration
 from dynamics.simulation.documents import with_longest_step
 from dynamics.simulation.error_by_source import CAP, observed_signals, window_seconds
-from dynamics.types import BoolArray, FloatArray, Json
+from dynamics.types import FloatArray, Json
 
 StatesOf = Callable[[int, int], States]
 
@@ -34,8 +34,8 @@ TOLERANCE_SHARE, STEP_SHARE = 0.1, 0.5
 REST = {True: 1.0 / (1.0 - TOLERANCE_SHARE**0.75), False: 1.0 / (1.0 - STEP_SHARE**2)}
 """Error over the difference to the finer run, by whether steps are adaptive.
 
-It falls as the tolerance^(3/4), or as the step^2 where forces jump. Measured over 12 scenes with impacts or
-light damping, adaptive: 0.7 to 1.1."""
+The error falls as the tolerance^(3/4), or as the step^2 where forces jump. Measured over 12 scenes with
+impacts or light damping, adaptive: 0.7 to 1.1."""
 PARTS, PART_SAMPLES, ORDERS = 6, 4096, 5
 """Number of equal parts of a run, most samples at the end of each that orders are fitted to, and number of
 these orders.
@@ -58,8 +58,9 @@ def blind_windows(system: System, choice: MethodChoice, states_of: StatesOf, end
         return "requested"
     if scene.outputs.receipt != "full":
         return ""
-    if any(np.any(_parted(system, states_of(*block))) for block in blocks(end.samples)):
-        return "flanks part"
+    for block in blocks(end.samples):
+        if np.any(states_of(*block).minimum[:, system.driving_rows] <= 0.0):
+            return "flanks part"
     if outlives_windows(system, choice):
         decay = engineering(choice.slowest_decay, 2)
         return f"vibration decays at {decay} 1/s, slower than windows can see"
@@ -69,10 +70,6 @@ def blind_windows(system: System, choice: MethodChoice, states_of: StatesOf, end
 def outlives_windows(system: System, choice: MethodChoice) -> bool:
     """Whether a lightly damped motion that meshes excite decays more slowly than a window of a run lasts."""
     return choice.slowest_decay * window_seconds(system) < 1.0
-
-
-def _parted(system: System, states: States) -> BoolArray:
-    return np.asarray(states.minimum[:, system.driving_rows] <= 0.0)
 
 
 def finer_run(integration: Integration, end: Ending) -> Integration:
@@ -127,11 +124,11 @@ class RunPair:
         traces = [self._traces(*part) for part in self._parts()]
         orders = [self._orders(*part) for part in self._parts()]
         adaptive = integration.fixed_step is None
-        error = _of_traces(traces, orders, REST[adaptive])
+        error = _trace_errors(traces, orders, REST[adaptive])
         compared = f"a run at {TOLERANCE_SHARE:g} of the tolerance" if adaptive else "a run at half the step"
         source = f"difference from {compared}"
         if _is_chaotic(traces, integration):
-            error = {"trace_rms": error["rms"], **_of_levels(traces, orders)}
+            error = {"trace_rms": error["rms"], **_level_errors(traces, orders)}
             source = f"chaotic motion: levels of {PARTS} parts against those of {compared}"
         chaotic = "trace_rms" in error
         units = {"unit": "m", "bearing_force_unit": "N"}
@@ -170,9 +167,8 @@ class RunPair:
         if stop - first < 2 or np.ptp(position[0]) < 1.0:
             count = 0
         traces = np.array([error, finer_error, error - finer_error])
-        by_error = np.stack(
-            [order_amplitudes(at, traces[:, m], count) for m, at in enumerate(position)], axis=1
-        )
+        by_mesh = [order_amplitudes(at, traces[:, m], count) for m, at in enumerate(position)]
+        by_error = np.stack(by_mesh, axis=1)
         forces = np.array([force, finer_force, force - finer_force])
         by_force = np.linalg.norm(order_amplitudes(position[0], forces, count), axis=2)
         return _Orders(by_error[:2], by_error[2], by_force[:2], by_force[2])
@@ -188,7 +184,7 @@ def _is_chaotic(traces: Sequence[_Traces], integration: Integration) -> bool:
     return bool(np.any(np.mean(large, axis=0) >= 0.5))
 
 
-def _of_traces(traces: Sequence[_Traces], orders: Sequence[_Orders], rest: float) -> Json:
+def _trace_errors(traces: Sequence[_Traces], orders: Sequence[_Orders], rest: float) -> Json:
     """Return `rest` times the rms of the differences, and times their worst amplitudes at orders."""
     square = float(np.mean([part.square for part in traces]))
     return {
@@ -206,7 +202,7 @@ def _worst(amplitudes: Sequence[FloatArray]) -> list[float]:
     return [float(value) for value in np.max([part[:, :count] for part in amplitudes], axis=(0, 1))]
 
 
-def _of_levels(traces: Sequence[_Traces], orders: Sequence[_Orders]) -> Json:
+def _level_errors(traces: Sequence[_Traces], orders: Sequence[_Orders]) -> Json:
     """Return the errors of mean squares over the run, as amplitudes and in dB, and of the largest forces."""
     count = min(part.error.shape[2] for part in orders)
     rms, rms_level = level_error(np.array([part.power for part in traces]))
@@ -215,6 +211,7 @@ def _of_levels(traces: Sequence[_Traces], orders: Sequence[_Orders]) -> Json:
     peak = np.array([part.peak for part in traces])
     spread = SPREAD * np.std(peak, axis=(0, 1))
     highest = np.max(peak[:, 0], axis=0, initial=0.0)
+    peak_level = 20.0 * np.log10(1.0 + spread / np.where(highest > 0.0, highest, 1.0))
     return {
         "rms": float(np.max(rms)),
         "transmission_error_orders": np.max(by_error, axis=0).tolist(),
@@ -222,9 +219,7 @@ def _of_levels(traces: Sequence[_Traces], orders: Sequence[_Orders]) -> Json:
         "levels": {
             "unit": "dB",
             "rms": float(np.max(rms_level)),
-            "peak_force": float(
-                np.max(20.0 * np.log10(1.0 + spread / np.where(highest > 0.0, highest, 1.0)))
-            ),
+            "peak_force": float(np.max(peak_level)),
             "transmission_error_orders": np.max(error_level, axis=0).tolist(),
             "bearing_force_orders": np.max(force_level, axis=0, initial=0.0).tolist(),
         },

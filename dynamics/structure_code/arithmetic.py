@@ -59,7 +59,7 @@ class Value:
 
 
 class Arithmetic:
-    """Writes operations at the end of `b`, in `module`; operands are numbers of Python or `Value`."""
+    """A writer of operations at the end of `b`, in `module`; operands are numbers of Python or `Value`."""
 
     b: Any
     module: Any
@@ -164,7 +164,7 @@ class Arithmetic:
         return Value(self.b.call(function, floats))
 
     def extreme(self, sign: str, *values: Any) -> Any:
-        """Return the largest (`>`) or least (`<`): a later one where the comparison holds, as in numba."""
+        """Return the largest (`>`) or least (`<`) value; a later one wins where the comparison holds."""
         result = values[0]
         for value in values[1:]:
             if not isinstance(result, Value) and not isinstance(value, Value):

@@ -168,9 +168,8 @@ def _reason(effect: str, choice: str, points: Sequence[PointDecision]) -> str:
     with_reason = [point for point in points if effect in point.reasons]
     alike = [point for point in with_reason if bool(point.parts(effect)) == (choice == "on")]
     point = max(alike or with_reason, key=lambda point: point.size(effect))
-    return (
-        f"{point.reasons[effect]}; the same in all runs of the study, by the largest of {len(points)} points"
-    )
+    source = f"by the largest of {len(points)} points"
+    return f"{point.reasons[effect]}; the same in all runs of the study, {source}"
 
 
 def decision_points(values: FloatArray, kinds: Sequence[str]) -> FloatArray:

@@ -49,7 +49,7 @@ class _Window:
         return replace(self, mesh=mesh)
 
     def transmission_error(self, mesh: int) -> FloatArray:
-        """Dynamic transmission error (T,), m."""
+        """Return the dynamic transmission error (T,), m."""
         return self.run.dynamic_transmission_error[mesh, self.part]
 
     @property
@@ -69,13 +69,14 @@ class _Window:
         return self._fits[self.mesh]
 
     def error(self, name: str, order: int = 0) -> float:
-        """Sum of the errors by source that the receipt states under a name; NaN where it states none."""
-        errors = [self.run.receipt["error"].get(source, {}).get(name) for source in SOURCES]
-        if order:
-            errors = [
-                None if values is None or len(values) < order else values[order - 1] for values in errors
-            ]
-        known = [float(values) for values in errors if values is not None]
+        """Return the sum of the errors by source that the receipt states under a name; NaN without any."""
+        known = []
+        for source in SOURCES:
+            error = self.run.receipt["error"].get(source, {}).get(name)
+            if order and error is not None:  # errors by order, from 1
+                error = error[order - 1] if order <= len(error) else None
+            if error is not None:
+                known.append(float(error))
         return float(np.sum(known)) if known else float("nan")
 
 
@@ -95,10 +96,10 @@ class _Quantity:
     """SI unit; empty for a ratio."""
     of: str
     """Kind of part that has the quantity; empty: the whole run."""
-    by_order: bool
-    """Whether the quantity is an amplitude at a multiple of the mesh frequency."""
     take: Callable[[_Window, int, int], _Value]
-    """``take(window, row, order)`` to the value."""
+    """``take(window, row, order)`` returns the value."""
+    by_order: bool = False
+    """Whether the quantity is an amplitude at a multiple of the mesh frequency."""
 
 
 @dataclass(frozen=True)
@@ -123,9 +124,8 @@ class Response:
         if self.part and not self.kind.of:
             raise InputError("part", self.part, f"left out: {self.quantity} is of the whole run")
         if self.mesh and self.kind.of != "bearing":
-            raise InputError(
-                "mesh", self.mesh, f"left out: the orders of {self.quantity} are of its own mesh"
-            )
+            bound = f"left out: the orders of {self.quantity} are of its own mesh"
+            raise InputError("mesh", self.mesh, bound)
 
     @property
     def kind(self) -> _Quantity:
@@ -152,9 +152,8 @@ class Response:
         run, rows = window.run, self.rows(window.run)
         mesh = run.mesh.index(one_of("mesh", self.mesh, run.mesh)) if self.mesh else 0
         projected = window if self.kind.of == "mesh" else window.along(mesh)
-        return max(
-            (self.kind.take(projected, row, self.order) for row in rows), key=lambda value: value.value
-        )
+        values = [self.kind.take(projected, row, self.order) for row in rows]
+        return max(values, key=lambda value: value.value)
 
 
 def responses_of(
@@ -172,13 +171,13 @@ def responses_of(
 
 
 def _bearing_force(window: _Window, row: int, order: int) -> _Value:
-    """Amplitude of the force vector at an order: root of the sum of squares over x, y, z."""
+    """Return the amplitude of the force vector at an order: root of the sum of squares over x, y, z."""
     amplitude = window.orders[1][row][:, order - 1]
     return _Value(float(np.linalg.norm(amplitude)), window.error("bearing_force_orders", order))
 
 
 def _dte_order(window: _Window, row: int, order: int) -> _Value:
-    """Amplitude of the dynamic transmission error at an order of its mesh."""
+    """Return the amplitude of the dynamic transmission error at an order of its mesh."""
     amplitude = window.along(row).orders[0]
     return _Value(float(amplitude[order - 1]), window.error("transmission_error_orders", order))
 
@@ -188,18 +187,18 @@ def _peak_mesh_force(window: _Window, row: int, _order: int) -> _Value:
 
 
 def _dynamic_factor(window: _Window, row: int, order: int) -> _Value:
-    """K_v of ISO 6336-1: the largest over the nominal force."""
+    """Return K_v of ISO 6336-1: the largest over the nominal force."""
     nominal = float(window.run.nominal_force[row])
     return _Value(_peak_mesh_force(window, row, order).value / nominal if nominal > 0.0 else float("nan"))
 
 
 def _contact_loss(window: _Window, row: int, _order: int) -> _Value:
-    """Share of the samples in which no flank touches."""
+    """Return the share of the samples in which no flank touches."""
     return _Value(float(np.mean(window.run.contact[row, window.part] == ContactState.OFF)))
 
 
 def _mesh_load_factor(window: _Window, _row: int, _order: int) -> _Value:
-    """K_gamma of ISO 6336-1 at the central gear where planets share worst, over the whole run."""
+    """Return K_gamma of ISO 6336-1 at the central gear where planets share worst, over the whole run."""
     shared = planet_load_sharing(window.run)
     if not shared:
         raise InputError("quantity", "mesh_load_factor", "of a scene with planets")
@@ -207,25 +206,23 @@ def _mesh_load_factor(window: _Window, _row: int, _order: int) -> _Value:
 
 
 QUANTITIES: dict[str, _Quantity] = {
-    "bearing_force": _Quantity("bearing force", "N", "bearing", True, _bearing_force),
-    "dte_order": _Quantity("dynamic transmission error", "m", "mesh", True, _dte_order),
+    "bearing_force": _Quantity("bearing force", "N", "bearing", _bearing_force, by_order=True),
+    "dte_order": _Quantity("dynamic transmission error", "m", "mesh", _dte_order, by_order=True),
     "dte_rms": _Quantity(
         "dynamic transmission error, rms",
         "m",
         "mesh",
-        False,
         lambda window, row, _: _Value(float(np.std(window.transmission_error(row))), window.error("rms")),
     ),
     "dte_peak_to_peak": _Quantity(
         "dynamic transmission error, peak to peak",
         "m",
         "mesh",
-        False,
         lambda window, row, _: _Value(float(np.ptp(window.transmission_error(row)))),
     ),
-    "peak_mesh_force": _Quantity("peak mesh force", "N", "mesh", False, _peak_mesh_force),
-    "dynamic_factor": _Quantity("dynamic factor K_v", "", "mesh", False, _dynamic_factor),
-    "contact_loss": _Quantity("contact loss", "", "mesh", False, _contact_loss),
-    "mesh_load_factor": _Quantity("mesh load factor K_gamma", "", "", False, _mesh_load_factor),
+    "peak_mesh_force": _Quantity("peak mesh force", "N", "mesh", _peak_mesh_force),
+    "dynamic_factor": _Quantity("dynamic factor K_v", "", "mesh", _dynamic_factor),
+    "contact_loss": _Quantity("contact loss", "", "mesh", _contact_loss),
+    "mesh_load_factor": _Quantity("mesh load factor K_gamma", "", "", _mesh_load_factor),
 }
 """Responses by name."""

@@ -28,6 +28,8 @@ from fe_contact.types import Estimate
 
 AT_BOUND = 1e-3
 """Distance from a bound, over the range of the variable, up to which the variable lies on the bound."""
+AT_LEAST = "at least "
+"""Begin of the size of a fall of which only the least is known."""
 
 
 def outcome_and_reason(choice: Choice, request: OptimizationRequest) -> tuple[Outcome, str]:
@@ -54,24 +56,29 @@ def outcome_and_reason(choice: Choice, request: OptimizationRequest) -> tuple[Ou
 
 
 def _harmonic_change(choice: Choice, request: OptimizationRequest, harmonic: int) -> str:
-    """Return the change of a harmonic in words: the fall of its level, and amplitudes with errors.
-
-    Of one that falls below its error only the least fall is known.
-    """
+    """Return the change of a harmonic in words: that of its level, and amplitudes with errors."""
     before, after = (design.objective for design in (choice.start, choice.optimum))
     sizes = " to ".join(with_error(1e6 * one.value, 1e6 * one.error, "µm") for one in (before, after))
     teeth = request.pair.pinion.teeth
     torques = ", ".join(engineering(float(torque), 4) for torque in np.atleast_1d(request.torques))
     name = f"{order_words(harmonic * teeth, 'pinion', f'harmonic {harmonic}')}, at {torques} N m"
+    size = level_change(before, after)
+    verb = "falls" if after.value <= before.value else "rises"
+    return f"{name}: {f'{verb} by {size}' if size else f'{NO_CHANGE} beyond the errors'}, {sizes}"
+
+
+def level_change(before: Estimate, after: Estimate) -> str:
+    """Return the size of the change of an amplitude's level with its error, dB; empty: within the errors.
+
+    Of an amplitude that falls below its error only the least fall is known.
+    """
     gain = level_gain(before, after)
     if abs(before.value - after.value) <= before.error + after.error:
-        return f"{name}: {NO_CHANGE} beyond the errors, {sizes}"
+        return ""
     if after.value <= after.error:
         least = level_gain(before, Estimate(after.value + after.error, 0.0, after.unit))
-        return f"{name}: falls by at least {engineering(least.value - least.error, 2)} dB, {sizes}"
-    verb = "falls" if gain.value > 0.0 else "rises"
-    size = f"{to_error(abs(gain.value), gain.error)} ± {error_text(gain.value, gain.error)} dB"
-    return f"{name}: {verb} by {size}, {sizes}"
+        return f"{AT_LEAST}{engineering(least.value - least.error, 2)} dB"
+    return f"{to_error(abs(gain.value), gain.error)} ± {error_text(gain.value, gain.error)} dB"
 
 
 def _rise_by_torque(choice: Choice) -> str:

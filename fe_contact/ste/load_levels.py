@@ -34,7 +34,7 @@ _MIN_COMPLIANCE = 0.1
 
 # power of the force in which the deflection of a smooth step is a cubic: of 0, 1/4, 1/2 and 1 the one with
 # the smallest errors over loads five times apart, chosen on the same ten drawn pairs (seed 7) whose errors
-# docs/decisions/0012 tabulates
+# docs/decisions/0012 states
 _POWER = 0.25
 
 

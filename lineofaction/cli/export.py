@@ -21,11 +21,17 @@ from lineofaction.cli.export_point import Point
 from lineofaction.cli.export_rexs import export_rexs
 from lineofaction.cli.export_run import TABLE, UNIVERSAL, export_run
 from lineofaction.cli.export_stiffness import export_stiffness
-from lineofaction.cli.output import console, print_json, print_written, progress_bar, table
+from lineofaction.cli.output import (
+    console,
+    print_json,
+    print_written,
+    table,
+)
 from lineofaction.cli.ste import positions
 from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.progress_bars import progress_bar
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.flank_point import FlankPoint
 from lineofaction.gearbox.units import UM

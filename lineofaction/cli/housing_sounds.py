@@ -11,12 +11,12 @@ from dynamics.acoustics import SoundFigures
 from dynamics.results import RunResult
 from host.directories import cache_home
 from lineofaction.cli.costs import announce_cost, listening_cost
-from lineofaction.cli.output import progress_bar
 from lineofaction.cli.run_sounds import RunSound
 from lineofaction.cli.subjects import assessed_scene
 from lineofaction.cli.verb_warnings import warn
 from lineofaction.gearbox.convert.housings import HousedScene, housings_in
 from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.progress_bars import progress_bar
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.listen import SoundPressure

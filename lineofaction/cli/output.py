@@ -1,4 +1,4 @@
-"""Output of the verbs: JSON or tables on standard output, progress on standard error."""
+"""Output of the verbs on standard output: JSON or tables."""
 
 from __future__ import annotations
 
@@ -8,29 +8,18 @@ import json
 import os
 import re
 import sys
-import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rich.console import Console, Group
 from rich.highlighter import RegexHighlighter
-from rich.progress import (
-    BarColumn,
-    Progress,
-    TaskID,
-    TextColumn,
-    TimeElapsedColumn,
-)
 from rich.text import Text
 from rich.theme import Theme
 
 from lineofaction.cli.verb_warnings import in_lines, warnings_so_far
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.stages import TimeLeft
-from model_studies.progress import silent, stage_name
 
 if TYPE_CHECKING:
     from lineofaction.report.drawing.figure import Table as Drawn
@@ -42,10 +31,10 @@ _MAX_HEADLINES = 2
 EMPHASIS = "bold"
 """Style of the line that states the result."""
 _THEME = Theme({"loa.error": "cyan", "loa.beside": "bright_black"})
-_WIDEST, _GAP, _INDENT, _MAX_LINES = 24, 2, "  ", 2
-"""Characters of a text before it wraps, characters between two columns of a table, indent of lines below a
-row, and most lines of a text in the last column; a longer text stands below its row.
-"""
+_WIDEST = 24  # characters of a text before it wraps
+_GAP = 2  # characters between two columns of a table
+_INDENT = "  "  # of lines below a row
+_MAX_LINES = 2  # of a text in the last column; a longer text stands below its row
 _FIGURE = re.compile(r"([+-]?\d+)((?:\.\d+)?(?: ?[^\d.e±].*?)?)( ?±.*)?")
 """Pattern of a number: the part before the decimal point, the decimals with the unit, and the error."""
 
@@ -133,7 +122,8 @@ def table(
         laid_out.append(_Column(name, cells if text else aligned(cells), text))
     below = laid_out.pop() if _is_long(laid_out, width) else None
     lines: list[Text | str] = [Text(title, "italic")] if title else []
-    for block in (blocks := _blocks(laid_out, width)):
+    blocks = _blocks(laid_out, width)
+    for block in blocks:
         foot = below if block is blocks[-1] else None
         # heads are filled from the bottom, so that their last lines stand above the cells
         head = _side_by_side([column.lines(column.head, wide)[::-1] for column, wide in block])[::-1]
@@ -246,35 +236,6 @@ def csv_text(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows((head, *rows))
     return text.getvalue()
-
-
-@contextmanager
-def progress_bar(stages: Iterable[tuple[str, float]] = ()) -> Iterator[Report]:
-    """Yield ``report(stage, fraction)``; it draws on standard error if that is a terminal, else nothing.
-
-    What is left is that of the whole work: its `stages`, names with their usual shares in the order in which
-    they are done, by the time that those before took. Of work without known stages each bar has its own.
-    """
-    if not sys.stderr.isatty():
-        yield silent
-        return
-    columns = (TextColumn("{task.description:<14}"), BarColumn(), TextColumn("{task.percentage:>3.0f} %"))
-    clocks = (TimeElapsedColumn(), TextColumn("{task.fields[left]}"))
-    left = TimeLeft(stages, time.monotonic())
-    with Progress(*columns, *clocks, console=Console(stderr=True)) as bars:
-        tasks: dict[str, TaskID] = {}
-        announced_costs: dict[str, str] = {}  # a cost that was announced stays
-
-        def report(stage: str, fraction: float) -> None:
-            name = stage_name(stage)
-            if name not in tasks:
-                tasks[name] = bars.add_task(stage, total=1.0, left="")
-            announced_costs[name] = stage if stage != name else announced_costs.get(name, stage)
-            done = min(max(fraction, 0.0), 1.0)
-            text = left.text(name, done, time.monotonic())
-            bars.update(tasks[name], description=announced_costs[name], completed=done, left=text)
-
-        yield report
 
 
 def output_of(output: Path | None, project: Path | None, name: str) -> Path:

@@ -12,11 +12,17 @@ from pydantic import ValidationError
 
 from bounds import engineering
 from host.directories import cache_home
-from lineofaction.cli.output import Report, check_writable, console, print_json, progress_bar
+from lineofaction.cli.output import (
+    Report,
+    check_writable,
+    console,
+    print_json,
+)
 from lineofaction.cli.verb_warnings import warn
 from lineofaction.gearbox.convert.case import case_at
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.progress_bars import progress_bar
 from lineofaction.gearbox.project import about, results_by_part, results_in
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.result_files import stamped

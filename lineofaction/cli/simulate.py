@@ -10,7 +10,6 @@ from dynamics.scene import Scene
 from dynamics.simulation import interrupted_run, simulate_to_file
 from dynamics.types import RunStatus
 from lineofaction.cli.costs import announce_cost, simulation_cost, tables_cost
-from lineofaction.cli.interrupts import until_interrupted
 from lineofaction.cli.output import (
     Report,
     check_netcdf_output,
@@ -20,7 +19,6 @@ from lineofaction.cli.output import (
     print_json,
     print_parts,
     print_written,
-    progress_bar,
 )
 from lineofaction.cli.scene_tables import tabled_scene
 from lineofaction.cli.subjects import assessed_scene
@@ -28,7 +26,9 @@ from lineofaction.cli.verb_warnings import warnings_so_far
 from lineofaction.gearbox.convert.effects import run_lines
 from lineofaction.gearbox.executor import open_executor
 from lineofaction.gearbox.input_file import InputFile
+from lineofaction.gearbox.interrupts import until_interrupted
 from lineofaction.gearbox.problems import BadInput, JobFailed
+from lineofaction.gearbox.progress_bars import progress_bar
 from lineofaction.gearbox.project import RUN
 from lineofaction.gearbox.result_figures import run_json
 from lineofaction.gearbox.result_files import stamp, stamp_scene

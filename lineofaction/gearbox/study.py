@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from dynamics.results import RunResult
+    from lineofaction.gearbox.progress_bars import Watched
     from lineofaction.gearbox.schemas.figures import Figures
     from lineofaction.gearbox.schemas.model import BoundaryModel
     from lineofaction.gearbox.studies.computation import Computation
     from lineofaction.gearbox.subjects import Subject
-    from model_studies.progress import Progress
     from model_studies.workers import Workers
 
     Work = Computation[Any, Any, Any, Any, Any]
@@ -180,7 +180,7 @@ class StudyFunction(Generic[Q, T]):
     @overload
     def __call__(self, subject: Subject, *, workers: Workers | None, **further: Any) -> T: ...
     @overload
-    def __call__(self, subject: Subject, *, progress: Progress | None, **further: Any) -> T: ...
+    def __call__(self, subject: Subject, *, progress: Watched, **further: Any) -> T: ...
     @overload
     def __call__(self, subject: Subject, *, folder: Path | None, **further: Any) -> T: ...
     def __call__(  # type: ignore[misc]  # the first form has all of Q by position, this one at most one
@@ -190,7 +190,7 @@ class StudyFunction(Generic[Q, T]):
         *,
         run: RunResult | None = None,
         workers: Workers | None = None,
-        progress: Progress | None = None,
+        progress: Watched = None,
         folder: Path | None = None,
         **fields: Any,
     ) -> Any:
@@ -206,8 +206,9 @@ class StudyFunction(Generic[Q, T]):
             Run whose bearing forces a study of housings takes.
         workers : Workers, optional
             Executor of the tasks; default: this process.
-        progress : callable, optional
-            Called as progress(stage, fraction).
+        progress : callable or bool, optional
+            Function that is called as progress(stage, fraction); True: bars on a terminal, a bar in a
+            notebook; False: nothing. Default: in a notebook a bar after two seconds, elsewhere nothing.
         folder : Path, optional
             Folder for the runs that a study stores.
 

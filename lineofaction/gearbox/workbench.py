@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable, Mapping
+from contextlib import nullcontext
 from dataclasses import replace
 from inspect import currentframe
 from pathlib import Path
 from typing import Any, Unpack, overload
 
+from dynamics.errors import SolveError
 from dynamics.results import RunResult
 from dynamics.scene import Scene
 from dynamics.simulation import simulate as run_scene
+from dynamics.types import RunStatus
 from fe_contact import analyze as analyze_pair
 from fe_contact.analysis.database.refined_table import OnDraft
 from fe_contact.geometry import ParallelAxes
@@ -27,16 +30,20 @@ from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.from_rexs.assumptions import Assumption
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit
 from lineofaction.gearbox.input_file import InputFile, Override
+from lineofaction.gearbox.interrupts import until_interrupted
 from lineofaction.gearbox.mesh_tables import MeshTables, finished
 from lineofaction.gearbox.problems import BadInput, JobFailed
+from lineofaction.gearbox.progress_bars import Watched, watched
 from lineofaction.gearbox.rexs.files import read_rexs
 from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
 from lineofaction.gearbox.schemas.files import READERS, written_out
 from lineofaction.gearbox.schemas.named_files import in_folder
 from lineofaction.gearbox.schemas.plan import omission_warnings
 from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.stages import staged
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.study import Study
+from lineofaction.gearbox.study_cache import cached_workers
 from lineofaction.gearbox.subjects import Subject, case_of, scene_of, with_absolute_paths
 from lineofaction.gearbox.tabled_scene import ComputedTables, database_of
 from lineofaction.gearbox.tabled_scene import tabled_scene as scene_by_tables
@@ -116,13 +123,14 @@ def analyze(
 ) -> SteDatabase: ...
 @overload
 def analyze(
-    subject: Subject, *, progress: Progress = ..., workers: Workers = ..., on_draft: OnDraft | None = None
+    subject: Subject, *, progress: Watched = ..., workers: Workers = ..., on_draft: OnDraft | None = None
 ) -> SteDatabase: ...
 def analyze(subject: ParallelAxes | Subject, *request: Any, **keywords: Any) -> SteDatabase:
     """Compute the static transmission error of a gear pair or a case.
 
     A pair takes its request in SI: axes, options and run, or their members as keywords, as of
-    `fe_contact.analyze`. A case states all of it but `progress`, `workers` and `on_draft`.
+    `fe_contact.analyze`. A case states all of it but `progress` (as of `simulate`), `workers` and `on_draft`.
+    A case that is interrupted (Ctrl-C) after a table has its draft as result, with a warning.
 
     Raises `BadInput`, `InputError`, `InfeasibleGeometry`.
     """
@@ -130,15 +138,50 @@ def analyze(subject: ParallelAxes | Subject, *request: Any, **keywords: Any) -> 
         return analyze_pair(subject, *request, **keywords)
     case = CheckedCase(case_of(_source(subject)))
     _warn(case_warnings(case))
-    return database_of(case, cache_home(), *request, **keywords)
+    return _table_of(case, *request, **keywords)
+
+
+def _table_of(
+    case: CheckedCase,
+    *,
+    progress: Watched = None,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
+    on_draft: OnDraft | None = None,
+) -> SteDatabase:
+    """Return the table of a case; interrupted, the last draft of it."""
+    drafts: list[SteDatabase] = []
+
+    def note(draft: SteDatabase, refinement: str) -> None:
+        drafts.append(draft)
+        if on_draft is not None:
+            on_draft(draft, refinement)
+
+    try:
+        with watched(progress) as report:
+            return database_of(case, cache_home(), report, workers, note)
+    except KeyboardInterrupt:
+        if not drafts:
+            raise
+        _warn([{"message": "Interrupted: this table does not meet its tolerance yet."}])
+        return drafts[-1]
 
 
 def simulate(
     subject: Scene | Subject,
-    progress: Progress = silent,
+    progress: Watched = None,
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> RunResult:
     """Run a scene: in SI, or as written, with the tables of its meshes computed first.
+
+    A run that is interrupted (Ctrl-C) ends there: its status is `CANCELLED`, and a warning says so.
+
+    Parameters
+    ----------
+    progress : callable or bool, optional
+        Function that is called as progress(stage, fraction); True: bars on a terminal, a bar in a notebook;
+        False: nothing. Default: in a notebook a bar after two seconds, elsewhere nothing.
+    workers : Workers, optional
+        Executor of the tables; default: this process.
 
     Raises
     ------
@@ -147,10 +190,24 @@ def simulate(
     JobFailed
         The run ended early; see `dynamics.simulation.simulate` for its states.
     """
-    scene = subject if isinstance(subject, Scene) else tabled(subject, progress, workers).scene
-    run = run_scene(scene)
-    if not run.status.usable:
+    with watched(progress) as report:
+        scene = subject if isinstance(subject, Scene) else tabled(subject, report, workers).scene
+        run = _run(scene, report)
+    if not run.status.usable and run.status is not RunStatus.CANCELLED:
         raise JobFailed(f"The run ended early: {run.status.name.lower().replace('_', ' ')}.")
+    return run
+
+
+def _run(scene: Scene, report: Progress) -> RunResult:
+    """Return the run of a scene; interrupted, the part up to then."""
+    with until_interrupted() as cancel:
+        try:
+            return run_scene(scene, staged(report), cancel)
+        except SolveError as error:
+            run = error.partial
+            if not (isinstance(run, RunResult) and run.status is RunStatus.CANCELLED):
+                raise
+    _warn([{"message": f"Interrupted: the run ends at {run.time[-1]:.6g} s."}])
     return run
 
 
@@ -186,7 +243,7 @@ def studied(
     *,
     run: RunResult | None,
     workers: Workers | None,
-    progress: Progress | None,
+    progress: Watched,
     folder: Path | None,
 ) -> Any:
     """Return the result of a study, as its function does; raises `BadInput`, `JobFailed`."""
@@ -195,10 +252,18 @@ def studied(
     written_subject, files = _as_written(study, subject)
     chosen = work.narrowed(written_subject, varied)
     work.check(chosen, varied)
-    workers = InProcess() if workers is None else workers
-    means = Means(cache_home(), progress or silent, workers, folder=folder, run=run)
-    computed_subject = chosen if isinstance(chosen, CheckedCase) else _made(study, chosen, files, means)
-    result = work.compute(computed_subject, varied, means)
+    content = chosen.case if isinstance(chosen, CheckedCase) else chosen
+    interrupts = until_interrupted if work.interruptible else nullcontext
+    with (
+        watched(progress, study.stages) as report,
+        cached_workers(study, [content], varied, workers or InProcess()) as remembering,
+        interrupts() as cancel,
+    ):
+        means = Means(cache_home(), report, remembering, cancel, folder, run)
+        computed_subject = chosen if isinstance(chosen, CheckedCase) else _made(study, chosen, files, means)
+        result = work.compute(computed_subject, varied, means)
+        if cancel is not None and cancel():
+            _warn([{"message": "Interrupted: the result is the best so far."}])
     _warn(work.warnings(result) or ())
     if failure := work.failure(result):
         raise JobFailed(failure)

@@ -1,42 +1,161 @@
-"""Files of every kind by one function: cases, scenes, gear units, tables, runs, results of studies."""
+"""Files of every kind by one function: inputs, gear units, results, recordings, numbers, folders."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from bounds.brief import MAX_LINES, Row, brief
 from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.registry import STUDIES, SUFFIX
+from lineofaction.gearbox.schemas import read_table
+from lineofaction.gearbox.signals.endings import FORMATS
 from lineofaction.gearbox.workbench import open_unit
 from lineofaction.gearbox.workbench import read as read_input
 
 UNITS = (".rexs", ".rexsj", ".rexsz", ".rexs.zip")
 """Endings of gear units."""
+_TABLES = (".toml", ".json")
+_SUBJECTS = {"pair": "case", "shafts": "scene"}
+"""Kind of an input by the table that identifies it."""
 
 
 def read(file: Path | str, overrides: Mapping[str, object] | None = None) -> Any:
-    """Read a file that `loa` takes or writes.
+    """Read a file that `loa` takes or writes, or a folder of them.
 
     Raises `BadInput`: the file is missing, damaged or of another kind.
 
     Parameters
     ----------
     file : path
-        Case or scene (TOML or JSON; what has shafts is a scene), gear unit (REXS), or a result (netCDF).
+        Case or scene (TOML or JSON; what has shafts is a scene), inputs of a study (TOML), figures of a
+        result (JSON), gear unit (REXS), result (netCDF), recording (CSV that begins with a time, WAV,
+        universal file and others), table of numbers (CSV), or a folder.
     overrides : mapping of str to object, optional
         Values over those of a case or a scene by their paths, as ``{"loads.brake.torque_n_m": 40}``.
 
     Returns
     -------
-    Case, SceneInput, OpenedUnit, SteDatabase, RunResult or the result of a study
+    Case, SceneInput, dict, OpenedUnit, SteDatabase, RunResult, the result of a study, Recording, DataFrame of
+    pandas or `Folder`
     """
     path = Path(file)
-    is_result = path.suffix == ".nc"
-    if overrides and (is_result or path.name.lower().endswith(UNITS)):
+    reader = _reader(path)
+    if not overrides:
+        return reader(path)
+    if reader is not _read_table:
         remedy = "Leave them out; loa.open_unit takes those of the scene of a unit."
         raise BadInput.of("overrides", ", ".join(overrides), "those of a case or a scene", remedy)
-    if is_result:
-        from lineofaction.report.document import read_file  # noqa: PLC0415 (start-up time: it draws)
+    return read_input(path, overrides)
 
-        return read_file(path)
-    return open_unit(path) if path.name.lower().endswith(UNITS) else read_input(path, overrides)
+
+def _reader(path: Path) -> Callable[[Path], Any]:
+    """Return the reader of a file by its ending."""
+    if path.is_dir():
+        return Folder
+    if path.name.lower().endswith(UNITS):
+        return open_unit
+    ending = path.suffix.lower()
+    if ending == ".csv":
+        return _read_csv
+    return {SUFFIX: _read_result, ".nc4": _read_result, **dict.fromkeys(FORMATS, _read_signals)}.get(
+        ending, _read_table
+    )
+
+
+def _read_result(path: Path) -> Any:
+    from lineofaction.report.document import read_file  # noqa: PLC0415 (start-up time: it draws)
+
+    return read_file(path)
+
+
+def _read_signals(path: Path) -> Any:
+    from lineofaction.gearbox.signals.recording import read_recording  # noqa: PLC0415 (start-up time)
+
+    return read_recording(path, "file")
+
+
+def _read_csv(path: Path) -> Any:
+    """Return a recording if the file begins with a time, else a table of pandas, with or without a head."""
+    from lineofaction.gearbox.signals.recording import begins_with_time  # noqa: PLC0415 (start-up time)
+
+    if not path.is_file():
+        raise BadInput.of("file", str(path), "a readable file", "Check the path.")
+    if begins_with_time(path):
+        return _read_signals(path)
+    import pandas  # noqa: PLC0415 (half a second of imports)
+
+    try:
+        first = pandas.read_csv(path, nrows=1, header=None, dtype=str).iloc[0]
+        numbers = pandas.to_numeric(first, errors="coerce").notna().all()
+        return pandas.read_csv(path, header=None if numbers else 0)
+    except (ValueError, UnicodeDecodeError) as error:
+        raise BadInput.of("file", str(path), "a table as CSV", f"{error}.") from None
+
+
+def _read_table(path: Path) -> Any:
+    """Return a case, a scene, the inputs of a study, or figures that a study wrote."""
+    table = read_table(path)
+    is_figures = path.suffix == ".json" and not _SUBJECTS.keys() & table.keys()
+    return table if is_figures or _is_study(table) else read_input(path)
+
+
+def _is_study(table: Mapping[str, Any]) -> bool:
+    """Whether a table has nothing but inputs of one study."""
+    if not table or _SUBJECTS.keys() & table.keys():
+        return False
+    return any(table.keys() <= study.inputs.model_fields.keys() for study in STUDIES.values())
+
+
+@brief
+@dataclass(frozen=True)
+class Folder(Mapping[str, Any]):
+    """The files of a folder that `read` takes, by their names; each is read on its request.
+
+    Files of the folders in it, as studies write them, have the name of their folder before theirs.
+    """
+
+    path: Path
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in self.files:
+            raise KeyError(name)
+        return read(self.files[name])
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.files)
+
+    def __len__(self) -> int:
+        return len(self.files)
+
+    @property
+    def files(self) -> dict[str, Path]:
+        """The paths of the files by their names."""
+        readable = (*UNITS, *_TABLES, SUFFIX, *FORMATS)
+        paths = sorted((*self.path.glob("*"), *self.path.glob("*/*")))
+        return {
+            path.relative_to(self.path).as_posix(): path
+            for path in paths
+            if path.is_file() and path.name.lower().endswith(readable)
+        }
+
+    def headlines(self) -> tuple[str, list[Row]]:
+        """Return the title and the kinds of the first files."""
+        files = self.files
+        kinds = [_kind(path) for path in list(files.values())[:MAX_LINES]]
+        rows = [*zip(files, kinds, strict=False), *((name, "") for name in list(files)[MAX_LINES:])]
+        return f"Folder {self.path.name or self.path}: {len(files)} files", rows
+
+
+def _kind(path: Path) -> str:
+    """Return the kind of a file in words, without reading it whole."""
+    reader = _reader(path)
+    if reader is not _read_table:
+        return {open_unit: "gear unit", _read_result: "result", _read_csv: "CSV"}.get(reader, "recording")
+    try:
+        table = read_table(path)
+    except BadInput:
+        return "not readable"
+    return next((kind for sign, kind in _SUBJECTS.items() if sign in table), "inputs or figures of a study")

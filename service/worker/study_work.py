@@ -34,7 +34,8 @@ def prepare(study: Study, inputs: Any, store: ResultStore) -> Json:
     """Check the inputs of a study's process; return them as they are hashed and worked on."""
     name = "case" if getattr(inputs, "case", None) is not None else "scene"
     fields = study.inputs.model_fields
-    varied = study.inputs.model_construct(**{field: getattr(inputs, field) for field in fields})
+    stated = inputs.model_fields_set & fields.keys()  # a study may tell what is left out from its default
+    varied = study.inputs.model_construct(stated, **{field: getattr(inputs, field) for field in fields})
     specified = CASES.of(inputs.case) if name == "case" else inputs.scene
     subject = study.run.narrowed(specified, varied)
     if name == "scene":

@@ -308,7 +308,7 @@ def test_an_interrupted_verb_says_so_and_leaves_no_file(
     seen: list[str] = []
 
     @contextmanager
-    def interrupting() -> Iterator[Callable[[str, float], None]]:
+    def interrupting(_stages: object) -> Iterator[Callable[[str, float], None]]:
         def report(stage: str, _fraction: float) -> None:
             seen.append(stage)
             if stage in own and seen.count(stage) == 1:

@@ -84,7 +84,7 @@ def test_a_file_with_a_start_is_opened_analyzed_and_slid(
     expect(page.locator(FIELD.format("tip_relief_length_mm"))).to_be_hidden()
     control(page, "#live-pinion-tip_relief_length_mm-exact").fill("0.5")
     page.get_by_role("button", name="Take these flanks").press("Enter")
-    expect(page.locator(FIELD.format("tip_relief_length_mm"))).to_have_value("0.5")
-    expect(page.locator(FIELD.format("tip_relief_start_diameter_mm"))).to_have_value("")
+    expect(page.locator(FIELD.format("tip_relief_start_diameter_mm"))).to_have_value("21")
+    expect(page.locator(FIELD.format("tip_relief_length_mm"))).to_have_value("")
     assert seen.complaints == []
     page.close()

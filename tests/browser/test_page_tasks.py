@@ -170,6 +170,14 @@ def test_an_own_unit_is_opened_and_its_flanks_are_misaligned(seen: Visit) -> Non
     hand.did("My own unit")
 
 
+def on_the_grid(page: Page) -> None:
+    """See that flanks are in steps of the drawing: 0.5 um and 0.1 mm, as the example states them."""
+    for name, step in (("tip_relief_um", 0.5), ("tip_relief_length_mm", 0.1)):
+        for gear in ("pinion", "wheel"):
+            count = float(page.locator(f"#f-pair-{gear}-{name}").input_value()) / step
+            assert count == pytest.approx(round(count), abs=1e-9), (gear, name)
+
+
 @pytest.mark.nightly
 def test_a_search_brings_three_decibels_that_are_heard(seen: Visit) -> None:
     page, hand = seen.page, Hand(seen)
@@ -177,8 +185,12 @@ def test_a_search_brings_three_decibels_that_are_heard(seen: Visit) -> None:
         hand.on(f"#bar-{field}").fill(text)  # 23 teeth: harmonic 1
     hand.analyze()
     hand.press("Another variant")
+    expect(page.locator("#cost-optimize")).to_have_text(re.compile(r"Takes about \d+ CPU s.*designs at"))
     hand.press("Search better flanks")
+    lead = page.locator("#ripple .lead").filter(has_text="harmonic 1, at 120 N m")
+    expect(lead).to_have_text(re.compile(r"falls by (at least [\d.]+|[\d.]+ ± [\d.]+) dB"))
     hand.press("Take the optimum into the case")
+    on_the_grid(page)
     hand.analyze()
     rows = page.locator("#compared tr")
     tone = rows.filter(has_text="first harmonic, dB from A").locator("td").nth(1)

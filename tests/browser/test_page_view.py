@@ -93,6 +93,21 @@ def test_the_pair_is_drawn_turns_by_keyboard_and_sleeps(view: Visit) -> None:
     assert view.complaints == []
 
 
+@pytest.mark.law
+def test_what_is_behind_the_face_of_the_wheel_is_seen_through_it(view: Visit) -> None:
+    """The face is of one shade; through it there are the teeth and the bore of the far side."""
+    page, through = view.page, view.page.get_by_label("see through the wheel")
+    seen = picture(page)
+    through.uncheck()
+    opaque = picture(page)
+    through.check()
+    changed = np.abs(seen - opaque).max(axis=-1) > 12
+    shades, counts = np.unique(opaque[changed], axis=0, return_counts=True)
+    face = changed & (opaque == shades[counts.argmax()]).all(axis=-1)
+    _, counts = np.unique(seen[face], axis=0, return_counts=True)
+    assert counts.max() < 0.9 * counts.sum()
+
+
 SAID = """() => {
   const [view, roll] = [document.querySelector("canvas.view"), document.getElementById("roll")];
   window.said = { times: 0, places: new Set() };

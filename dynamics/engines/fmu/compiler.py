@@ -13,15 +13,9 @@ from pathlib import Path
 from dynamics.errors import DynamicsError, InputError
 
 COMPILERS = ("cc", "gcc", "clang")
-
-
 # -ffp-contract=off: the same rounding as the compiled look-up; -s and no paths: the same bytes every time
 FLAGS = ("-std=c99", "-O2", "-fPIC", "-shared", "-ffp-contract=off", "-Wall", "-Wextra", "-I.")
-
-
 _FOLDERS = {("Linux", "x86_64"): ("linux64", ".so"), ("Darwin", "x86_64"): ("darwin64", ".dylib")}
-
-
 _SECONDS = 120  # most seconds of a compiler run
 
 

@@ -9,6 +9,7 @@ import zipfile
 from collections.abc import Mapping, Sequence
 from importlib.resources import files
 from pathlib import Path
+from uuid import UUID
 
 import numpy as np
 
@@ -96,6 +97,7 @@ def _nearest_zero(knots: Sequence[float] | np.ndarray) -> float:
 def _parameters(element: MeshElement) -> list[Variable]:
     """Return the variables that are set before a run, numbers also during it."""
     coast = element.coast
+    # without a coast flank the values have no effect
     backlash, thickness = (0.0, 0.5) if coast is None else (coast.backlash, coast.thickness)
     along = "Backlash along the transverse line of action at zero displacements"
     share = "Tooth thickness of the driver over the pitch, on the operating pitch circle"
@@ -165,10 +167,6 @@ def export_fmu(
         Model name: a C identifier.
     binary : bool
         False: sources alone, without a compiler; the host builds them.
-
-    Returns
-    -------
-    Path
     """
     target = Path(path)
     if target.suffix != ".fmu" or not target.parent.is_dir():
@@ -205,14 +203,11 @@ def _content(element: MeshElement, name: str) -> dict[str, bytes]:
         **{f"sources/{file}": text for file, text in sources.items() if file.endswith((".c", ".h"))},
         f"resources/{TABLE_FILE}": MAGIC + _identity_of(table).encode("ascii") + table,
     }
-    # the identifier of the file is the hash of all members, which name it themselves: hashed with an empty
-    # one
+    # the identifier of the file is the hash of all members; those that state it are hashed with an empty one
     digest, members = hashlib.sha256(), {**content, **described("")}
     for member in sorted(members):
         digest.update(member.encode() + b"\0" + hashlib.sha256(members[member]).digest())
-    text = digest.hexdigest()
-    guid = "{" + "-".join((text[:8], text[8:12], text[12:16], text[16:20], text[20:32])) + "}"
-    return {**content, **described(guid)}
+    return {**content, **described(f"{{{UUID(hex=digest.hexdigest()[:32])}}}")}
 
 
 def _binary(content: Mapping[str, bytes], name: str) -> dict[str, bytes]:

@@ -10,7 +10,7 @@ from fe_contact.flank.modification import FlankModification
 from lineofaction.gearbox.schemas.case import Case, Load
 from lineofaction.gearbox.schemas.declared import figures
 from lineofaction.gearbox.schemas.gear import ToothingInput
-from lineofaction.gearbox.schemas.model import BoundaryModel, Listed
+from lineofaction.gearbox.schemas.model import BoundaryModel, Listed, Name
 
 Torques = Annotated[Listed[Load], Field(min_length=1, max_length=16)]
 Caller = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,64}$")]
@@ -122,6 +122,11 @@ class PlanRequest(BoundaryModel):
             le=1e6,
             description="Budget in CPU seconds, in addition to a tolerance or a level of the case",
             examples=[30.0],
+        )
+        study: Name | None = Field(
+            default=None,
+            description="Name of a study of the case whose cost is predicted too, with its usual inputs",
+            examples=["optimize"],
         )
 
     inputs: PlanInputs = Field(description="Inputs of the plan")

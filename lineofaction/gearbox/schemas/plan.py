@@ -87,6 +87,14 @@ class PlannedError(BaseModel):
     peak_to_peak_um: float | None = Field(description="Null where no size is known before the run")
 
 
+class PlannedStudy(BaseModel):
+    """Predicted cost of a study with its usual inputs."""
+
+    cpu_seconds: float
+    memory_bytes: float = Field(description="Largest memory at one time; 0: unknown")
+    words: str = Field(description="The cost as a sentence part: what is computed, how often, at what price")
+
+
 class PlanBody(BaseModel):
     """The plan of an analysis."""
 
@@ -163,3 +171,6 @@ class PlanBody(BaseModel):
     plan: PlannedRun = Field(description="Meshes, patches, positions and loads")
     warnings: list[InputWarning]
     effect_ledger: list[LedgerEntry] = Field(description="Decision and reason for each effect")
+    study: PlannedStudy | None = Field(
+        default=None, description="Cost of the study that the question names; null: none, or not predicted"
+    )

@@ -12,6 +12,7 @@ import numpy as np
 
 from bounds import engineering
 from bounds.error_digits import error_text, to_error
+from fe_contact.microgeometry.conclusion import AT_LEAST, level_change
 from fe_contact.microgeometry.confirmation import ConfirmedDesign
 from fe_contact.microgeometry.optimization import Optimization
 from fe_contact.types import Estimate
@@ -178,11 +179,9 @@ def _run_table(result: Optimization) -> Table:
 
 def _optimization_page(result: Optimization) -> Page:
     before, after = result.start.objective, result.optimum.objective
-    heads = (
-        _headline("before", before),
-        _headline("after", after),
-        Headline("gain", f"{number(result.gain.value / UM, 3)} µm", result.outcome.replace("_", " ")),
-    )
+    harmonic = result.request["objective"].get("harmonic")  # None: the peak-to-peak counts
+    heads = [_headline("before", before), _headline("after", after)]
+    heads.insert(len(heads) if harmonic is None else 0, _gain(result, harmonic))
     lead = f"{result.reason}; {result.evaluations} designs of {len(result.variables)} variables"
     figure = Section("Harris map", "", (replace(_harris(result), table=None),), (_ripple_table(result),))
     design = Section("Design", "", tables=(_optimum_table(result),))
@@ -191,7 +190,24 @@ def _optimization_page(result: Optimization) -> Page:
     rows = tuple((name, number(cost["cpu_seconds"], 3)) for name, cost in stages)
     search = Section("Search", tried, tables=(_run_table(result), Table("Cost", ("stage", "CPU s"), rows)))
     robust = Section("Scatter", "", tables=(_node_table(result),))
-    return Page("Microgeometry of least transmission error", lead, heads, (figure, design, robust, search))
+    what = "transmission error" if harmonic is None else f"harmonic {harmonic}"
+    return Page(f"Microgeometry of least {what}", lead, tuple(heads), (figure, design, robust, search))
+
+
+def _gain(result: Optimization, harmonic: int | None) -> Headline:
+    """Return the gain: of a harmonic the change of its level, else that of the peak-to-peak."""
+    outcome = result.outcome.replace("_", " ")
+    if harmonic is None:
+        return Headline("gain", f"{number(result.gain.value / UM, 3)} µm", outcome)
+    before, after = result.start.objective, result.optimum.objective
+    name = f"{'fall' if after.value <= before.value else 'rise'} of harmonic {harmonic}"
+    size = level_change(before, after)
+    if not size:
+        return Headline(name, "within the errors", outcome)
+    if size.startswith(AT_LEAST):
+        return Headline(f"least {name}", size.removeprefix(AT_LEAST), outcome)
+    value, _, error = size.partition(" ± ")
+    return Headline(name, f"{value} dB", f"± {error}, {outcome}")
 
 
 def _headline(name: str, objective: Estimate) -> Headline:

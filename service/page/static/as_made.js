@@ -20,7 +20,8 @@ export function offerAsMade(design, careful) {
   const file = make("input", { class: "hidden-file", id: "made-file", type: "file", accept: ".csv,.txt,.mka", "aria-label": "Open the sheet of an inspection, CSV or MKA" });
   const stated = (how, note) => careful(async () => {
     const { case: made, left_out: left } = await ask("as-made", { inputs: { case: design.case }, ...how });
-    design.renew(made, [note, ...left.map((text) => `Left out: ${text}`)].join(". "));
+    design.show(made, { example: "", note: [note, ...left.map((text) => `Left out: ${text}`)].join(". ") });
+    design.settled();
   });
   file.addEventListener("change", async () => {
     const [sheet] = file.files;

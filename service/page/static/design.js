@@ -133,12 +133,6 @@ export class Design {
     this.look();
   }
 
-  /** Edit many fields at once. @param {object} content a case @param {string} note where it comes from */
-  renew(content, note) {
-    this.show(content, { example: "", note });
-    this.settled();
-  }
-
   /** Show what was typed when the address was left. */
   restore({ fields, origin }) {
     this.form.clear();
@@ -194,7 +188,7 @@ export class Design {
       this.view.show(outline);
       drawn = true;
       if (this.expected === undefined) noPlan("The plan is on its way.");
-      const plan = await ask("plan", { ...body, caller: this.caller }, signal);
+      const plan = await ask("plan", { inputs: { ...body.inputs, study: "optimize" }, caller: this.caller }, signal);
       if (!signal.aborted) this.expected = showPlan(plan);
     }, (problem) => {
       if (signal.aborted || problem.status === 0) return; // asked again when the service is back

@@ -102,12 +102,10 @@ class JobCard {
     else if (this.spoken.textContent !== this.said) this.spoken.textContent = this.said;
   }
 
-  /** Seconds that remain: the service's own figure, else by what is done, else by the plan. */
+  /** Seconds that remain by the service, which says none as long as it does not know its pace; until then the plan. */
   remaining(now) {
     if (now.status !== "running") return "";
     if (Number.isFinite(now.remaining_s)) return `about ${duration(now.remaining_s)} remain`;
-    const spent = now.started ? (Date.now() - new Date(now.started)) / 1000 : 0;
-    if (now.progress > 5 && spent > 1) return `about ${duration((spent * (100 - now.progress)) / now.progress)} remain`;
     return this.expected ? `planned: about ${duration(this.expected)}` : "";
   }
 }

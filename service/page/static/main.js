@@ -16,6 +16,7 @@ import { Live } from "./live.js";
 import { clearNotice, sayMissing } from "./notice.js";
 import { ordersOf, pairOf } from "./orders.js";
 import { pack, unpack } from "./packed.js";
+import { asStated } from "./relief_start.js";
 import { showReport } from "./report.js";
 import { Results } from "./results.js";
 import { Dynamics } from "./scene.js";
@@ -305,11 +306,8 @@ class Page {
   }
 
   /** @param {Record<string, Record<string, any>>} flanks by gear and field */
-  take(flanks) {
-    const entries = Object.entries(flanks).flatMap(
-      ([gear, changes]) => Object.entries(changes).map(([name, value]) => [`pair.${gear}.${name}`, value]),
-    );
-    this.design.take(Object.fromEntries(entries.filter(([key]) => key.startsWith("pair.pinion.") || key.startsWith("pair.wheel."))));
+  async take(flanks) {
+    this.design.take(await asStated(flanks, this.design.case));
     reveal(byId("f-pair-pinion-teeth"));
     byId("rail").focus();
   }

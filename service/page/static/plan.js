@@ -9,6 +9,7 @@ export function showPlan(found) {
   const head = make("dl", { class: "headline" });
   const { choice, error, passes } = found;
   const seconds = passes.reduce((sum, { cost }) => sum + cost.cpu_seconds, 0);
+  byId("cost-optimize").textContent = found.study ? `Takes ${found.study.words}.` : "";
   figures(head, [
     ["model", choice.model, passes.map(({ level }) => level).join(", then ")],
     ["time", duration(seconds), "of one processor"],

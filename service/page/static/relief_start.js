@@ -69,6 +69,15 @@ export function flankOf({ path: [, gear, name], schema }, content, circles) {
   return value === undefined ? {} : { [figure]: value };
 }
 
+/** Flanks as values of fields, reliefs in the form in which a case states them. @param {any} flanks by gear and field @param {any} content */
+export async function asStated(flanks, content) {
+  const circles = await circlesOf(content);
+  return Object.fromEntries(["pinion", "wheel"].flatMap((gear) => Object.entries(flanks[gear] ?? {}).map(([name, value]) => {
+    const [start] = statedStart(content.pair[gear], name) ?? [];
+    return [`pair.${gear}.${start ?? name}`, start ? converted(value, name, start, circles[gear]) : value];
+  })));
+}
+
 /** The fields of one relief of a gear, of which one is shown. */
 export class StartSwitch {
   /**

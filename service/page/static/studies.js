@@ -1,7 +1,7 @@
 /** Jobs beside the analysis: a card for each process of the service that studies a case, and what came of any. */
 
 import { card } from "./card.js";
-import { byId } from "./elements.js";
+import { byId, make } from "./elements.js";
 import { optimization } from "./optimization.js";
 import { showReport } from "./report.js";
 
@@ -34,7 +34,7 @@ export async function showResult(target, reference, { take, signal }) {
 export function showStudies(studies, page) {
   for (const study of studies) {
     byId(TABS[study.process] ?? "tolerance").append(
-      card(study, page, (values) => ({ inputs: () => ({ case: page.design.submitted(), ...values }) })),
+      card(study, page, (values) => ({ inputs: () => ({ case: page.design.submitted(), ...values }) }), { more: [make("p", { class: "hint", id: `cost-${study.process}` })] }),
     );
   }
 }

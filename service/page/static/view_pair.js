@@ -9,7 +9,8 @@ import { toothMesh } from "./view_teeth.js";
 
 const SPEED = 0.4; // base pitches a second
 export const COLORS = { pinion: [0.60, 0.64, 0.69], wheel: [0.79, 0.80, 0.80] }; // two steels: blue and orange are designs
-const SEEN_THROUGH = 0.35; // opacity of the wheel
+const NEAR = 0.2; // opacity of the side of the wheel that is seen through
+const FAR = 0.5; // and of the side behind it
 export const GEARS = ["pinion", "wheel"];
 const LINE = 0.05; // half width of a contact line as drawn, base pitches
 const STEPS = [1, 1.2, 1.6, 2, 2.5, 3, 4, 5, 7.5, 10]; // of the ends of a scale
@@ -117,31 +118,29 @@ export class RollingPair {
     const flank = this.curve ? "FLANK" : "SMOOTH";
     this.gear(gl, "pinion", ["STEEL"], frame, 1);
     if (this.through) {
-      gl.enable(gl.BLEND);
-      gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
-      gl.depthMask(false);
-    }
-    if (this.through) this.inFront(gl, frame);
-    this.gear(gl, "wheel", [flank, "STEEL"], frame, this.through ? SEEN_THROUGH : 1);
-    gl.depthMask(true);
-    gl.disable(gl.BLEND);
-    if (this.through) this.alone(gl, frame);
+      this.layer(gl, frame, "SMOOTH", FAR);
+      this.layer(gl, frame, flank, NEAR);
+    } else this.gear(gl, "wheel", [flank, "STEEL"], frame, 1);
     this.gear(gl, "pinion", [flank], frame, 1); // last: not behind what is seen through
   }
 
-  /** Let only what is in front of the wheel be drawn of it: seen through, it is one body. */
-  inFront(gl, frame) {
-    gl.depthMask(true);
-    gl.colorMask(false, false, false, false);
-    this.gear(gl, "wheel", ["SMOOTH", "STEEL"], frame, 1);
-    gl.colorMask(true, true, true, true);
+  /** Draw the wheel as it is seen through: its far side, or its near one; of either what is in front. */
+  layer(gl, frame, flank, opacity) {
+    gl.cullFace(opacity === FAR ? gl.FRONT : gl.BACK);
+    this.depth(gl, "wheel", [flank, "STEEL"], frame);
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+    this.gear(gl, "wheel", [flank, "STEEL"], frame, opacity);
+    gl.disable(gl.BLEND);
+    gl.cullFace(gl.BACK);
+    gl.clear(gl.DEPTH_BUFFER_BIT); // the depth of the pinion alone hides what comes after
+    this.depth(gl, "pinion", ["STEEL"], frame);
   }
 
-  /** Leave the depth of the pinion alone, which the wheel is seen through to. */
-  alone(gl, frame) {
-    gl.clear(gl.DEPTH_BUFFER_BIT);
+  /** Draw the depth of a gear alone. */
+  depth(gl, name, parts, frame) {
     gl.colorMask(false, false, false, false);
-    this.gear(gl, "pinion", ["STEEL"], frame, 1);
+    this.gear(gl, name, parts, frame, 1);
     gl.colorMask(true, true, true, true);
   }
 

@@ -186,8 +186,7 @@ def test_the_verb_says_more_than_a_moment_on_standard_error(
     seconds: float, case: CheckedCase, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(run_study, "study_cost", lambda *_: StudyCost((Work("values", seconds / 8.0, 8),)))
-    with run_study._announced_cost(STUDIES["sensitivity"], [(case, Path())], None, {"json": False}):
-        pass
+    run_study._announce_cost(STUDIES["sensitivity"], [run_study._Subject(case, Path())], None, {})
     printed = capsys.readouterr()
     assert printed.out == ""
     said = "loa sensitivity: about 40 CPU s: 8 values at 5 s\n"

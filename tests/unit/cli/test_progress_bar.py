@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from lineofaction.cli.output import progress_bar
+from lineofaction.gearbox.progress_bars import progress_bar
 from lineofaction.gearbox.stages import TimeLeft
 
 

@@ -12,9 +12,9 @@ from geared_scenes import gear_pair_scene
 from dynamics.results import RunResult
 from dynamics.simulation import simulate
 from dynamics.types import RunStatus
-from lineofaction.cli.interrupts import until_interrupted
 from lineofaction.cli.simulate import _run, _run_headlines
 from lineofaction.gearbox.convert.scene_effects import scene_table
+from lineofaction.gearbox.interrupts import until_interrupted
 from lineofaction.gearbox.units import boundary_ledger
 
 SCENE = gear_pair_scene(duration=0.02)

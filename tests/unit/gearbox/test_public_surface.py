@@ -74,6 +74,37 @@ def test_every_file_is_read_by_one_function(tmp_path: Path) -> None:
         loa.read(tmp_path / "modes.nc", {"duration": 1})
 
 
+def test_a_folder_is_its_files_each_read_on_request(tmp_path: Path) -> None:
+    unit = loa.read(EXAMPLES / "two_stage" / "two_stage.rexs")
+    for name, text in unit.files().items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    result = loa.modes(EXAMPLES / "jeffcott_scene.toml")
+    (tmp_path / "modes").mkdir()
+    for name in ("modes/modes.nc", "modes.json"):
+        loa.write(result, tmp_path / name)
+    (tmp_path / "notes.md").write_text("no file of ours", encoding="utf-8")
+    folder = loa.read(tmp_path)
+    assert folder["modes/modes.nc"] == result
+    assert folder["modes.json"] == loa.facts(result)
+    assert [row["name"] for row in folder["load_cases.toml"]["load_cases"]]
+    assert isinstance(folder["scene.toml"], loa.Scene) and isinstance(folder["first_stage.toml"], loa.Case)
+    assert set(folder["import.csv"]) >= {"fate", "component"}
+    assert folder["housing_stiffness.csv"].shape == (36, 36)
+    assert "notes.md" not in folder and len(folder) == len(list(folder))
+    assert re.search(r"scene\.toml +scene$", repr(folder), re.MULTILINE)
+    with pytest.raises(KeyError):
+        folder["notes.md"]
+
+
+def test_recordings_are_read_and_what_cannot_be_is_refused_by_name(tmp_path: Path) -> None:
+    (tmp_path / "run.csv").write_text("time_s,force_n\n0,1\n0.1,2\n0.2,3\n", encoding="utf-8")
+    recording = loa.read(tmp_path / "run.csv")
+    assert [channel.name for channel in recording.channels] == ["force_n"]
+    for name in ("none.csv", "none.wav", "none.unv", "none", "none.toml"):
+        with pytest.raises(loa.BadInput, match=name):
+            loa.read(tmp_path / name)
+
+
 SUBJECTS = sorted(
     file.name
     for file in EXAMPLES.glob("*.toml")

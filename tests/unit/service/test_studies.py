@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from study_service import prepared
 
 from fe_contact import SteDatabase, analyze
 from lineofaction.client import LineOfActionClient
@@ -126,6 +127,25 @@ def test_plans_and_drawings_are_as_declared(name: str, tmp_path: Path) -> None:
     assert PlanBody.model_validate(plan).model_dump(mode="json", exclude_unset=True) == plan
     drawing = through_json(outline_json(case))
     assert OutlineBody.model_validate(drawing).model_dump(mode="json") == drawing
+
+
+def test_a_search_has_the_complaint_of_the_case_as_objective_unless_one_is_stated() -> None:
+    complaint = {"frequency_hz": 800.0, "speed_rpm": 1200.0, "torque_n_m": 0.1}  # 20 teeth: harmonic 2
+    search = default_registry()["optimize"]
+    answered = prepared(search, case={**CASE, "complaint": complaint})
+    assert (answered["objective"]["harmonic"], answered["torque_n_m"]) == (2, [0.1])
+    stated = prepared(search, case={**CASE, "complaint": complaint}, objective={"kind": "worst"})
+    assert stated["objective"] == {"kind": "worst", "weights": []}
+
+
+def test_a_plan_has_the_cost_of_the_study_that_is_named(tmp_path: Path) -> None:
+    question = {"case": CASE, "time_budget_s": None, "cache": str(tmp_path)}
+    plan = through_json(live_plan({**question, "study": "optimize"}))
+    assert plan["study"]["cpu_seconds"] > 0.0 and "designs at" in plan["study"]["words"]
+    assert PlanBody.model_validate(plan).model_dump(mode="json", exclude_unset=True) == plan
+    assert "study" not in live_plan(question)
+    with pytest.raises(BadInput, match="optimize"):
+        live_plan({**question, "study": "deflect"})
 
 
 TORQUES = [30.0, 60.0, 110.0, 230.0]

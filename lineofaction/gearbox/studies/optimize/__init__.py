@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import cycle, pairwise
-from typing import Annotated, Any, Literal, Optional, Self
+from typing import Annotated, Any, ClassVar, Literal, Optional, Self
 
 from pydantic import Field, Strict, model_validator
 
@@ -150,6 +150,7 @@ class SearchInput(BoundaryModel):
 class HeardObjectiveInput(OverOrders, HeardInput):
     """Level of a scene over speeds and load cases, which is minimized."""
 
+    MANUAL: ClassVar[str] = "docs/studies.md"
     mesh: Name | None = Field(
         default=None,
         description="Mesh of the scene whose flanks are varied; left out: the only one with a case",

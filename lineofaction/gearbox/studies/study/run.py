@@ -82,7 +82,7 @@ class _ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):
             written = tabled.inputs.model_dump_json()
             scenes = VariedScene(written, tabled.databases, places, str(means.home))
             task = StudyTask(scenes, design.names, responses_of(inputs), inputs.start_s, inputs.receipt)
-            task = with_effects(task, design.points, design.kinds, means.workers, means.report)
+            task = with_effects(task, design, means.workers, means.report)
             result = study(
                 task,
                 design,

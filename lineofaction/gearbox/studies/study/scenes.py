@@ -32,7 +32,7 @@ from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.level_quantity import with_quantity
 from lineofaction.gearbox.problems import BadInput, ServiceError
 from lineofaction.gearbox.schemas.declared import figures
-from lineofaction.gearbox.schemas.faults import faults_of, model_in
+from lineofaction.gearbox.schemas.faults import faults_of, known_names, model_in
 from lineofaction.gearbox.schemas.scene import SceneInput
 from model_studies import LeftOut
 
@@ -102,7 +102,8 @@ def _below(model: type[BaseModel], field: str, path: str, rest: str) -> Iterator
 
 def _unknown(field: str, path: str, name: str, known: Sequence[str] | Mapping[str, Any]) -> BadInput:
     close = difflib.get_close_matches(name[:64], list(known), n=3)
-    remedy = f"Did you mean {' or '.join(close)}?" if close else f"Known here: {', '.join(known)}."
+    whole = SceneInput.MANUAL if isinstance(known, Mapping) else "the scene"
+    remedy = f"Did you mean {' or '.join(close)}?" if close else known_names(name, list(known), whole)
     return BadInput.of(field, path, f'a path of the scene file: there is no "{name}"', remedy)
 
 

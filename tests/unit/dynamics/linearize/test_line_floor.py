@@ -77,7 +77,7 @@ def test_every_single_line_with_mean_stiffness_lies_within_its_stated_error(few,
 def test_what_is_stated_falls_with_the_square_of_the_steps(few, monkeypatch):
     coarse = some("pair")
     monkeypatch.setattr("dynamics.linearize.line_floor.WIDEST", 0.005)
-    monkeypatch.setattr("dynamics.linearize.line_floor.OF_MODE", 0.125)
+    monkeypatch.setattr("dynamics.linearize.line_floor.MODE_STEP", 0.125)
     ratio = some("pair").bearing_floor_error / coarse.bearing_floor_error
     assert np.all((ratio > 0.19) & (ratio < 0.3))
 

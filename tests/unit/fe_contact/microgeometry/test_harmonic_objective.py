@@ -11,12 +11,14 @@ from spur_gears import LONG_RELIEFS
 
 from fe_contact import analyze
 from fe_contact.errors import InputError
+from fe_contact.microgeometry.conclusion import level_change
 from fe_contact.microgeometry.objective import HarmonicAmplitude, Worst
 from fe_contact.microgeometry.optimization import Outcome
 from fe_contact.microgeometry.optimize import optimize
 from fe_contact.microgeometry.search import Search
 from fe_contact.microgeometry.search_methods import NelderMead
 from fe_contact.microgeometry.variables import DesignVariable, modified
+from fe_contact.types import Estimate
 
 TORQUE, HARMONIC = 200.0, 2
 DRAFT: dict[str, Any] = {"level": "draft", "model": "plane_strain"}
@@ -39,6 +41,19 @@ def test_the_curve_of_a_harmonic_spans_its_amplitude(period: int, *, even: bool)
     for harmonic, size in enumerate(sizes, 1):
         counted = HarmonicAmplitude(harmonic).counted(curves, position)
         assert np.ptp(counted, axis=1)[0] == pytest.approx([size, 3.0 * size], rel=0.02, abs=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("after", "said"),
+    [
+        (Estimate(20e-9, 1e-9, "m"), "13.98 ± 0.52 dB"),
+        (Estimate(200e-9, 1e-9, "m"), "6.02 ± 0.13 dB"),
+        (Estimate(2e-9, 3e-9, "m"), "at least 26 dB"),  # 100 - 1 to 2 + 3 nm
+        (Estimate(99e-9, 1e-9, "m"), ""),
+    ],
+)
+def test_the_change_of_a_level_has_the_errors_of_both_amplitudes(after: Estimate, said: str) -> None:
+    assert level_change(Estimate(100e-9, 1e-9, "m"), after) == said
 
 
 def test_a_harmonic_that_no_curve_has_is_refused() -> None:

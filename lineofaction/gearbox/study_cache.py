@@ -8,11 +8,11 @@ from contextlib import contextmanager
 
 from fe_contact.solver_version import SOLVER_VERSION
 from host.directories import cache_home
+from lineofaction.gearbox.program_version import solver_version
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.study import Study
 from model_studies.workers import Remembering, Workers
 from model_studies.workers.content_digest import content_digest
-from service.version import solver_version
 
 
 @contextmanager

@@ -1,0 +1,98 @@
+"""Progress in notebooks and scripts: a bar where somebody sees it, else nothing."""
+
+from __future__ import annotations
+
+import io
+import sys
+from collections.abc import Iterator
+from types import ModuleType, SimpleNamespace
+
+import pytest
+
+from lineofaction.gearbox.progress_bars import watched
+from model_studies.progress import silent
+
+Shown = list[tuple[str, str]]
+
+
+class Terminal(io.StringIO):
+    """A terminal's standard error."""
+
+    def isatty(self) -> bool:
+        return True
+
+
+@pytest.fixture
+def cell(monkeypatch: pytest.MonkeyPatch) -> Iterator[Shown]:
+    """Run in a notebook; what its cell shows, first and later."""
+    shown: Shown = []
+    handle = SimpleNamespace(update=lambda text: shown.append(("later", text)))
+    ipython, display = ModuleType("IPython"), ModuleType("IPython.display")
+    ipython.get_ipython = lambda: SimpleNamespace(kernel=object())  # type: ignore[attr-defined]
+    display.HTML = str  # type: ignore[attr-defined]
+
+    def show(text: str, *, display_id: bool) -> SimpleNamespace:
+        assert display_id
+        shown.append(("first", text))
+        return handle
+
+    display.display = show  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "IPython", ipython)
+    monkeypatch.setitem(sys.modules, "IPython.display", display)
+    yield shown
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
+    now = SimpleNamespace(s=100.0)
+    monkeypatch.setattr("time.monotonic", lambda: now.s)
+    return now
+
+
+def test_a_notebook_shows_a_bar_of_work_that_takes_longer_than_a_moment(
+    cell: Shown, clock: SimpleNamespace
+) -> None:
+    with watched(None) as report:
+        report("contact", 0.1)
+        assert cell == []
+        clock.s += 2.1
+        report("contact <b>", 0.4)
+        clock.s += 0.1
+        report("contact <b>", 0.41)  # too soon
+        clock.s += 0.3
+        report("contact <b>", 0.5)
+        report("contact <b>", 1.0)
+    assert [when for when, _ in cell] == ["first", "later", "later"]
+    assert "contact &lt;b&gt; <progress" in cell[0][1] and " 40 % " in cell[0][1]
+    assert "100 %" in cell[-1][1]
+
+
+def test_a_notebook_shows_it_at_once_if_told_and_never_if_not(cell: Shown, clock: SimpleNamespace) -> None:
+    with watched(False) as report:
+        clock.s += 60.0
+        report("contact", 0.5)
+    assert cell == []
+    with watched(True) as report:
+        report("contact", 0.5)
+    assert len(cell) == 1
+
+
+def test_a_script_shows_bars_on_a_terminal_if_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stderr", terminal)
+    monkeypatch.setenv("TERM", "xterm")
+    with watched(None) as report:
+        assert report is silent
+    with watched(True) as report:
+        report("contact", 1.0)
+    assert "contact" in terminal.getvalue() and "100 %" in terminal.getvalue()
+    monkeypatch.setattr(sys, "stderr", io.StringIO())
+    with watched(True) as report:
+        assert report is silent
+
+
+def test_a_function_of_the_caller_is_called(cell: Shown) -> None:
+    seen: list[tuple[str, float]] = []
+    with watched(lambda *step: seen.append(step)) as report:
+        report("contact", 0.5)
+    assert seen == [("contact", 0.5)] and cell == []
