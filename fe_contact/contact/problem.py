@@ -55,9 +55,7 @@ class LoadedSlices:
     present: BoolArray
     """Whether any contact can press on a slice; else its other entries are harmless numbers. Shape (P, n)."""
     touch: Touch
-    """Touching points of plain involutes at the middles, arrays (P, n); at the ends of the path of contact
-    where the middle is beyond them.
-    """
+    """Touching points of plain involutes at the middles, at most at the ends of the path; arrays (P, n)."""
     patch_1: Patches
     patch_2: Patches
     """`patch_1`, `patch_2`: Load patches on both gears, one under each point of the contact line."""

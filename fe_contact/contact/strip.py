@@ -266,9 +266,7 @@ class StripMiddles(NamedTuple):
     """`middle`, `half`: Distance of the strip's middle from the touching point, and half its length, m."""
     slope: FloatArray
     curvature: FloatArray
-    """`slope`, `curvature`: Means of g' and g'' over the strip; 1 and 1/m. The slope differs from zero only
-    where the strip ends at an edge.
-    """
+    """`slope`, `curvature`: Means of g' and g'' over the strip; 1 and 1/m. The slope is zero off edges."""
 
 
 @njit(cache=True, error_model="numpy")

@@ -41,9 +41,7 @@ class _Way:
     """Largest value, in SI."""
     of_roll_length: Callable[[float, float], float]
     roll_length: Callable[[float, float], float]
-    """`of_roll_length`, `roll_length`: Functions of the base radius, m, and a roll length or the named value;
-    each returns the other one.
-    """
+    """`of_roll_length`, `roll_length`: Conversions at a base radius, m, to the named value and back."""
 
 
 WAYS = {

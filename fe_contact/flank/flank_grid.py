@@ -19,9 +19,7 @@ LARGEST_INVENTION = 0.1e-6
 _CONFIRMING = 4
 """Neighboring second differences that confirm a curvature; three next to a border of five nodes."""
 _MAX_UNLIKE = 3.0
-"""Largest ratio of second differences that confirm a curvature. A parabola has 1; a flat between two reliefs
-has next to it several times its own curvature.
-"""
+"""Largest ratio of second differences that confirm a curvature: a parabola has 1, flats by reliefs more."""
 _STEEPEST = 3.0
 """Bound of the slope of a monotone cubic over that of its chord."""
 

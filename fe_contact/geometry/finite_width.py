@@ -20,9 +20,7 @@ largest of mean, peak-to-peak and harmonics (docs/lab/index.md, "Constants") is 
 face of 1.2 modules; the error of the mesh covers part of it.
 """
 INTERNAL_CORRECTION_ERROR = 0.05
-"""The same of internal pairs. A coarse mesh and the even load make the correction of an internal pair of 5
-modules 0.02 to 0.042 too small.
-"""
+"""The same of internal pairs: a coarse mesh and the even load cost 0.02 to 0.042 at a face of 5 modules."""
 
 
 def correction_error(pair: ParallelAxes) -> float:

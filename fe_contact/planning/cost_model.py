@@ -47,9 +47,7 @@ _TOOTH_POINT, _BEGUN = 0.4e-6, 10e-6
 a set per carrying slice in addition to that of other loads.
 """
 _TOUCHED = 14e-6
-"""CPU seconds to find the touching point of a candidate on flanks that differ. Met within 0.8 to 1.4 for
-pairs of class 6, in the plane and over the face.
-"""
+"""CPU seconds to find the touching point of a candidate on flanks that differ; met within 0.8 to 1.4."""
 _FACE_TILT = 2.7
 """Cost of assembly with the change of the compliance along sloping flanks, over that without it."""
 _PLANE_EXPECTED, _FACE_EXPECTED = (86.0, 0.37), (76.0, 0.25)

@@ -56,9 +56,7 @@ class PlaneDiscretization:
     hypothesis: PlaneHypothesis
     recipes: tuple[MeshRecipe, MeshRecipe]
     coarse_recipes: tuple[MeshRecipe, MeshRecipe]
-    """`recipes`, `coarse_recipes`: Recipes of the driving and the driven gear; the coarse ones are half as
-    fine, for the discretization error.
-    """
+    """`recipes`, `coarse_recipes`: Recipes of both gears; the coarse ones, half as fine, tell the error."""
     finite_width: tuple[SectorRecipe, SectorRecipe] | None = None
     """Recipes of solids of half the face for the correction of the finite width; None: the plane alone."""
 
@@ -88,9 +86,7 @@ class FaceDiscretization:
 
     recipes: tuple[SectorRecipe, SectorRecipe]
     coarse_recipes: tuple[SectorRecipe, SectorRecipe]
-    """`recipes`, `coarse_recipes`: Recipes of the driving and the driven gear; the coarse ones are for the
-    discretization error.
-    """
+    """`recipes`, `coarse_recipes`: Recipes of both gears; the coarse ones tell the discretization error."""
     slices: int
     """Number of slices of the common face width."""
     max_slices: int

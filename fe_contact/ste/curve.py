@@ -120,9 +120,7 @@ class Curve:
     error: FloatArray
     """Half-width of the error band of the transmission error, m. Shape (Q,)."""
     interval_error: float
-    """Part of every error band by interpolation between the nodes of load, misalignment and center distance,
-    m: 0 on nodes, NaN where not estimated.
-    """
+    """Part of the error band by interpolation of loads and alignments, m: 0 on nodes, NaN: not estimated."""
     pair: NDArray[np.int64]
     """Pair index of each column of `_load_share`; the stored pairs if all positions lie in [0, 1) or the
     period is longer than a pitch. Shape (N,).

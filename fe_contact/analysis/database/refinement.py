@@ -29,9 +29,7 @@ AIM = 0.9
 """Part of the tolerance that a pass is planned to use. The rest covers errors of the predictions."""
 
 DOUBT = 2.0
-"""Factor within which predictions are right. No pass begins where even the finest discretization misses the
-tolerance by more than this factor.
-"""
+"""Factor within which predictions are right: no pass begins where the finest mesh misses by more."""
 
 SMALL = 0.3
 """Part of the tolerance below which a source is refined only where it decides: a tenth of the square sum."""

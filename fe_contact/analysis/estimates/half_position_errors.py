@@ -14,9 +14,7 @@ from fe_contact.ste.interpolation import Axis
 from fe_contact.types import FloatArray
 
 LEFT_BY_HALF = 0.75
-"""Error of all positions over the change by leaving half of them out: 1/3 for second order, and more for
-kinks, which may lie anywhere in an interval.
-"""
+"""Error of all positions over the change by half of them: 1/3 for second order, more for kinks."""
 
 PASSED_BY = 1.25
 """Missed peak-to-peak over the height of the corners at which the chords of neighboring intervals meet:

@@ -33,9 +33,7 @@ from fe_contact.ste.support_loads import SupportLoads, with_support_loads
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
 LOAD_PROBES = np.arange(1, WIDE_PROBES + 1) / (WIDE_PROBES + 1)
-"""Positions of the held-out loads in every interval, on a logarithmic scale: a kink may round the curve
-anywhere in it.
-"""
+"""Places of the held-out loads in an interval, on a logarithmic scale: a kink may lie anywhere in it."""
 MIDDLE = np.array([0.5])
 """The same of tables with more than four intervals, which are short."""
 AWAY = 1.4
