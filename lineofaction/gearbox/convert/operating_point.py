@@ -25,40 +25,33 @@ def pair_point(
     Torque on the driving gear in N m, normal force in N, None: not named; both lengths in m.
     """
     newtons = "" if force is None else f" ({engineering(force, 4)} N)"
-    parts = [f"at {typed(torque)} N m{newtons}"]
-    parts.append(f"misalignment {engineering(misalignment / UM, 4)} µm")
+    parts = [f"at {typed(torque)} N m{newtons}", f"misalignment {engineering(misalignment / UM, 4)} µm"]
     if center_distance_change:
         parts.append(f"center distance {engineering(center_distance_change / MM, 4, '+')} mm")
     return ", ".join(parts)
 
 
 def typed(value: float) -> str:
-    """Return a stated number as it was typed; one with more digits than anybody types, to four of them."""
+    """Return a number as it was typed; a number of more digits than anybody types is rounded to four."""
     text = engineering(value, _TYPED)
     return text if float(text) == float(f"{value:.12g}") else engineering(value, _COMPUTED)
 
 
 def scene_point(scene: SceneInput) -> str:
     """Return the operating point of a scene: its loads at the start, constant speeds, misaligned meshes."""
-    parts = [*_loads(scene), *_speeds(scene), *_misalignments(scene)]
+    parts = list(_scene_parts(scene))
     return f"at {', '.join(parts)}" if parts else ""
 
 
-def _loads(scene: SceneInput) -> Iterator[str]:
+def _scene_parts(scene: SceneInput) -> Iterator[str]:
     for load in scene.loads:
         later = " at the start" if len(set(load.torque_n_m)) > 1 else ""
         yield f"{typed(load.torque_n_m[0])} N m on {shaft_words(load.shaft)}{later}"
     for part in scene.speed_torques:
         yield f"the torques over speed of {part.name}"
-
-
-def _speeds(scene: SceneInput) -> Iterator[str]:
     for drive in scene.drives:
         if drive.speed_rpm is not None and drive.speed_rpm[0] and len(set(drive.speed_rpm)) == 1:
             yield f"{typed(drive.speed_rpm[0])} rpm of {shaft_words(drive.shaft)}"
-
-
-def _misalignments(scene: SceneInput) -> Iterator[str]:
     for mesh in scene.meshes:
         if misalignment := getattr(mesh, "misalignment_um", 0.0):
             yield f"{engineering(misalignment, 4)} µm misalignment of {mesh.name}"

@@ -82,7 +82,9 @@ def best_seating(bores: Sequence[Bore], bearings: Bearings) -> Seated:
         key=lambda candidate: candidate.order,
     )
     first = best[0]
-    if len(first.bores) < _FEWEST or _shafts(first.bores) < 2:
+    places = [bore.position for bore in first.bores.values()]
+    shafts = {(round(place[0] / NEAR), round(place[1] / NEAR)) for place in places}
+    if len(first.bores) < _FEWEST or len(shafts) < 2:
         raise BadInput.of("step_file", _listed(bores), _bound(bearings), _WHERE)
     rivals = [candidate for candidate in best if _rival(candidate, first)]
     if rivals:
@@ -108,14 +110,11 @@ def _in_mm(position: Sequence[float] | FloatArray) -> str:
 
 def _options(placement: Placement) -> str:
     fields = placement.fields or {"origin_mm": [0.0, 0.0, 0.0]}
-    return " ".join(
-        f"--{name.replace('_', '-')} {','.join(f'{value:.9g}' for value in values)}"
-        for name, values in fields.items()
-    )
-
-
-def _shafts(bores: Mapping[str, Bore]) -> int:
-    return len({(round(bore.position[0] / NEAR), round(bore.position[1] / NEAR)) for bore in bores.values()})
+    options = []
+    for name, values in fields.items():
+        digits = ",".join(f"{value:.9g}" for value in values)
+        options.append(f"--{name.replace('_', '-')} {digits}")
+    return " ".join(options)
 
 
 def _rival(other: Seated, first: Seated) -> bool:
