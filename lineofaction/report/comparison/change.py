@@ -50,13 +50,12 @@ def _levels_panel(result: FlankChange) -> Panel:
 
 
 def _change_panel(result: FlankChange) -> Panel:
-    lines = tuple(
-        _distribution(load, result.change[:, k, TOTAL], palette.ordered(k, result.torque.size))
-        for k, load in enumerate(_loads(result))
-    )
-    return Panel(
-        Axis("change, dB"), Axis("share of all pairs"), lines, (Reference("as before", 0.0),), title="Change"
-    )
+    lines = []
+    for k, load in enumerate(_loads(result)):
+        color = palette.ordered(k, result.torque.size)
+        lines.append(_distribution(load, result.change[:, k, TOTAL], color))
+    zero = (Reference("as before", 0.0),)
+    return Panel(Axis("change, dB"), Axis("share of all pairs"), tuple(lines), zero, title="Change")
 
 
 def _distribution(name: str, level: FloatArray, color: str, *, dashed: bool = False) -> Line:
@@ -115,13 +114,10 @@ def _text(result: FlankChange) -> Iterator[Table | str]:
 
 
 def _page(result: FlankChange) -> Page:
-    heads = (
-        Headline("verdict", result.verdict(), result.required()),
-        Headline(GETS_LOUDER, _loudest(result)),
-    )
-    section = Section(
-        "What it brings", "", (_change_figure(result),), (_levels_table(result), _influence_table(result))
-    )
+    verdict = Headline("verdict", result.verdict(), result.required())
+    heads = (verdict, Headline(GETS_LOUDER, _loudest(result)))
+    tables = (_levels_table(result), _influence_table(result))
+    section = Section("What it brings", "", (_change_figure(result),), tables)
     lead = f"Flanks of {result.mesh} over {len(result.deviation)} pairs within their tolerances"
     return Page("Change of flanks", lead, heads, (section,), tuple(result.partings()))
 

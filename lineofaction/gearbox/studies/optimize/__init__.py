@@ -20,6 +20,7 @@ from lineofaction.gearbox.studies.deflect import LoadCaseInput, LoadCases
 from lineofaction.gearbox.studies.scatter import ToleranceInputs
 
 TRIALS, SOUND_TRIALS = 3, 8
+"""Number of best start designs from which a search begins, of a case and of a scene."""
 PAIRS = 32
 """Number of pairs over which start and optimum are compared: a few CPU seconds."""
 Deviation = Annotated[float, Field(gt=0.0, le=1000.0)]
