@@ -11,7 +11,7 @@ from tempfile import TemporaryDirectory
 from lineofaction.gearbox.problems import BadInput
 
 _BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "msedge")
-_LIMIT_S = 120.0
+_LIMIT_S = 120.0  # longest time that a browser may take
 _FLAGS = (
     "--headless", "--disable-gpu", "--no-pdf-header-footer", "--disable-background-networking",
     "--disable-component-update", "--disable-sync", "--no-first-run", "--disable-extensions",
