@@ -54,17 +54,11 @@ def _panel(result: MeasuredHousingVibration, name: str, rms: FloatArray) -> Pane
     vibration = result.vibration
     x, along = row_axis(vibration.speed, result.metadata)
     sizes = np.nan_to_num(rms).max(axis=0)
-    lines = tuple(
-        Line(
-            f"order {order_label(vibration.order[h], result.metadata)}",
-            along,
-            rms[:, h],
-            palette.category(k),
-            width=1.4,
-        )
-        for k, h in enumerate(drawn_orders(vibration.order, sizes, MAX_ORDERS, result.metadata))
-    )
-    return Panel(x, Axis("rms velocity, mm/s"), lines, title=name)
+    lines = []
+    for k, h in enumerate(drawn_orders(vibration.order, sizes, MAX_ORDERS, result.metadata)):
+        order = f"order {order_label(vibration.order[h], result.metadata)}"
+        lines.append(Line(order, along, rms[:, h], palette.category(k), width=1.4))
+    return Panel(x, Axis("rms velocity, mm/s"), tuple(lines), title=name)
 
 
 def _where(result: MeasuredHousingVibration) -> str:
@@ -79,17 +73,10 @@ def _largest_table(result: MeasuredHousingVibration) -> Table:
     rows = []
     for name, rms in zip(vibration.point, vibration.rms, strict=True):
         s, h = map(int, np.unravel_index(int(np.nanargmax(rms)), rms.shape))
-        rows.append(
-            (
-                name,
-                order_label(vibration.order[h], result.metadata),
-                number(float(vibration.speed[s]) / RPM, 5),
-                number(float(vibration.frequency[s, h]), 5),
-                number(float(rms[s, h]) / MM_PER_S, 4),
-                number(float(vibration_level(rms[s, h])), 4),
-                ", ".join(axes[name]),
-            )
-        )
+        order = order_label(vibration.order[h], result.metadata)
+        speed, hertz = float(vibration.speed[s]) / RPM, float(vibration.frequency[s, h])
+        size = number(float(rms[s, h]) / MM_PER_S, 4), number(float(vibration_level(rms[s, h])), 4)
+        rows.append((name, order, number(speed, 5), number(hertz, 5), *size, ", ".join(axes[name])))
     return Table("Largest velocity of every point", _LARGEST_HEAD, tuple(rows))
 
 
@@ -122,9 +109,12 @@ def _contribution_figure(result: MeasuredHousingVibration) -> Figure | None:
 
 def measured_page(result: MeasuredHousingVibration) -> Page:
     """Return the page of a measured housing, with a table of parts that its responses replace or omit."""
-    figures = (measured_figure(result), _contribution_figure(result))
-    drawn = (*(figure for figure in figures if figure is not None), *excitation_figures(result.metadata))
-    page = dynamics_page("Vibration of the housing", drawn, _headlines(result), result.metadata)
+    contributions = _contribution_figure(result)
+    drawn = [measured_figure(result)]
+    if contributions is not None:
+        drawn.append(contributions)
+    drawn += excitation_figures(result.metadata)
+    page = dynamics_page("Vibration of the housing", tuple(drawn), _headlines(result), result.metadata)
     rests = Table("Forces that move the housing", ("what", "how"), force_rows(result.metadata))
     absent = Table(_OMITTED, (result.file,), tuple((sentence,) for sentence in result.left_out))
     accuracy = Section("Accuracy of the velocities", tables=(absent, rests), part=Part.ACCURACY)
@@ -147,8 +137,7 @@ def measured_text(result: MeasuredHousingVibration) -> Iterator[Table | str]:
     """Yield velocities, contributions, excitations, and sentences on missing parts."""
     yield _largest_table(result)
     yield _contribution_table(result)
-    if (excites := excitation_table(result.metadata)) is not None:
-        yield excites
+    yield from filter(None, (excitation_table(result.metadata),))
     yield from result.left_out
     yield from (f"{what}: {text}" for what, text in force_rows(result.metadata))
     yield from model_text(result.metadata)
@@ -168,8 +157,7 @@ def measured_series(result: MeasuredHousingVibration) -> Table:
         vibration.covered.ravel().astype(float),
         *(size[vibration.point.index(name), axis].ravel() for name, axis in directions),
     ]
-    rows = tuple(
-        tuple(f"{value:.9g}" if np.isfinite(value) else "" for value in row)
-        for row in zip(*columns, strict=True)
-    )
-    return Table("Velocities by speed and order", tuple(head), rows)
+    rows = []
+    for row in zip(*columns, strict=True):
+        rows.append(tuple(f"{value:.9g}" if np.isfinite(value) else "" for value in row))
+    return Table("Velocities by speed and order", tuple(head), tuple(rows))

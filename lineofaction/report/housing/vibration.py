@@ -152,7 +152,8 @@ def _transfer_figure(result: HousingVibrationResult) -> Figure:
     marks = tuple(Reference(name, value) for name, value in named if value <= hertz[-1])
     nearest = int(np.argmin(np.abs(hertz - at)))
     per_force = Axis("velocity per force, m/(N s)", "log")
-    panels, title = [], "surface"
+    panels = []
+    title = "surface"
 
     def curves(gain: FloatArray, seats: IntArray) -> tuple[Line, ...]:
         return category_lines(hertz, [mobilities.seat[s] for s in seats], gain.T[seats], width=1.2)
@@ -191,19 +192,18 @@ def _contribution_figure(result: HousingVibrationResult) -> Figure:
     of_surface = analysis.deflection is not None
     point = 0 if of_surface else _fastest(analysis)[0]
     what = "of the outer hull" if of_surface else f"of {analysis.vibration.point[point]}"
-    contributions = [
-        (shares, shares.surface if of_surface else shares.point[point])
-        for shares in (analysis.bearings, analysis.modes)
-    ]
+    texts, panels = [], []
+    for shares in (analysis.bearings, analysis.modes):
+        part = shares.surface if of_surface else shares.point[point]
+        largest = f"{number(100.0 * float(part.max()), 3)} %"
+        texts.append(f"Most comes from {shares.name[int(np.argmax(part))]}, {largest}.")
+        panels.append(share_panel(shares, part))
     return Figure(
         key="housing_contributions",
         title=f"Contributions to the mean square velocity {what}",
         caption=f"At {_where(analysis)}. Bars of a panel add up to 100 %; below zero: against the sum.",
-        alternative=" ".join(
-            f"Most comes from {shares.name[int(np.argmax(part))]}, {number(100.0 * float(part.max()), 3)} %."
-            for shares, part in contributions
-        ),
-        content=tuple(share_panel(shares, part) for shares, part in contributions),
+        alternative=" ".join(texts),
+        content=tuple(panels),
         table=_contribution_table(result),
     )
 
@@ -213,13 +213,11 @@ def _shape_figure(result: HousingVibrationResult) -> Figure | None:
     shape = result.shape
     if shape is None:
         return None
-    if result.mode:
+    if result.mode:  # a mode has no unit
         what = f"Mode {result.mode}, {number(result.natural_frequency[result.mode - 1], 4)} Hz"
-        unit = None
-    else:
-        what = f"Operating deflection at {_where(result.analysis)}"
-        unit = MM_PER_S, "mm/s"
-    return shape_figure("housing_shape", what, shape, unit)
+        return shape_figure("housing_shape", what, shape, None)
+    what = f"Operating deflection at {_where(result.analysis)}"
+    return shape_figure("housing_shape", what, shape, (MM_PER_S, "mm/s"))
 
 
 def _alternative(result: HousingVibrationResult) -> str:
@@ -233,12 +231,11 @@ def _alternative(result: HousingVibrationResult) -> str:
 
 
 def _page(result: HousingVibrationResult) -> Page:
-    shape = _shape_figure(result)
-    first, *others = (_velocity_figure(result), _contribution_figure(result), _transfer_figure(result))
-    shapes = () if shape is None else (shape,)
-    drawn = (first, *shapes, *others, *excitation_figures(result.analysis.metadata))
-    page = dynamics_page("Vibration of the housing", drawn, _headlines(result), result.analysis.metadata)
-    forces = Table("Forces that move the housing", ("what", "how"), force_rows(result.analysis.metadata))
+    metadata = result.analysis.metadata
+    drawn = [_velocity_figure(result), *filter(None, (_shape_figure(result),))]
+    drawn += [_contribution_figure(result), _transfer_figure(result), *excitation_figures(metadata)]
+    page = dynamics_page("Vibration of the housing", tuple(drawn), _headlines(result), metadata)
+    forces = Table("Forces that move the housing", ("what", "how"), force_rows(metadata))
     accuracy = Section("Accuracy of the velocities", tables=(forces,), part=Part.ACCURACY)
     return replace(page, sections=(*page.sections, accuracy))
 
@@ -269,8 +266,7 @@ def _text(result: HousingVibrationResult) -> Iterator[Table | str]:
     analysis, vibration = result.analysis, result.analysis.vibration
     yield _largest_table(result)
     yield _contribution_table(result)
-    if (excites := excitation_table(analysis.metadata)) is not None:
-        yield excites
+    yield from filter(None, (excitation_table(analysis.metadata),))
     beyond = vibration.order[~np.all(vibration.valid, axis=0)]
     if beyond.size:
         orders = ", ".join(order_label(order, analysis.metadata) for order in beyond)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import NamedTuple
 
 from dynamics.acoustics import Range
@@ -119,9 +120,7 @@ def _sensitivities_of(
     """Return changes by steps of damping, stiffness and flanks, and reasons why others have none."""
 
     def scenes(flank: DesignFigure) -> Callable[[float], Scene]:
-        """Return the scene by a figure of its flanks: its table is solved again on the same compliance."""
-        places = {flank.name: places_of(subject.inputs, "sensitivities", flank.name)}
-        varied = VariedScene(subject.inputs.model_dump_json(), subject.databases, places, str(means.home))
+        varied = _flank_scenes(subject, flank.name, means.home)
         return lambda value: at_steady_speeds(varied.scene({flank.name: value}))
 
     flanks = _flank_figures(subject.inputs)
@@ -139,3 +138,9 @@ def _flank_figures(scene: SceneInput) -> Iterator[DesignFigure]:
                 if amount != "tip_relief_um" or has_extent(flank, "tip_relief"):
                     path = f"meshes.{mesh.name}.case.pair.{gear}.{amount}"
                     yield DesignFigure(path, "um", float(getattr(flank, amount)), STEP)
+
+
+def _flank_scenes(subject: TabledScene, path: str, home: Path) -> VariedScene:
+    """Return the scene by a figure of its flanks: its table is solved again on the same compliance."""
+    places = {path: places_of(subject.inputs, "sensitivities", path)}
+    return VariedScene(subject.inputs.model_dump_json(), subject.databases, places, str(home))
