@@ -453,7 +453,8 @@ def data_sheet(pair: ParallelAxes) -> tuple[Table, Table, Table]:
 def _point_row(name: str, point: Json) -> tuple[str, ...]:
     numbers = [_text(length, "mm") for length in point["diameter_mm"]]
     numbers += [_text(angle, "deg") for angle in point["roll_angle_deg"]]
-    return (name, *numbers, *map(_ratio, (point["sliding_factor"], *point["specific_sliding"])))
+    ratios = (point["sliding_factor"], *point["specific_sliding"])
+    return (name, *numbers, *(f"{round(ratio, 3) + 0.0:.3f}" for ratio in ratios))  # + 0.0: no -0.0
 
 
 def data_sheet_section(pair: ParallelAxes, tolerance_class: int | None = None) -> Section:
@@ -482,8 +483,3 @@ def _text(value: float, unit: str) -> str:
     digits_before = len(f"{abs(value):.0f}")
     decimals = min(_DECIMALS[unit], max(MAX_DIGITS - digits_before, 0))
     return f"{value:.{decimals}f}"
-
-
-def _ratio(value: float) -> str:
-    """Return a ratio of speeds as text; rounding about zero is zero."""
-    return f"{round(value, 3) + 0.0:.3f}"

@@ -86,10 +86,11 @@ def step_housing(
         remedy = "Leave --origin-mm, --x-axis and --z-axis out: the bores say where it stands."
         raise BadInput.of("--origin-mm", seating.placement.fields, "such that a bearing is in a bore", remedy)
     stand = _stand(solid, seating.placement, stands_on)
+    point = [as_typed(float(np.round(value, 8)) + 0.0, MM) for value in stand.point]
     fields = {
         "material": material,
         **seating.placement.fields,
-        "feet": [{"name": "base", "point_mm": _typed(stand.point), "normal": (stand.normal + 0.0).tolist()}],
+        "feet": [{"name": "base", "point_mm": point, "normal": (stand.normal + 0.0).tolist()}],
         "seats": [_seat(name, seating) for name in seating.bores],
     }
     omitted = tuple(name for name in bearings if name not in seating.bores)
@@ -143,7 +144,3 @@ def _stand(solid: StepSolid, placement: Placement, stands_on: str) -> Stand:
 def _faces(face: FlatFace, placement: Placement, normal: FloatArray) -> bool:
     direction = placement.axes @ np.array(face.plane.normal)
     return bool(direction @ normal > 0.0 and np.linalg.norm(np.cross(direction, normal)) < _FACING)
-
-
-def _typed(point: FloatArray) -> list[float]:
-    return [as_typed(float(np.round(value, 8)) + 0.0, MM) for value in point]

@@ -85,18 +85,15 @@ def best_seating(bores: Sequence[Bore], bearings: Bearings) -> Seated:
     places = [bore.position for bore in first.bores.values()]
     shafts = {(round(place[0] / NEAR), round(place[1] / NEAR)) for place in places}
     if len(first.bores) < _FEWEST or len(shafts) < 2:
-        raise BadInput.of("step_file", _listed(bores), _bound(bearings), _WHERE)
+        at = ", ".join(f"{name} at {_in_mm(position)}" for name, position in bearings.items())
+        bound = f"a solid with bores about bearings of at least two shafts, three bearings in all: {at}"
+        raise BadInput.of("step_file", _listed(bores), bound, _WHERE)
     rivals = [candidate for candidate in best if _rival(candidate, first)]
     if rivals:
         ways = "; or ".join(_options(candidate.placement) for candidate in (first, *rivals[:3]))
         bound = f"one that fits the bearings in one way only: {1 + len(rivals)} are equally good"
         raise BadInput.of("step_file", f"{len(first.bores)} bearings in bores", bound, f"Choose: {ways}.")
     return first
-
-
-def _bound(bearings: Bearings) -> str:
-    at = ", ".join(f"{name} at {_in_mm(position)}" for name, position in bearings.items())
-    return f"a solid with bores about bearings of at least two shafts, three bearings in all: {at}"
 
 
 def _listed(bores: Sequence[Bore]) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -103,15 +102,12 @@ def _page(audio: HeardRun) -> Page:
     return Page("A run heard through its housing", "", _headlines(audio), (section,))
 
 
-def _text(audio: HeardRun) -> Iterator[Table | str]:
-    yield audio.recording.quantity
-    yield audio.remark
-
-
 def _series(audio: HeardRun) -> Table:
     table = _level_figure(audio).table
     assert table is not None
     return table
 
 
-PAGE = Presentation(_level_figure, _page, _text, series=_series)
+PAGE = Presentation(
+    _level_figure, _page, lambda audio: (audio.recording.quantity, audio.remark), series=_series
+)

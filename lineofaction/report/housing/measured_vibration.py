@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from bounds.types import FloatArray
-from dynamics.vibration import vibration_level
+from dynamics.vibration import VibrationAnalysis, vibration_level
 from lineofaction.gearbox.studies.vibration.measured import MeasuredHousingVibration
 from lineofaction.gearbox.studies.vibration.run import MM_PER_S
 from lineofaction.gearbox.units import RPM
@@ -43,7 +43,7 @@ def measured_figure(result: MeasuredHousingVibration) -> Figure:
         title=f"Vibration of {result.housing} by order, by measured responses",
         caption="Root mean square velocity of points under the forces of the bearings, the measured "
         f"directions together. Nothing is drawn outside the measured band, {band}.",
-        alternative=f"Shown in detail: {_where(result)}.",
+        alternative=f"Shown in detail: {where_text(result)}.",
         content=tuple(_panel(result, vibration.point[k], vibration.rms[k] / MM_PER_S) for k in fastest),
         table=_largest_table(result),
     )
@@ -61,7 +61,8 @@ def _panel(result: MeasuredHousingVibration, name: str, rms: FloatArray) -> Pane
     return Panel(x, Axis("rms velocity, mm/s"), tuple(lines), title=name)
 
 
-def _where(result: MeasuredHousingVibration) -> str:
+def where_text(result: MeasuredHousingVibration | VibrationAnalysis) -> str:
+    """Return the order, the speed and the frequency that are shown in detail, as text."""
     vibration, s, h = result.vibration, result.at_speed, result.at_order
     speed, hertz = number(float(vibration.speed[s]) / RPM, 4), number(vibration.frequency[s, h], 4)
     return f"{words_of_order(vibration.order[h], result.metadata)}, at {speed} rpm, {hertz} Hz"
@@ -82,7 +83,7 @@ def _largest_table(result: MeasuredHousingVibration) -> Table:
 
 def _contribution_table(result: MeasuredHousingVibration) -> Table:
     head = ("part", "frequency, Hz", *(f"{point}, %" for point in result.vibration.point))
-    caption = f"Contributions to the mean square velocity at {_where(result)}"
+    caption = f"Contributions to the mean square velocity at {where_text(result)}"
     return Table(caption, head, tuple(share_rows(result.bearing_shares, with_surface=False)))
 
 
@@ -100,7 +101,7 @@ def _contribution_figure(result: MeasuredHousingVibration) -> Figure | None:
     return Figure(
         key="housing_contributions",
         title=f"Contributions to the mean square velocity of {result.vibration.point[point]}",
-        caption=f"At {_where(result)}. Bars add up to 100 %; below zero: against the sum.",
+        caption=f"At {where_text(result)}. Bars add up to 100 %; below zero: against the sum.",
         alternative=f"Most comes from {shares.name[maximum]}, {number(100.0 * float(part[maximum]), 3)} %.",
         content=(share_panel(shares, part),),
         table=_contribution_table(result),
@@ -124,7 +125,7 @@ def measured_page(result: MeasuredHousingVibration) -> Page:
 def _headlines(result: MeasuredHousingVibration) -> tuple[Headline, ...]:
     vibration, point = result.vibration, _fastest(result)
     rms = float(vibration.rms[point, result.at_speed, result.at_order])
-    first = Headline(f"velocity of {vibration.point[point]}", velocity_text(rms), _where(result))
+    first = Headline(f"velocity of {vibration.point[point]}", velocity_text(rms), where_text(result))
     part = result.share[:, point]
     if not np.all(np.isfinite(part)):
         return (first,)

@@ -28,7 +28,7 @@ from lineofaction.report.drawing.figure import (
     category_lines,
     number,
 )
-from lineofaction.report.drawing.marks import drawn_orders, order_label, words_of_order
+from lineofaction.report.drawing.marks import drawn_orders, order_label
 from lineofaction.report.drawing.page import Headline, Page, Part, Section
 from lineofaction.report.drawing.surface_view import shape_figure
 from lineofaction.report.housing.forces import force_rows, row_axis
@@ -37,6 +37,7 @@ from lineofaction.report.housing.measured_vibration import (
     measured_page,
     measured_series,
     measured_text,
+    where_text,
 )
 from lineofaction.report.housing.shares import share_panel, share_rows, velocity_text
 from lineofaction.report.presentation import Presentation, dynamics_page, model_text
@@ -49,12 +50,6 @@ _LARGEST_HEAD = (
 )  # fmt: skip
 MAX_ORDERS, MAX_POINTS, MAX_SEATS = 6, 3, 4
 """Most orders in a panel, panels of points, and seats in a panel of transfer functions."""
-
-
-def _where(analysis: VibrationAnalysis) -> str:
-    vibration, s, h = analysis.vibration, analysis.at_speed, analysis.at_order
-    speed, hertz = number(float(vibration.speed[s]) / RPM, 4), number(vibration.frequency[s, h], 4)
-    return f"{words_of_order(vibration.order[h], analysis.metadata)}, at {speed} rpm, {hertz} Hz"
 
 
 def _largest_table(result: HousingVibrationResult) -> Table:
@@ -83,7 +78,9 @@ def _contribution_table(result: HousingVibrationResult) -> Table:
     rows = [*share_rows(analysis.bearings, with_surface), *share_rows(analysis.modes, with_surface)]
     if with_surface:
         head.append("outer hull, %")
-    return Table(f"Contributions to the mean square velocity at {_where(analysis)}", tuple(head), tuple(rows))
+    return Table(
+        f"Contributions to the mean square velocity at {where_text(analysis)}", tuple(head), tuple(rows)
+    )
 
 
 def _series(result: HousingVibrationResult) -> Table:
@@ -201,7 +198,7 @@ def _contribution_figure(result: HousingVibrationResult) -> Figure:
     return Figure(
         key="housing_contributions",
         title=f"Contributions to the mean square velocity {what}",
-        caption=f"At {_where(analysis)}. Bars of a panel add up to 100 %; below zero: against the sum.",
+        caption=f"At {where_text(analysis)}. Bars of a panel add up to 100 %; below zero: against the sum.",
         alternative=" ".join(texts),
         content=tuple(panels),
         table=_contribution_table(result),
@@ -216,14 +213,14 @@ def _shape_figure(result: HousingVibrationResult) -> Figure | None:
     if result.mode:  # a mode has no unit
         what = f"Mode {result.mode}, {number(result.natural_frequency[result.mode - 1], 4)} Hz"
         return shape_figure("housing_shape", what, shape, None)
-    what = f"Operating deflection at {_where(result.analysis)}"
+    what = f"Operating deflection at {where_text(result.analysis)}"
     return shape_figure("housing_shape", what, shape, (MM_PER_S, "mm/s"))
 
 
 def _alternative(result: HousingVibrationResult) -> str:
     analysis, vibration = result.analysis, result.analysis.vibration
     beyond = vibration.order[~np.all(vibration.valid, axis=0)]
-    text = f"Shown in detail: {_where(analysis)}."
+    text = f"Shown in detail: {where_text(analysis)}."
     if beyond.size:
         orders = ", ".join(order_label(order, analysis.metadata) for order in beyond[:MAX_ORDERS])
         text += f" Orders {orders} reach above what the modes kept carry."
@@ -248,7 +245,7 @@ def _headlines(result: HousingVibrationResult) -> tuple[Headline, ...]:
         rms = vibration.rms[(slice(None), *at)]
         fastest = int(np.argmax(rms))
         name = f"velocity of {vibration.point[fastest]}"
-        first = Headline(name, velocity_text(float(rms[fastest])), _where(analysis))
+        first = Headline(name, velocity_text(float(rms[fastest])), where_text(analysis))
     else:
         rms_of_hull = float(vibration.mean_square_velocity[at]) ** 0.5
         first = Headline("velocity of the outer hull", velocity_text(rms_of_hull))
@@ -276,10 +273,6 @@ def _text(result: HousingVibrationResult) -> Iterator[Table | str]:
     yield from model_text(analysis.metadata)
 
 
-def _first_figure(result: HousingVibrationResult) -> Figure:
-    return _shape_figure(result) or _velocity_figure(result)
-
-
 def _by_kind(
     modeled: Callable[[HousingVibrationResult], View], measured: Callable[[MeasuredHousingVibration], View]
 ) -> Callable[[Result], View]:
@@ -292,7 +285,7 @@ def _by_kind(
 
 
 PAGE = Presentation(
-    _by_kind(_first_figure, measured_figure),
+    _by_kind(lambda result: _shape_figure(result) or _velocity_figure(result), measured_figure),
     _by_kind(_page, measured_page),
     _by_kind(_text, measured_text),
     series=_by_kind(_series, measured_series),

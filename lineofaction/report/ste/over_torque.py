@@ -136,6 +136,12 @@ def deviation_curves(database: SteDatabase) -> Figure:
     Either is drawn if the table has more than one value of it, the other at its value nearest to zero.
     """
     deviations = _deviations(database)
+    panels = []
+    for deviation in deviations:
+        ripples = [um_of([curve.peak_to_peak for curve in curves]) for curves in deviation.curves]
+        value, error = np.stack(ripples, axis=1)
+        lines = load_lines(database, deviation.values, value, bands=error)
+        panels.append(ripple_panel(deviation.axis, lines))
     return Figure(
         key="deviations",
         title=f"Peak-to-peak transmission error over {' and '.join(d.name for d in deviations)}",
@@ -143,7 +149,7 @@ def deviation_curves(database: SteDatabase) -> Figure:
         "Misalignment > 0: the gap grows towards the +z end of the face, and the load moves to the −z end. "
         "Seen from +z, the driving gear turns clockwise.",
         alternative=" ".join(_deviation_text(database, deviation) for deviation in deviations),
-        content=tuple(_panel(database, deviation) for deviation in deviations),
+        content=tuple(panels),
         table=_deviation_table(database, deviations),
     )
 
@@ -167,12 +173,6 @@ def _deviations(database: SteDatabase) -> list[_Deviation]:
 def _curves(database: SteDatabase, misalignment: float, change: float) -> tuple[Curve, ...]:
     point = {"misalignment": misalignment, "center_distance_change": change}
     return tuple(database.curve(force=float(force), **point, allow_failed=True) for force in database.force)
-
-
-def _panel(database: SteDatabase, deviation: _Deviation) -> Panel:
-    value, error = np.stack([um_of([c.peak_to_peak for c in row]) for row in deviation.curves], axis=1)
-    lines = load_lines(database, deviation.values, value, bands=error)
-    return ripple_panel(deviation.axis, lines)
 
 
 def _deviation_text(database: SteDatabase, deviation: _Deviation) -> str:
