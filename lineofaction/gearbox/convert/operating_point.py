@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from bounds import engineering, shaft_words
@@ -39,19 +38,16 @@ def typed(value: float) -> str:
 
 def scene_point(scene: SceneInput) -> str:
     """Return the operating point of a scene: its loads at the start, constant speeds, misaligned meshes."""
-    parts = list(_scene_parts(scene))
-    return f"at {', '.join(parts)}" if parts else ""
-
-
-def _scene_parts(scene: SceneInput) -> Iterator[str]:
+    parts = []
     for load in scene.loads:
         later = " at the start" if len(set(load.torque_n_m)) > 1 else ""
-        yield f"{typed(load.torque_n_m[0])} N m on {shaft_words(load.shaft)}{later}"
-    for part in scene.speed_torques:
-        yield f"the torques over speed of {part.name}"
+        parts.append(f"{typed(load.torque_n_m[0])} N m on {shaft_words(load.shaft)}{later}")
+    parts += [f"the torques over speed of {part.name}" for part in scene.speed_torques]
     for drive in scene.drives:
         if drive.speed_rpm is not None and drive.speed_rpm[0] and len(set(drive.speed_rpm)) == 1:
-            yield f"{typed(drive.speed_rpm[0])} rpm of {shaft_words(drive.shaft)}"
+            parts.append(f"{typed(drive.speed_rpm[0])} rpm of {shaft_words(drive.shaft)}")
     for mesh in scene.meshes:
-        if misalignment := getattr(mesh, "misalignment_um", 0.0):
-            yield f"{engineering(misalignment, 4)} µm misalignment of {mesh.name}"
+        misalignment = getattr(mesh, "misalignment_um", 0.0)
+        if misalignment:
+            parts.append(f"{engineering(misalignment, 4)} µm misalignment of {mesh.name}")
+    return f"at {', '.join(parts)}" if parts else ""

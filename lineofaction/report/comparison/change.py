@@ -35,27 +35,25 @@ def _change_figure(result: FlankChange) -> Figure:
         caption=f"{len(result.deviation)} pairs, deviating alike before (dashed) and after. All orders of "
         f"{result.mesh} together: {quantity}.",
         alternative=f"The median change is {median[worst]:+.1f} dB at {_loads(result)[worst]}.",
-        content=(_levels_panel(result), _change_panel(result)),
+        content=_distributions(result),
     )
 
 
-def _levels_panel(result: FlankChange) -> Panel:
-    lines = []
+def _distributions(result: FlankChange) -> tuple[Panel, Panel]:
+    """Draw the distributions of the levels before and after, and of their change, by load."""
+    levels, changes = [], []
     for k, load in enumerate(_loads(result)):
         color = palette.ordered(k, result.torque.size)
-        lines.append(_distribution(f"{load}, before", result.before.pairs[:, k, TOTAL], color, dashed=True))
-        lines.append(_distribution(load, result.after.pairs[:, k, TOTAL], color))
+        levels.append(_distribution(f"{load}, before", result.before.pairs[:, k, TOTAL], color, dashed=True))
+        levels.append(_distribution(load, result.after.pairs[:, k, TOTAL], color))
+        changes.append(_distribution(load, result.change[:, k, TOTAL], color))
     limit = () if result.requirement is None else (Reference("requirement", result.requirement),)
-    return Panel(Axis(result.unit), Axis("share of all pairs"), tuple(lines), limit, title="Level")
-
-
-def _change_panel(result: FlankChange) -> Panel:
-    lines = []
-    for k, load in enumerate(_loads(result)):
-        color = palette.ordered(k, result.torque.size)
-        lines.append(_distribution(load, result.change[:, k, TOTAL], color))
     zero = (Reference("as before", 0.0),)
-    return Panel(Axis("change, dB"), Axis("share of all pairs"), tuple(lines), zero, title="Change")
+    share = Axis("share of all pairs")
+    return (
+        Panel(Axis(result.unit), share, tuple(levels), limit, title="Level"),
+        Panel(Axis("change, dB"), share, tuple(changes), zero, title="Change"),
+    )
 
 
 def _distribution(name: str, level: FloatArray, color: str, *, dashed: bool = False) -> Line:

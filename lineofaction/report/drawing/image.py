@@ -183,20 +183,15 @@ def draw_panels(panels: Sequence[Panel], axes: Sequence[Axes], wide: Container[i
         _finish(ax, panel)
         if index in wide:
             ax.set_ylabel(fill(panel.y.label, _HIGH_LABEL))
-        else:
-            _label_narrow(ax, panel)
+        else:  # small type and more rows
+            ax.set_xlabel(fill(panel.x.label, _HALF_LABEL), fontsize=_NARROW_TYPE)
+            ax.set_ylabel(fill(panel.y.label, _NARROW_LABEL), fontsize=_NARROW_TYPE)
+            title = fill(panel.title, _HALF_LABEL)
+            ax.set_title(title, loc="left", fontsize=_NARROW_TYPE, fontweight="bold")
         # the panel below, of the same width, has the same label
         if repeats_below(panels, index) and index in wide and index + 1 in wide:
             ax.set_xlabel("")
     return handles
-
-
-def _label_narrow(ax: Axes, panel: Panel) -> None:
-    """Write the labels and the title of a narrow panel, in small type and more rows."""
-    ax.set_xlabel(fill(panel.x.label, _HALF_LABEL), fontsize=_NARROW_TYPE)
-    ax.set_ylabel(fill(panel.y.label, _NARROW_LABEL), fontsize=_NARROW_TYPE)
-    title = fill(panel.title, _HALF_LABEL)
-    ax.set_title(title, loc="left", fontsize=_NARROW_TYPE, fontweight="bold")
 
 
 def _height(panel: Panel, columns: int) -> float:

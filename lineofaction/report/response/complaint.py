@@ -53,6 +53,10 @@ def _figure(answer: AnsweredComplaint) -> Figure:
         panel = _by_order(complaint)
     else:
         panel = _over_speed(complaint, complaint.speed, complaint.frequency)
+    references = [*panel.references]
+    for mode, share in zip(answer.modes, MODE_LABELS, strict=False):  # fewer modes, or fewer labels
+        name = f"mode {number(mode.frequency)} Hz"
+        references.append(Reference(name, mode.frequency, "horizontal", share))
     return Figure(
         key="complaint",
         title="Complaint, and what passes there",
@@ -60,7 +64,7 @@ def _figure(answer: AnsweredComplaint) -> Figure:
         f"{engineering(100.0 * complaint.tolerance, 3)} % of the complaint. Dashed: speed and frequency of "
         "the complaint, and the modes within reach.",
         alternative=f"{sentence(complaint)}.",
-        content=(replace(panel, references=(*panel.references, *_mode_references(answer))),),
+        content=(replace(panel, references=tuple(references)),),
         table=_passing_table(answer),
     )
 
@@ -104,13 +108,6 @@ def _by_order(complaint: Complaint) -> Panel:
         points.append(Line(harmonic_label(line.group), order, distance, *look, width=0.0, markers=True))
     axes = Axis(f"order of {complaint.shaft}"), Axis("distance from the complaint, %")
     return Panel(*axes, tuple(points), (Reference("complaint", complaint.order),))
-
-
-def _mode_references(answer: AnsweredComplaint) -> tuple[Reference, ...]:
-    return tuple(
-        Reference(f"mode {number(mode.frequency)} Hz", mode.frequency, "horizontal", share)
-        for mode, share in zip(answer.modes, MODE_LABELS, strict=False)  # fewer modes, or fewer labels
-    )
 
 
 def _passing_table(answer: AnsweredComplaint) -> Table:

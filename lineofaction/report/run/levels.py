@@ -225,7 +225,11 @@ def _panel(
     visible = (np.where(height <= top, height, np.nan) for height in heights)
     lines = [Line("mesh orders", along, height, ORDER_COLOUR, "dot", 1.0) for height in visible]
     lines += [Line(mode.name, along, mode.frequency, mode.color, "dash", 1.4) for mode in modes]
-    notes = [*_order_notes(blocks, along, top), *_mode_notes(along, modes)]
+    notes = list(_order_notes(blocks, along, top))
+    slowest = int(np.argmin(along))
+    for mode in modes:
+        hertz = float(mode.frequency[slowest])
+        notes.append(Note(float(along[slowest]), hertz, f"{mode.moves} {number(hertz, 4)} Hz"))
     x, y = Axis.over(axis.label, shade.x), Axis("frequency, Hz", limits=(0.0, top))
     return Panel(x, y, tuple(lines), shade=shade, notes=placed(notes, x, y, (0.0, top)))
 
@@ -237,14 +241,6 @@ def _order_notes(blocks: Waterfall, along: FloatArray, top: float) -> Iterator[N
         last = int(np.argmax(np.where(height <= 0.97 * top, height, -1.0)))
         if 0.0 < height[last] <= top:
             yield Note(float(along[last]), float(height[last]), f"{order}×", left=True)
-
-
-def _mode_notes(along: FloatArray, modes: list[ModeLine]) -> Iterator[Note]:
-    """Yield a note on every mode where the run is slowest: the part that moves most, and its frequency."""
-    start = int(np.argmin(along))
-    for mode in modes:
-        at = float(mode.frequency[start])
-        yield Note(float(along[start]), at, f"{mode.moves} {number(at, 4)} Hz")
 
 
 def _campbell_text(

@@ -191,7 +191,9 @@ class HeardProblem(SearchProblem):
         try:
             parts = [*chain(*by.run(_linearized_nodes, self, tasks))]
         except (FeContactError, DynamicsError):
-            return self._with_merit(math.inf, math.inf), _no_merit(point.size)
+            d = point.size
+            still = Powers(np.zeros(1), np.zeros((1, d)), np.zeros((1, d, d)))  # no step leads away from here
+            return self._with_merit(math.inf, math.inf), HeardMerit(still, (), PENALTY)
         powers = _stacked([part.powers for part in parts])
         objective, weight = self._over_nodes(powers.constant)
         expected = Powers(*(np.tensordot(weight, power, 1) for power in powers))
@@ -300,12 +302,6 @@ def _joined(limits: Sequence[tuple[Rows, ...]]) -> tuple[Rows, ...]:
         (np.concatenate([part[0] for part in rows]), np.concatenate([part[1] for part in rows]))
         for rows in zip(*limits, strict=True)
     )
-
-
-def _no_merit(variables: int) -> HeardMerit:
-    """Return the merit about a design that cannot be solved: nothing leads away from it."""
-    nothing = Powers(np.zeros(1), np.zeros((1, variables)), np.zeros((1, variables, variables)))
-    return HeardMerit(nothing, (), PENALTY)
 
 
 def with_neighbor_loads(load: FloatArray, misalignment: FloatArray) -> tuple[FloatArray, FloatArray]:
