@@ -88,11 +88,12 @@ class Bound:
         """Return the range in words; an end that is missing is an empty string."""
         if low and high and not self.low_open:
             return f"from {low} to {'below ' if self.high_open else ''}{high}"
-        sides = (
-            f"{'above' if self.low_open else 'at least'} {low}" if low else "",
-            f"{'below' if self.high_open else 'at most'} {high}" if high else "",
-        )
-        return " and ".join(side for side in sides if side)
+        sides = []
+        if low:
+            sides.append(f"{'above' if self.low_open else 'at least'} {low}")
+        if high:
+            sides.append(f"{'below' if self.high_open else 'at most'} {high}")
+        return " and ".join(sides)
 
     def __str__(self) -> str:
         return self.worded(Reader())

@@ -189,6 +189,4 @@ _DESCRIPTIONS: tuple[tuple[tuple[type, ...], Callable[[Any], str]], ...] = (
     ((Mapping,), lambda value: _listed([str(name) for name in islice(value, LISTED)], len(value))),
     ((tuple, list, set, frozenset), lambda value: _sequence(list(value))),
 )
-"""Functions that describe values, by type. The first that fits counts: `Enum` stands before int, which a
-member of an enumeration may be too.
-"""
+"""Functions that describe values, by type. The first that fits counts: a member of `Enum` may be an int."""

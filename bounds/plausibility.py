@@ -36,9 +36,9 @@ def _suspected_unit(value: float, field_unit: Unit, dimension: str, low: float, 
     Parameters
     ----------
     value : float
-        In SI, as read in the unit `field_unit`.
+        Value in SI, as read in the unit `field_unit`.
     field_unit : Unit
-        Of the field.
+        Unit of the field.
     dimension : str
         SI unit of the quantity, e.g. "m".
     low, high : float
@@ -84,9 +84,7 @@ class Finding:
     """Value of the field, in `unit`."""
     low: float
     high: float
-    """`low`, `high`: Usual values of the field in `unit`, given the other values of the case. No bound is 0
-    or infinity.
-    """
+    """`low`, `high`: Usual values in `unit`, given the other values of the case; no bound: 0 or infinity."""
     unit: str
     """SI unit."""
     reason: str
@@ -111,7 +109,7 @@ class Finding:
             "field": self.field,
             "value": self.value,
             "unit": self.unit,
-            "low": self.low or None,
+            "low": self.low or None,  # 0 and infinity are no bounds
             "high": self.high if math.isfinite(self.high) else None,
             "reason": self.reason,
             "source": self.source,
@@ -158,7 +156,7 @@ def finding_of(content: Json) -> Finding:
 
 
 def warn_of(findings: Sequence[Finding]) -> None:
-    """Warn of findings at the line that called the package which found them."""
+    """Warn of findings at the line that called the package of this function's caller."""
     # level 2 is the function that called this one; functools calls cached properties
     library, level = _package(2), 3
     while _package(level) in (library, "functools"):

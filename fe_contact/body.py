@@ -9,15 +9,13 @@ from bounds import Declared, Kind, Quantity, Text, between, declared, described,
 from fe_contact.errors import InputError, declared_fields
 from fe_contact.types import Json
 
-ROUNDING = 1e-4  # of the face width: faces closer than that are one, since foils of elements are no help
-
+ROUNDING = 1e-4  # least difference of web and face width over the face width; a smaller one counts as none
 
 _RIM = "Rim thickness s_R below the root circle; half a module or more, less than what lies above the hub"
 _WEB = "Web thickness b_s; 0.02 face widths to the face width, which is a solid gear"
 _HUB = "Outside of the hub, the bore diameter or more; left out: the web reaches down to the bore"
 _WEB_OFFSET = "Middle of the web towards +z from mid-face; the web stays within the face"
 
-FOUNDATIONS = ("radial_foundation", "tangential_foundation", "axial_foundation")
 _KEY = Text.of(
     "About G / h for a key of height h: ", Quantity(1e13, "N/m^3"), " for ", Quantity(8e-3, "m"), " of steel."
 )
@@ -108,9 +106,9 @@ class BoreSeat:
     """A seat all round the bore, rigid or elastic, over the whole face or part of it.
 
     Foundation moduli are traction per displacement, in tension and compression, as of a fit until it opens.
-    With a key the tangential foundation is that of the key, acts over its width only and must be given (about
-    G / h for a key of height h); elsewhere the bore slides around the shaft. Raises `InputError`: a value out
-    of its bounds.
+    With a key the tangential foundation is that of the key and must be given (about G / h for a key of height
+    h). It acts over the width of the key only: elsewhere the bore slides around the shaft. Raises
+    `InputError`: a value out of its bounds.
     """
 
     radial_foundation: float | None = declared(None, _foundation("Radial", 2e13))
@@ -133,10 +131,11 @@ class BoreSeat:
     @property
     def stiffness(self) -> tuple[float, float, float]:
         """Radial, tangential and axial foundation modulus all round, N/m^3; inf is rigid."""
-        first, second, third = (getattr(self, field) for field in FOUNDATIONS)
-        if self.key is not None:
-            second = 0.0
-        return tuple(math.inf if k is None else float(k) for k in (first, second, third))  # type: ignore[return-value]
+        radial, tangential, axial = (
+            math.inf if modulus is None else float(modulus)
+            for modulus in (self.radial_foundation, self.tangential_foundation, self.axial_foundation)
+        )
+        return radial, tangential if self.key is None else 0.0, axial
 
     @property
     def elastic(self) -> bool:

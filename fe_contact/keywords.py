@@ -18,9 +18,9 @@ from model_studies.workers import Workers
 
 
 class TableKeywords(TypedDict, total=False):
-    """Members of `TableAxes`, `AnalysisOptions` and `Run`.
+    """Fields of `TableAxes`, `AnalysisOptions` and `Run`.
 
-    A number as `tolerance` is its relative part: 0.01 is 1 % or 20 nm, the larger of both.
+    A `tolerance` that is a number is its relative part: 0.01 is 1 % or 20 nm, the larger of both.
     """
 
     torques: Levels | None
@@ -47,18 +47,20 @@ def with_keywords(
 ) -> tuple[TableAxes | None, AnalysisOptions, Run]:
     """Return axes, options and run with the keywords in place of their fields.
 
-    Raises `InputError`: a value that cannot be used, by field name; `TypeError`: a keyword that is none.
+    Raises `InputError`: a value cannot be used; it names the field. Raises `TypeError`: an unknown keyword.
     """
     known = TableKeywords.__annotations__
-    if unknown := keywords.keys() - known:
+    unknown = keywords.keys() - known
+    if unknown:
         raise TypeError(f"analyze() has no keyword {min(unknown)!r}; it has {', '.join(known)}")
-    changes = _members(AnalysisOptions, keywords)
+    changes = _fields_of(AnalysisOptions, keywords)
     if "tolerance" in changes:
         changes["tolerance"] = AllowedError.from_value(changes["tolerance"])
-    if levels := _members(TableAxes, keywords):
+    levels = _fields_of(TableAxes, keywords)
+    if levels:
         axes = TableAxes(**levels) if axes is None else replace(axes, **levels)
-    return axes, replace(options, **changes), replace(run, **_members(Run, keywords))
+    return axes, replace(options, **changes), replace(run, **_fields_of(Run, keywords))
 
 
-def _members(record: type, keywords: Mapping[str, Any]) -> dict[str, Any]:
+def _fields_of(record: type, keywords: Mapping[str, Any]) -> dict[str, Any]:
     return {field.name: keywords[field.name] for field in fields(record) if field.name in keywords}

@@ -68,16 +68,16 @@ _ALLOWED: dict[str, tuple[int | None, int | None]] = {
 }
 """Calls with any arguments: their numbers on x86-64 and on ARM64, None where a processor has no such call."""
 
-_MAP_KIND, _MAP_PRIVATE, _MAP_GROWS, _MAP_HUGE = 0x0F, 0x02, 0x100, 0x4_0000
-_IS_TERMINAL, _CLOSE_ON_EXEC = 0x5401, 0x5451
-_GET_FLAGS, _SET_FLAGS, _GET_STATUS, _DUPLICATE = 1, 2, 3, 1030
-NO_NEW_PRIVILEGES = 38
-_SET_SECCOMP, _FILTER = 22, 2
-_ACTION_AVAILABLE = 2
-_ALLOW, _REFUSE = 0x7FFF_0000, 0x0005_0000 | errno.EPERM
-_LOAD, _AND, _IF_EQUAL, _RETURN = 0x20, 0x54, 0x15, 0x06
+# constants of the kernel's interface, in include/uapi of its sources
+_MAP_KIND, _MAP_PRIVATE, _MAP_GROWS, _MAP_HUGE = 0x0F, 0x02, 0x100, 0x4_0000  # of mmap
+_IS_TERMINAL, _CLOSE_ON_EXEC = 0x5401, 0x5451  # of ioctl
+_GET_FLAGS, _SET_FLAGS, _GET_STATUS, _DUPLICATE = 1, 2, 3, 1030  # of fcntl
+NO_NEW_PRIVILEGES, _SET_SECCOMP = 38, 22  # of prctl
+_FILTER, _ACTION_AVAILABLE = 2, 2  # mode of prctl, operation of seccomp
+_ALLOW, _REFUSE = 0x7FFF_0000, 0x0005_0000 | errno.EPERM  # results of a filter
+_LOAD, _AND, _IF_EQUAL, _RETURN = 0x20, 0x54, 0x15, 0x06  # operations of a filter (BPF)
 _NUMBER, _ARCHITECTURE, _ARGUMENTS = 0, 4, 16
-"""Offsets of the number of a call, of its architecture and of its arguments."""
+"""Offsets of the number of a call, of its architecture and of its arguments in what a filter loads from."""
 _PROCESSORS = {"x86_64": (0, 0xC000_003E, 317), "aarch64": (1, 0xC000_00B7, 277)}
 """Column of the numbers of calls, architecture, number of ``seccomp``."""
 _Step = tuple[int, int, int, int]
@@ -122,8 +122,8 @@ def filters_calls() -> bool:
     """Whether the system filters calls on this processor."""
     if sys.platform != "linux" or platform.machine() not in _PROCESSORS:
         return False
-    action = ctypes.c_uint32(_REFUSE & 0xFFFF_0000)
-    seccomp = _PROCESSORS[platform.machine()][2]
+    action = ctypes.c_uint32(_REFUSE & 0xFFFF_0000)  # without the number of the error
+    _, _, seccomp = _PROCESSORS[platform.machine()]
     return bool(ctypes.CDLL(None).syscall(seccomp, _ACTION_AVAILABLE, 0, ctypes.byref(action)) == 0)
 
 
@@ -150,11 +150,11 @@ def filter_program(column: int, architecture: int, pid: int) -> bytes:
     Parameters
     ----------
     column : int
-        Which of the numbers of a call are this processor's.
+        Column of this processor's numbers of calls.
     architecture : int
-        Its identifier in the kernel (``AUDIT_ARCH``).
+        Identifier of the processor in the kernel (``AUDIT_ARCH``).
     pid : int
-        The process that may signal itself.
+        Number of the process, which may signal itself.
     """
     steps: list[_Step] = [
         (_LOAD, 0, 0, _ARCHITECTURE),

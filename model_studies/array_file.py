@@ -55,7 +55,7 @@ def arrays_content(
         DOCUMENTS: documents,
         "sha256": _digest(documents, arrays),
     }
-    sizes: dict[str, int] = {}
+    sizes: dict[str, int] = {}  # of the dimensions by name, filled by `_variable`
     variables = {
         name: _variable(stored[name], values, sizes) for name, values in arrays.items() if values.size
     }
@@ -63,7 +63,7 @@ def arrays_content(
 
 
 def read_arrays(path: Path, schemas: tuple[str, ...]) -> tuple[str, dict[str, Any], Json]:
-    """Return the schema of a file, its arrays, bit by bit as written, and the rest.
+    """Return the schema of a file, its arrays, bit by bit as written, and its further content.
 
     Raises `UnreadableFile`: the file is missing, no netCDF-4, of none of the schemas, or damaged.
     """
@@ -78,7 +78,9 @@ def read_arrays(path: Path, schemas: tuple[str, ...]) -> tuple[str, dict[str, An
     try:
         documents = str(attributes[DOCUMENTS])
         content = json.loads(documents)
-        arrays = {name: _restored(raw.get(name), kind) for name, kind in content["shapes"].items()}
+        arrays = {
+            name: _restored(raw.get(name), dtype, shape) for name, (dtype, shape) in content["shapes"].items()
+        }
         intact, fields = attributes["sha256"] == _digest(documents, arrays), content["fields"]
     except DAMAGE as error:
         raise UnreadableFile(f"{path.name}: damaged, its arrays are not those that it states") from error
@@ -105,9 +107,9 @@ def _dimension(sizes: dict[str, int], name: str, size: int) -> str:
     return name
 
 
-def _restored(values: Any, kind: list[Any]) -> Any:
-    """Return an array from its variable, which is None for an empty array; `kind` is type and shape."""
-    dtype, shape = np.dtype(kind[0]), tuple(kind[1])
+def _restored(values: Any, type_text: str, shape: list[int]) -> Any:
+    """Return an array of a type and shape from its variable, which is None for an empty array."""
+    dtype = np.dtype(type_text)
     if dtype.kind not in NUMBERS:
         raise ValueError(dtype)
     if values is None:

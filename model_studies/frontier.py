@@ -15,8 +15,8 @@ from model_studies.record import under_key
 from model_studies.result_record import ResultRecord
 from model_studies.variants import run_variants
 
-R = TypeVar("R")
-Q = TypeVar("Q")
+R = TypeVar("R")  # result
+Q = TypeVar("Q")  # request
 Q_contra = TypeVar("Q_contra", contravariant=True)
 Errors = Mapping[str, float]
 """Relative errors by the name of the figure; NaN: not known."""
@@ -61,7 +61,7 @@ def run_fidelities(
     failures: tuple[type[Exception], ...],
     progress: Progress,
 ) -> tuple[list[Outcome[F, R]], dict[str, str]]:
-    """Run every fidelity that is valid for a request, one after the other: their times are compared.
+    """Run every fidelity that is valid for a request, one after the other, so that their times compare.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def run_fidelities(
     Returns
     -------
     outcomes, omitted
-        As of `run_variants`.
+        Outcomes in the order of the fidelities, and the reasons why others have none, by name.
     """
     refusals = {fidelity.name: fidelity.refusal(request) for fidelity in fidelities}
     refused = {name: reason for name, reason in refusals.items() if reason is not None}
@@ -146,7 +146,8 @@ def knee_of(points: Mapping[str, tuple[float, float]]) -> str | None:
     if time[-1] <= time[0] or error[0] <= error[-1]:
         return None
     # from 0 at the first point to 1 at the last: time spent, and error gained; on the line both are equal
-    spent, gain = (time - time[0]) / (time[-1] - time[0]), (error[0] - error) / (error[0] - error[-1])
+    spent = (time - time[0]) / (time[-1] - time[0])
+    gain = (error[0] - error) / (error[0] - error[-1])
     depth = (gain - spent)[: len(front)]
     deepest = int(np.argmax(depth))
     return front[deepest] if depth[deepest] > 1e-12 else None  # a straight curve has rounding alone
@@ -185,9 +186,7 @@ class Frontier(ResultRecord, Generic[R_co]):
     """An accuracy study."""
 
     results: tuple[R_co, ...]
-    """Results in the order of their usual cost. The last one is the reference of the others; its own errors
-    are estimated.
-    """
+    """Results in the order of usual cost. The last is the reference of the others, with estimated errors."""
     omitted: dict[str, str] = field(metadata=under_key("left_out"))
     """Name of a fidelity to the reason why it has no result."""
     knee: str | None

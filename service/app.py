@@ -63,7 +63,8 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
     warnings.filterwarnings("ignore", message="implausible")  # the answer names them by the caller's fields
     if settings.require_confinement:
         require_confinement()
-    identities, bearable = open_identities(settings), capacity(settings.workers if works else 0)
+    identities = open_identities(settings)
+    limits = capacity(settings.workers if works else 0)
     lock = DirectoryLock(settings.data_directory) if works else None
     if lock is not None:
         lock.acquire()
@@ -85,7 +86,7 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
         **ABOUT,
         telemetry=telemetry_options(),
     )
-    app.state.context, app.state.capacity = context, bearable
+    app.state.context, app.state.capacity = context, limits
     parts = (context.engine, context.store, context.writes, context.scheduler)
     app.state.metrics = Metrics(process_registry(*parts, settings))
     install_error_handlers(app)

@@ -66,6 +66,15 @@ class _MadeRun:
     widths: Widths
 
 
+@dataclass(frozen=True)
+class _Session:
+    """Calls of a run for its progress and for whether to stop, and the wall time between checkpoints, s."""
+
+    progress: Progress | None
+    cancel: Cancel | None
+    checkpoint_every: float
+
+
 class _Leg:
     """One integration with its states on disk, resumed from its checkpoint."""
 
@@ -116,9 +125,7 @@ class _Leg:
         self.since = start_value.at.time
         self._save(RunStatus.CANCELLED)
 
-    def go(
-        self, progress: Progress | None, cancel: Cancel | None, every: float, trail: Trail | None = None
-    ) -> Ending:
+    def go(self, session: _Session, trail: Trail | None = None) -> Ending:
         """March on to the end, with checkpoints; one that had ended stays as it is."""
         before, began, saved = self._taken, TimeTaken.now(), monotonic()
         remember = None if trail is None else trail.watch(self.march)
@@ -128,12 +135,12 @@ class _Leg:
             if remember is not None:
                 remember()
             self._taken = before.plus(TimeTaken.now().since(began))
-            if monotonic() - saved >= every:
+            if monotonic() - saved >= session.checkpoint_every:
                 self._save(RunStatus.CANCELLED)
                 saved = monotonic()
 
         if self._status is None:
-            status = march_on(self.march, self.spool, progress, cancel, after_block)
+            status = march_on(self.march, self.spool, session.progress, session.cancel, after_block)
             self._taken = before.plus(TimeTaken.now().since(began))
             self._save(status)
             self._status = status
@@ -208,7 +215,7 @@ def _needed_effects(
     needed = needed_effects(ledger) if scene.on_violation == "repeat" else {}
     wrong = "" if needed else ending(ledger["checks"], scene.on_violation)
     if wrong and file is not None:
-        _remove(interrupted_run(file))
+        _remove_interrupted(file)
         wrong = f"{wrong}. It is in {file}"
     if wrong:
         raise SolveError(f"violated assumptions of the run: {wrong}", partial)
@@ -415,10 +422,9 @@ def simulate_to_file(
 ) -> RunStatus:
     """Run `scene` as `simulate` does, with memory independent of its duration.
 
-    During the run, states and checkpoints are in the folder `interrupted_run(path)`. At the end, or when
-    cancelled, the result is written to `path`, bit by bit that of `simulate`. A cancelled or killed run keeps
-    the folder: started again with `resume`, it continues from its last checkpoint, and the result is
-    identical to the last bit (except for times in the receipt).
+    During the run, states and checkpoints are in the folder `interrupted_run(path)`. The result is written to
+    `path` at the end, or when the run is cancelled; except for times in the receipt it is that of `simulate`
+    to the last bit. A cancelled or killed run keeps the folder, and `resume` continues from its checkpoint.
 
     Parameters
     ----------
@@ -450,20 +456,17 @@ def simulate_to_file(
         If the checkpoint is damaged, or that of another scene.
     """
     path = Path(path)
-    folder = interrupted_run(path)
-    going = (progress, cancel, checkpoint_every)
-    before = EarlierRun.read(folder) if resume else FIRST
+    session = _Session(progress, cancel, checkpoint_every)
+    before = EarlierRun.read(interrupted_run(path)) if resume else FIRST
     warn_of(scene_findings(scene))
     decision = (decide or decide_effects)(scene)
-    run = _run_to_file(before.of(decision), path, before, going, resume=resume)
+    run = _run_to_file(before.of(decision), path, before, session, resume=resume)
     while run.status.usable and (needed := _needed_effects(scene, run.ledger, file=path)):
         before = before.then(needed, run.seconds)
-        for checkpoint in folder.glob("*.checkpoint"):
-            checkpoint.unlink()  # the checkpoint of a system without these effects
-        before.write(folder)
-        run = _run_to_file(before.of(decision), path, before, going, run)
+        before.write(interrupted_run(path))
+        run = _run_to_file(before.of(decision), path, before, session, run)
     if run.status is not RunStatus.CANCELLED:
-        _remove(folder)
+        _remove_interrupted(path)
     if progress is not None:
         progress(1.0, "done" if run.status.usable else run.status.name.lower())
     return run.status
@@ -473,12 +476,12 @@ def _run_to_file(
     decision: Decision,
     path: Path,
     before: EarlierRun,
-    going: tuple[Progress | None, Cancel | None, float],
+    session: _Session,
     earlier: _MadeRun | None = None,
     *,
     resume: bool = False,
 ) -> _MadeRun:
-    """Run once, `going` as `_Leg.go` does; `before` is the account of the run `earlier` that it repeats."""
+    """Run once; `before` is the account of the run `earlier` that it repeats."""
     start = _Start.of(decision)
     system, rest, clock = start.system, start.rest, start.clock
     folder = interrupted_run(path)
@@ -486,12 +489,13 @@ def _run_to_file(
     with ExitStack() as stack:
         leg = _Leg(stack, folder / "run", system, rest, system.scene.integration, resume, earlier)
         before = replace(before, since=leg.since)
-        end = leg.go(*going, start.trail)
+        end = leg.go(session, start.trail)
         clock.book("integration", end.taken)
 
         def finer(integration: Integration) -> tuple[Ending, StatesOf]:
             check = _Leg(stack, folder / "check", system, rest, integration, resume)
-            return check.go(_of_errors(going[0]), *going[1:]), check.spool.states
+            measuring = replace(session, progress=_of_errors(session.progress))
+            return check.go(measuring), check.spool.states
 
         errors = _Errors(start, leg.spool.states, finer)
         status, ledger = _write(path, leg, end, errors, decision, before)
@@ -518,7 +522,8 @@ def _write(
     return status, dict(about["effect_ledger"])
 
 
-def _remove(folder: Path) -> None:
+def _remove_interrupted(path: Path) -> None:
+    folder = interrupted_run(path)
     for file in folder.iterdir():
         file.unlink()
     folder.rmdir()

@@ -61,7 +61,9 @@ class EarlierRun:
             raise ResultError(f"{REPEATED}: not readable. Start a new run.") from error
 
     def write(self, folder: Path) -> None:
-        """Leave it to whoever continues in `folder`."""
+        """Leave it to whoever continues in `folder`, where it removes the checkpoints of the run before."""
+        for checkpoint in folder.glob("*.checkpoint"):
+            checkpoint.unlink()  # of a system without these effects
         (folder / REPEATED).write_text(json.dumps(self.to_json()), encoding="utf-8")
 
     def then(self, needed: Mapping[str, str], seconds: float) -> EarlierRun:

@@ -191,7 +191,7 @@ class StudyTask:
     receipt: str = "minimal"
     """Receipt of each run; "full" measures its errors."""
     effects: StudyEffects | None = None
-    """Decision on effects for all runs; None: it is taken before them."""
+    """Decision on effects for all runs, by `with_effects`; None: every run decides by itself."""
 
     def scene(self, values: tuple[float, ...]) -> Scene:
         """Return the scene at a point, as it is run on its own."""
@@ -269,23 +269,21 @@ def _decide_point(task: StudyTask, values: tuple[float, ...]) -> PointDecision |
 
 def with_effects(
     task: StudyTask,
-    values: FloatArray,
-    kinds: Sequence[str],
+    design: Design,
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
     progress: Progress = silent,
 ) -> StudyTask:
-    """Return the task with the decision on effects for its runs at `values` (N, f) of factors of `kinds` (f).
+    """Return the task with one decision on effects for all its runs at the points of a design.
 
-    A task that has one keeps it.
+    `progress` is called as progress("effects", fraction).
     """
-    if task.effects is not None:
-        return task
-    points = [tuple(map(float, row)) for row in decision_points(values, kinds)]
+    points = [tuple(map(float, row)) for row in decision_points(design.points, design.kinds)]
     decisions = []
-    for count, decision in enumerate(workers.run(_decide_point, task, points)):
-        decisions.append(decision)
-        progress("effects", (count + 1) / len(points))
-    return replace(task, effects=StudyEffects.of([each for each in decisions if each is not None]))
+    for count, decision in enumerate(workers.run(_decide_point, task, points), start=1):
+        if decision is not None:
+            decisions.append(decision)
+        progress("effects", count / len(points))
+    return replace(task, effects=StudyEffects.of(decisions))
 
 
 def study(
@@ -299,10 +297,9 @@ def study(
 ) -> Study:
     """Run all points of a design and take the responses of each.
 
-    Effects are decided once for all runs, by `with_effects`. Figures are those of `dynamics.simulate` of each
-    scene alone with these effects, to the last bit, whoever does the tasks. Runs themselves are not kept:
-    memory does not grow with their length. Raises `InputError`: a design that is not of these factors, or
-    figures out of bounds.
+    Figures are those of `dynamics.simulate` of each scene alone with the effects of the task, to the last
+    bit, whoever does the tasks. Runs themselves are not kept: memory does not grow with their length. Raises
+    `InputError`: a design that is not of these factors, or figures out of bounds.
 
     Parameters
     ----------
@@ -312,7 +309,7 @@ def study(
     workers : Workers
         Who does the batches: this process, an executor of threads or processes, a cluster.
     progress : callable
-        Called as progress("effects", fraction), then as progress("runs", fraction).
+        Called as progress("runs", fraction).
     confidence : float
         Confidence of the bounds of quantiles.
     keep_worst : int
@@ -323,7 +320,6 @@ def study(
     within("confidence", confidence, 0.5, 0.9999)
     count = len(design.points)
     integer("keep_worst", keep_worst, 0, count)
-    task = with_effects(task, design.points, design.kinds, workers, progress)
     results: list[_PointResult | None] = [None] * count
     parts = list(_batches(design, task.scenes))
     done, batch_results = 0, workers.run(_run_batch, task, [values for _, values in parts])
@@ -338,20 +334,18 @@ def study(
 def keep_runs(task: StudyTask, study: Study, folder: Path, progress: Progress = silent) -> list[Path]:
     """Run the worst points of a study again as the scene asks, with all its checks; return their files.
 
-    Their effects are those of the study. A run that all its checks refuse, such as the energy audit, leaves
-    the file that `simulate_to_file` does.
+    `task` is that of the study, with its effects. A run that all its checks refuse, such as the energy audit,
+    leaves the file that `simulate_to_file` does.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    if study.worst.size:
-        task = with_effects(task, study.value, study.kind)
     files = []
-    for count, index in enumerate(study.worst):
+    for count, index in enumerate(study.worst, start=1):
         file = folder / f"point_{int(index)}.nc"
         with suppress(DynamicsError):
             simulate_to_file(task.scene(tuple(map(float, study.value[index]))), file, decide=task.decide)
         if file.is_file():
             files.append(file)
-        progress("worst cases", (count + 1) / len(study.worst))
+        progress("worst cases", count / len(study.worst))
     return files
 
 

@@ -41,9 +41,7 @@ class PositionNodes:
     """
     value: FloatArray
     middle: FloatArray
-    """`value`, `middle`: STE in m at the nodes and in the middle of the interval after each. Ndarray, shapes
-    (P, L) or (T P, L).
-    """
+    """`value`, `middle`: STE at the nodes and in the middle after each, m. Shape (P, L) or (T P, L) each."""
 
     @property
     def error(self) -> FloatArray:
@@ -52,7 +50,7 @@ class PositionNodes:
 
 
 def unmeasured_nodes(count: int, columns: int) -> PositionNodes:
-    """`count` equally spaced nodes between which nothing is measured, for L columns of curves."""
+    """Return equally spaced nodes between which nothing is measured, for L columns of curves."""
     unknown = np.full((count, columns), np.nan)
     return PositionNodes(np.arange(count) / count, unknown, unknown, unknown)
 
@@ -69,64 +67,56 @@ def adaptive_nodes(rule: NodeRule, solve: Callable[[FloatArray], FloatArray]) ->
     """
     nodes = np.arange(rule.start) / rule.start
     values = solve(nodes)
-    settled = np.zeros(rule.start, dtype=bool)
-    error, between = np.full(values.shape[1:], np.inf), np.zeros_like(values)
+    # of the interval after each node: whether it is still measured, its error, and STE in its middle
+    measured = np.zeros(rule.start, dtype=bool)
+    error, at_middle = np.full(values.shape[1:], np.inf), np.zeros_like(values)
     for remaining in reversed(range(MAX_ROUNDS)):
         nominal = values[values.shape[0] // 2]
         allowed = rule.tolerance * rule.ripple(nominal)
-        middles, at_middle, probed = _probed(nodes, values, solve, ~settled, PROBES)
-        error[~settled], between[:, ~settled] = probed[~settled], at_middle[:, ~settled]
+        at_middle[:, ~measured], error[~measured] = _probed(nodes, values, solve, ~measured)
         beyond = np.any(error > allowed, axis=1)
         if not beyond.any() or not remaining or nodes.size + beyond.sum() > rule.maximum:
             break
-        nodes, values, settled, error, between = _inserted(nodes, values, beyond, middles, between, error)
+        nodes, values, measured, error, at_middle = _inserted(nodes, values, beyond, at_middle, error)
     nominal = values.shape[0] // 2
-    return PositionNodes(nodes, error, values[nominal], between[nominal])
+    return PositionNodes(nodes, error, values[nominal], at_middle[nominal])
 
 
 def _probed(
-    nodes: FloatArray,
-    values: FloatArray,
-    solve: Callable[[FloatArray], FloatArray],
-    open_: BoolArray,
-    probes: FloatArray,
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Middles, solutions there, and largest errors at the probes, of the open intervals (others zero)."""
-    spacing = Axis(nodes, 1.0).spacing
-    where = nodes[open_, None] + spacing[open_, None] * probes
+    nodes: FloatArray, values: FloatArray, solve: Callable[[FloatArray], FloatArray], chosen: BoolArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return STE (W, c, L) in the middles of the c chosen intervals, and the largest errors (c, L) there."""
+    where = nodes[chosen, None] + Axis(nodes, 1.0).spacing[chosen, None] * PROBES
     solved = solve(where.ravel())
     nominal = solved[solved.shape[0] // 2]
     deviation = np.abs(_interpolated(nodes, values, where.ravel()) - nominal).reshape(*where.shape, -1)
-    at_middle, error = np.zeros_like(values), np.zeros(values.shape[1:])
-    at_middle[:, open_] = solved.reshape(solved.shape[0], *where.shape, -1)[:, :, probes.size // 2]
-    error[open_] = deviation.max(axis=1)
-    return nodes + 0.5 * spacing, at_middle, error
+    by_interval = solved.reshape(solved.shape[0], *where.shape, -1)
+    return by_interval[:, :, PROBES.size // 2], deviation.max(axis=1)
 
 
 def _interpolated(nodes: FloatArray, values: FloatArray, where: FloatArray) -> FloatArray:
-    """Interpolant (Q, L) of the middle one of W base pitches, at `where` in [0, 1]; all of them repeat."""
+    """Interpolate the middle one of W base pitches at `where` (Q,) in [0, 1], (Q, L); all pitches repeat."""
     pitches = np.arange(values.shape[0]) - values.shape[0] // 2
     knots = (pitches[:, None] + nodes).ravel()
     return interpolate(Axis(knots, float(pitches.size)), values.reshape(knots.size, -1), where)
 
 
 def _inserted(
-    nodes: FloatArray,
-    values: FloatArray,
-    beyond: BoolArray,
-    middles: FloatArray,
-    at_middle: FloatArray,
-    error: FloatArray,
+    nodes: FloatArray, values: FloatArray, beyond: BoolArray, at_middle: FloatArray, error: FloatArray
 ) -> tuple[FloatArray, FloatArray, BoolArray, FloatArray, FloatArray]:
-    """Insert the middles of the missed intervals; both halves and the neighbors are measured again."""
+    """Insert the middles of the intervals that are `beyond` the tolerance into the state of the search.
+
+    Both halves of an interval and its neighbors are measured again.
+    """
     touched = beyond | np.roll(beyond, 1) | np.roll(beyond, -1)
-    order = np.argsort(np.concatenate([nodes, middles[beyond]]), kind="stable")
-    merged = np.concatenate([nodes, middles[beyond]])[order]
+    middles = (nodes + 0.5 * Axis(nodes, 1.0).spacing)[beyond]
+    merged = np.concatenate([nodes, middles])
+    order = np.argsort(merged, kind="stable")
     return (
-        merged,
+        merged[order],
         np.concatenate([values, at_middle[:, beyond]], axis=1)[:, order],
-        np.concatenate([~touched, np.zeros(int(beyond.sum()), dtype=bool)])[order],
-        np.concatenate([error, np.full((int(beyond.sum()), error.shape[1]), np.inf)])[order],
+        np.concatenate([~touched, np.zeros(middles.size, dtype=bool)])[order],
+        np.concatenate([error, np.full((middles.size, error.shape[1]), np.inf)])[order],
         np.concatenate([at_middle, np.zeros_like(at_middle[:, beyond])], axis=1)[:, order],
     )
 
@@ -134,8 +124,8 @@ def _inserted(
 def table_nodes(points: OperatingPoints, plan: Plan, report: Report = unreported) -> PositionNodes:
     """Place the positions: the number requested, or where the assessed curves bend.
 
-    What is missed between fixed ones is not measured here (`position_errors`). `report` is called with the
-    fraction of the positions that a search usually tries.
+    The error between a requested number of positions is not measured here (`position_errors`). `report` is
+    called with the fraction of the positions that a search usually tries.
     """
     if plan.positions is not None:
         return unmeasured_nodes(plan.positions, len(points.assessed) * plan.load.size)
@@ -144,7 +134,7 @@ def table_nodes(points: OperatingPoints, plan: Plan, report: Report = unreported
     tried, expected = 0, expected_tries(points.nominal.pair, plan, points.period, len(points.places))
 
     def solve(position: FloatArray) -> FloatArray:
-        """STE (W, P, pitches x places x L) in m; beside the pitches NaN where interpolants do not reach."""
+        """Return STE (W, P, pitches x places x L) in m; in the pitches beside NaN where none is needed."""
         nonlocal tried
         curves = _curves(points, plan.load, position, pitches)
         tried += position.size
@@ -152,21 +142,20 @@ def table_nodes(points: OperatingPoints, plan: Plan, report: Report = unreported
         if points.period == 1:
             return curves
         near = plan.nodes.reached_by_neighbor(position)
-        values = np.full((3, *curves.shape[1:]), np.nan)
+        values = np.full((3, *curves.shape[1:]), np.nan)  # the pitches before, the pitches, those after
         values[1] = curves[0]
-        for way in (-1, 1) if near.any() else ():
-            values[1 + way, near] = _curves(points, plan.load, position[near], pitches + way)[0]
+        for step in (-1, 1) if near.any() else ():
+            values[1 + step, near] = _curves(points, plan.load, position[near], pitches + step)[0]
         return values
 
     return adaptive_nodes(replace(plan.nodes, maximum=max_positions(plan, times)), solve)
 
 
 def assessed_pitches(pair: ParallelAxes, model: ContactModel, limit: int) -> IntArray:
-    """Return base pitches to assess.
+    """Return the base pitches to assess, at most `limit`; one where all teeth are alike.
 
-    Where all teeth are alike, the one pitch there is. Else pitches m, at most `limit`, evenly taken from all
-    in the order of how much the gaps of the pairs at m - 1, m, m + 1 differ, both ends among them: these
-    differences move and steepen the handovers.
+    They are taken evenly from all pitches m in the order of how much the gaps of the pairs at m - 1, m, m + 1
+    differ, with both ends of that order: these differences move and steepen the handovers.
     """
     if model.period == 1:
         return np.zeros(1, dtype=np.int64)
@@ -178,7 +167,7 @@ def assessed_pitches(pair: ParallelAxes, model: ContactModel, limit: int) -> Int
 
 
 def _curves(points: OperatingPoints, load: FloatArray, position: FloatArray, pitches: IntArray) -> FloatArray:
-    """STE (1, P, pitches x places x L) in m of the assessed operating points in pitches (T,)."""
+    """Return STE (1, P, pitches x places x L) in m of the assessed operating points in pitches (T,)."""
     curves = deflected_operating_points(
         points.assessed, [position] * len(points.assessed), load, pitches, points.workers
     )

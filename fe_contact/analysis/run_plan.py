@@ -97,7 +97,7 @@ def plan_run(
 ) -> RunPlan:
     """Predict time by stage, memory and error of `analyze`, and list its effects.
 
-    Raises `InputError`: a value that cannot be used, by field name.
+    Raises `InputError`: a value cannot be used; it names the field.
 
     Parameters
     ----------
@@ -122,8 +122,8 @@ def plan_run(
     needed = () if decision.wished is None else (_decision(decision.wished, curves, cache),)
     passes = tuple(_decision(later, curves, cache) for later in decision.passes)
     # the same mesh may be in several groups; the last prediction is kept
-    rows = {(row.model, row.level, row.slices): row for row in (*others, *needed, *passes)}
-    levels = sorted(rows.values(), key=lambda row: MESHES.index(row.level))
+    by_mesh = {(entry.model, entry.level, entry.slices): entry for entry in (*others, *needed, *passes)}
+    levels = sorted(by_mesh.values(), key=lambda entry: MESHES.index(entry.level))
     conflict = ""
     if budget is not None and (options.tolerance is not None or options.level is not None):
         conflict = _conflict(decision, positive("time_budget", budget, "Seconds."), cache)
@@ -166,16 +166,18 @@ def predicted_designs(checked: Checked, cache: Path | None) -> PredictedDesigns:
     one_alignment = 1, 1  # numbers of misalignments and of center distances
     prediction = predict_run(pair, choice.plan, model, one_alignment, cache)
     parts = prediction.parts
-    bodies = parts["compliance"]["bodies"] + parts["error estimate"]["bodies"]
-    design = _DESIGN_WORK * parts["contact"]["table"]
     errors = parts["error estimate"]["solutions"]
-    table = prediction.stages["contact"] + prediction.correction["error estimate"] * errors
     slowness = host_slowness(cache)
     unit = unit_work(pair, choice.plan, choice.plan.discretization.slices)
-    work = ContactWork(*(slowness * work_of_part for work_of_part in unit))
-    memory = float(prediction.memory_bytes)
     return PredictedDesigns(
-        bodies, design, errors, prediction.positions, model.across_face, memory, table, work
+        bodies=parts["compliance"]["bodies"] + parts["error estimate"]["bodies"],
+        design=_DESIGN_WORK * parts["contact"]["table"],
+        errors=errors,
+        positions=prediction.positions,
+        across_face=model.across_face,
+        bytes=float(prediction.memory_bytes),
+        table=prediction.stages["contact"] + prediction.correction["error estimate"] * errors,
+        work=ContactWork(*(slowness * work_of_part for work_of_part in unit)),
     )
 
 
@@ -184,12 +186,10 @@ def _decision(choice: Decision, curves: ExpectedCurves | None, cache: Path | Non
 
     Where the decision was made by an expected error in m, that error is returned; else it is computed here.
     """
-    checked, option = choice.checked, choice.mesh.option
+    checked, option, request = choice.checked, choice.mesh.option, choice.checked.request
     error = option.error
     if not error.mean:  # None or 0: no size of the transmission error was known to the decision
-        error = expected_error(
-            checked.request.pair, choice.plan, curves, model_chosen=checked.request.model_chosen
-        )
+        error = expected_error(request.pair, choice.plan, curves, model_chosen=request.model_chosen)
     return PlannedLevel(checked.model_name, option.level, option.slices, choice.predicted(cache), error)
 
 

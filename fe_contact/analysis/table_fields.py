@@ -31,7 +31,7 @@ def table_of_solution(
     position : ndarray, shape (P,)
         Positions of one base pitch; the solution may have them in several.
     misalignment : float
-        m.
+        Misalignment of the solution, m.
     """
     period = len(solution.deflection) // position.size
     fields = contact_fields(pair, problem, solution)
@@ -62,10 +62,10 @@ def table_fields(points: OperatingPoints, contacts: Sequence[SolvedContact]) -> 
         numbers = np.unique(contact.problem.candidates.pair)
         if points.period == 1:
             del arrays["pair_pressure"]
-        for name in arrays.keys() & OF_PAIRS:
-            values = arrays[name]
-            arrays[name] = np.zeros((*values.shape[:2], pairs.size))
-            arrays[name][..., numbers - pairs[0]] = values
+        for name in arrays.keys() & OF_PAIRS:  # pairs without candidates at this point carry nothing
+            values = np.zeros((*arrays[name].shape[:2], pairs.size))
+            values[..., numbers - pairs[0]] = arrays[name]
+            arrays[name] = values
     no_load = points.gathered([contact.solution.no_load[:, None] for contact in contacts])[:, 0]
     gathered = {name: points.gathered([arrays[name] for arrays in stored]) for name in stored[0]}
     return gathered | {"pair": pairs, "no_load_transmission_error": no_load}

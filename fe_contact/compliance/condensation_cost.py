@@ -27,7 +27,7 @@ from model_studies.host_speed import cached_speed
 
 RANK_SHARE = 0.23  # most flank loads that the ring is solved for, over flank freedoms; measured 0.22 to 0.24
 
-RANK, RANK_FACE = 45.0, 6.0  # most flank loads on fine meshes: a number, and more for each module of the face
+RANK, RANK_FACE = 45.0, 6.0  # most flank loads on fine meshes: `RANK`, and `RANK_FACE` per module of the face
 
 SPACE = 2.2  # dimension of the space of solutions over loads; measured 2.0 to 2.5
 
@@ -93,9 +93,7 @@ class _SectorSizes(NamedTuple):
 
 
 def predict_cost(
-    gear: Toothing,
-    recipe: SectorRecipe | None = None,
-    cache: Path | None = None,
+    gear: Toothing, recipe: SectorRecipe | None = None, cache: Path | None = None
 ) -> PredictedCost:
     """Predict what `flank_compliance_3d` costs for a gear that is not in the cache, by its shape alone.
 
@@ -116,7 +114,7 @@ def predict_cost(
 def _counted(gear: Toothing, recipe: SectorRecipe) -> tuple[Mapping[str, float], int]:
     """Return the multiplications with addition by part, and the bytes of the largest working set.
 
-    They are those of every host: one elimination tree serves the plan of a run and its progress.
+    They do not depend on the host, and serve the plan of a run as well as its progress.
     """
     grid = sector_outline(tooth_profile(gear), recipe).grid
     sector = swept_sector(grid, gear.face_width, recipe, bore_support(gear), gear.web)
@@ -155,7 +153,7 @@ def _ring_operations(sizes: _SectorSizes) -> float:
 def _working_bytes(tree: EliminationTree, sizes: _SectorSizes) -> int:
     """Return the bytes of the largest working set: factorizing, holding the flank, closing the ring."""
     nf, nc, loads, space = sizes.flank, sizes.cut, sizes.loads, sizes.space
-    factors = 3600 * sizes.matrices + tree.factor_entries
+    factors = 3600 * sizes.matrices + tree.factor_entries  # 60 freedoms of an element, squared
     sector = nf**2 + 4 * nc**2 + 2 * nf * nc
     scaled = 2 * nf * nc + 2 * nc**2
     summed = 2 * (sizes.reach + 1 + sizes.harmonics) * space * loads

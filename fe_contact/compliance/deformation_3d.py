@@ -71,16 +71,18 @@ def deformed_solids(
     if left != seen_from_behind:  # the mirror image of a mirror image needs none
         planes = swept_sector(section.grid, gear.face_width, recipe, support, right.web).flank_index[::-1]
         mirror = planes[planes >= 0]
-    sources = [(case, tooth) for case, load in enumerate(loads) for tooth in load]
-    columns = np.stack([_mirrored_back(loads[case][tooth], mirror) for case, tooth in sources], axis=1)
+    # a column for each tooth of each case
+    columns = np.stack([_mirrored_back(force, mirror) for load in loads for force in load.values()], axis=1)
     tooth, _ = condensed_tooth(right, section, recipe, support, StageClock())
     cuts = loaded_cuts(tooth.condensed, columns, right.teeth)
     solved = CondensedGear(*tooth, RingSolution(np.empty((0, 0, 0)), cuts.everywhere))
     elements = sector_elements(right, section, solved.sector)
     deformed = []
-    for case in range(len(loads)):
-        members = [i for i, (number, _) in enumerate(sources) if number == case]
-        loaded = _Loaded(np.array([sources[i][1] for i in members]), np.array(members), columns[:, members])
+    start = 0  # column of the case's first tooth
+    for load in loads:
+        members = np.arange(start, start + len(load))
+        start += len(load)
+        loaded = _Loaded(np.array(list(load)), members, columns[:, members])
         deformed.append(_deformed(gear.teeth, solved, elements, loaded, unloaded, mirror, left))
     return tuple(deformed)
 
@@ -136,6 +138,7 @@ def _deformed(
     mirror: IntArray | None,
     left: bool,
 ) -> DeformedGear:
+    """Return the gear under the loads of one case; a `left` gear is the mirror image of what was solved."""
     view = _teeth_in_view(loaded.teeth, unloaded, teeth)
     fields, forces = _fields(gear, loaded, view)
     closed = len(view) == teeth

@@ -28,8 +28,8 @@ _STRETCH = 0.25
 """Relative change of the length of a patch at an edge, by which the tilt is differenced there."""
 
 _DEPARTURE = 0.2
-"""Way, in half-widths of the widest patch, over which a patch leaves the edge: from the tilt by its length to
-that by its position. Of a soft gear they differ by 2 %, and deflections by the square of the tilt.
+"""Distance, in half-widths of the widest patch, over which a patch leaves the edge: from the tilt by its
+length to the tilt by its position. For a soft gear these differ by 2 %; deflections follow the square.
 """
 
 
@@ -39,9 +39,7 @@ def share_of_pinion(pinion: FloatArray, both: FloatArray) -> FloatArray:
 
 
 def contact_problem(
-    candidates: Candidates,
-    compliances: tuple[FlankCompliance, FlankCompliance],
-    couple_teeth: bool = True,
+    candidates: Candidates, compliances: tuple[FlankCompliance, FlankCompliance], couple_teeth: bool = True
 ) -> ContactProblem:
     """Assemble the compliance of plane candidates from the condensed flanks.
 
@@ -52,21 +50,22 @@ def contact_problem(
     compliances : (FlankCompliance, FlankCompliance)
         Driving and driven gear, per unit face width.
     couple_teeth : bool
-        False drops what the load on one tooth moves on another.
+        Whether the load on one tooth moves the others.
 
     Notes
     -----
-    A corner force acts along the mating flank's normal, inclined to the tip gear's own. The tip gear moves
-    less along that line than along its own normal, and by reciprocity is moved less: both scale with the
-    lever, if the tooth only rotates about the gear's axis. Without this the corner stiffness reads up to 4 %
-    too low, and the error of STE grows with load.
+    A corner force acts along the mating flank's normal, which is inclined to the normal of the tip gear's
+    flank. Along that line the tip gear moves less than along its own normal. By reciprocity the force moves
+    it less, too: both scale with the lever, if the tooth only rotates about the gear's axis. Without this the
+    corner stiffness is up to 4 % too low, and the error of STE grows with load.
 
     Under the load on its edge a tooth also bends about its root, and the wedge at the tip yields across. The
     displacement along the flank is then kappa times that of a rotation about the axis, with kappa from the
     finite elements, and the factor is 1 + kappa (lever - 1) instead of the lever.
 
     At edges the tilt is the derivative by the length of patches that grow from the edge, without the
-    logarithm that the local law has already. It fades to that by their position as they leave the edge.
+    logarithm that the local law has already. As patches leave the edge, it becomes the derivative by their
+    position.
 
     Pair +1 is ahead in the sense of rotation. The load turns a gear counter-clockwise in its tooth frame; the
     driving gear turns against its load and the driven one with it, so pair j lies on tooth -j of gear 1 and
@@ -76,25 +75,31 @@ def contact_problem(
     compliance, tilt = np.zeros((2, *slices.present.shape, slices.pair.size))
     touch = slices.touch
     patches = slices.patch_1, slices.patch_2
-    sides = ((touch.lever_1, 1.0), (touch.lever_2, -1.0))
+    levers = touch.lever_1, touch.lever_2
     diagonals, at_edge = [], _share_at_edge(slices)
-    for g, (flank, (lever, tip), direction) in enumerate(zip(compliances, sides, (-1, 1), strict=True)):
-        blocks, teeth = _tooth_blocks(flank, direction * slices.pair)
-        rows = np.ascontiguousarray  # one order in memory: compiled once
-        along = rows(flank.along) / slices.tip_inclinations[g]
-        gear = _GearFlank(flank.s, blocks, teeth, along, rows(lever), patches[g], patches[1 - g], tip)
+    for g, (flank, tip) in enumerate(zip(compliances, (1, -1), strict=True)):
+        blocks, teeth = _tooth_blocks(flank, -tip * slices.pair)
+        gear = _GearFlank(
+            nodes=flank.s,
+            blocks=blocks,
+            teeth=teeth,
+            # rows in one order in memory: the loops are compiled once
+            along=np.ascontiguousarray(flank.along) / slices.tip_inclinations[g],
+            lever=np.ascontiguousarray(levers[g]),
+            patch=patches[g],
+            mate=patches[1 - g],
+            tip=float(tip),
+        )
         tilt += _added_gear(gear, slices, at_edge, couple_teeth, compliance)
-        diagonals.append(np.einsum("pii->pi", compliance).copy())
+        diagonals.append(np.einsum("pii->pi", compliance).copy())  # of gear 1, then of both gears
     planes, modulus = half_planes(compliances)
     diagonal = np.arange(slices.pair.size)
     tilt[:, diagonal, diagonal] += at_edge * _logarithm_at_edges(slices, planes)
-    half_plane_1, half_plane_2 = planes
     return ContactProblem(
         candidates,
         compliance / slices.width,
         modulus,
-        half_plane_1,
-        half_plane_2,
+        *planes,
         tilt=tilt / slices.width,
         share_1=share_of_pinion(*diagonals),
     )
@@ -127,11 +132,10 @@ class _GearFlank(NamedTuple):
         tilt: FloatArray,
     ) -> None:
         """Add the compliance and the tilt of positions `rows` (R,); see `_laid` and `_add_gear`."""
-        both = self.patch.rows(rows), self.mate.rows(rows)
-        laid, way = _laid(*both, self.patch.half_width.max(), side[rows], self.tip, self.nodes[-1])
-        levers, there = self.lever[rows], present[rows]
+        patch, mate, widest = self.patch.rows(rows), self.mate.rows(rows), self.patch.half_width.max()
+        laid, way = _laid(patch, mate, widest, side[rows], self.tip, self.nodes[-1])
         body = self.nodes, self.blocks, self.teeth, self.along
-        _add_gear(body, laid, way, levers, there, couple_teeth, out, tilt)
+        _add_gear(body, laid, way, self.lever[rows], present[rows], couple_teeth, out, tilt)
 
 
 def _added_gear(
@@ -152,10 +156,9 @@ def _added_gear(
 
 def _share_at_edge(slices: LoadedSlices) -> FloatArray:
     """Return the share (P, n) in which a patch is at an edge: 1, falling to 0 where it leaves the edge."""
-    widest = np.where(
-        slices.edge_side < 0.0, slices.patch_1.half_width.max(), slices.patch_2.half_width.max()
-    )
-    offset = np.where(slices.edge_side < 0.0, slices.touch.offset_1, slices.touch.offset_2)
+    on_gear_1 = slices.edge_side < 0.0
+    widest = np.where(on_gear_1, slices.patch_1.half_width.max(), slices.patch_2.half_width.max())
+    offset = np.where(on_gear_1, slices.touch.offset_1, slices.touch.offset_2)
     return np.asarray(np.clip((1.0 - offset / widest) / _DEPARTURE, 0.0, 1.0))
 
 
@@ -179,17 +182,17 @@ def _tooth_blocks(flank: FlankCompliance, teeth: IntArray) -> tuple[FloatArray, 
 def _laid(
     patch: Patches, mate: Patches, widest: float, side: FloatArray, tip: float, end: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Return patches of one gear, displaced either way for the tilt, and the distances between those.
+    """Return patches of one gear and the two displaced ones of each, and the distances between those.
 
-    The patches are an array (3, 3, P, n): first the patch itself, then the lower and the higher one; of each
-    the center, half-width and edge share. The distances (P, n) from lower to higher are in m, positive
-    towards tip 1. Patches at an edge are lengthened from it; the others are displaced with the widest
-    half-width and no edge share.
+    The patches are an array (3, 3, P, n). Its first axis are the patch itself, the lower and the higher one;
+    its second the center, half-width and edge share. The distances (P, n) from lower to higher are in m,
+    positive towards tip 1. Patches at an edge are lengthened from it; the others are displaced with the
+    widest half-width and no edge share.
 
     Parameters
     ----------
     patch, mate : Patches
-        Of this gear and of the other one.
+        Patches of this gear and of the other one.
     widest : float
         Half-width of patches away from edges, m.
     side : ndarray, shape (P, n)

@@ -50,7 +50,7 @@ def face_contact_problem(
     axial_offset : float
         Distance of the driven gear's mid-face from the driving gear's, m.
     couple_teeth : bool
-        False neglects the motion of one tooth by the load on another.
+        Whether the load on one tooth moves the others.
     """
     compliance = np.zeros((*candidates.slices.present.shape, candidates.slices.pair.size))
     diagonals = []
@@ -72,7 +72,7 @@ def with_face_tilt(
     tilt = np.zeros(problem.compliance.shape)
     for gear in _face_gears(problem.candidates.slices, compliances, axial_offset, couple_teeth):
         for rows, added in gear.displaced().compliances():
-            tilt[rows] += added[:, 1::2, ::2]
+            tilt[rows] += added[:, 1::2, ::2]  # motions by displaced loads, under patches
     return replace(problem, tilt=tilt)
 
 
@@ -90,10 +90,8 @@ class KeyedFlanks(NamedTuple):
         """Return the compliance (n, n) between unit loads on the teeth (n,), m/N."""
         rows = self.rows[tooth + len(self.rows) // 2]
         motion = np.empty((len(tooth), rows.shape[1]))
-        for i, (row, nodes, forces, used) in enumerate(
-            zip(rows, loads.nodes, loads.forces, loads.used, strict=True)
-        ):
-            motion[i] = row[:, nodes[:used]] @ forces[:used]
+        for i, used in enumerate(loads.used):
+            motion[i] = rows[i][:, loads.nodes[i, :used]] @ loads.forces[i, :used]
         added = motion @ self.core @ motion.T
         return added if self.couple_teeth else np.where(tooth[:, None] == tooth, added, 0.0)
 
@@ -118,11 +116,11 @@ class _FaceGear:
         planes = self.grid.freedom.ravel()
         order = planes[planes >= 0]
         for rows in together(len(self.present)):
-            at = np.array(np.nonzero(self.present[rows]))
+            at = np.array(np.nonzero(self.present[rows]))  # position in the group, and slice
             loads, arms = self._loads(rows[at[0]], at[1]), np.ascontiguousarray(self.lever[rows])
             added = np.zeros((rows.size, self.teeth.size, self.teeth.size))
             add_compliance(self.blocks, order, self.teeth, loads, at, arms, added)
-            for p in range(rows.size if len(self.key.rows) else 0):
+            for p in range(rows.size) if len(self.key.rows) else ():
                 at_position = at[0] == p
                 on = at[1, at_position]
                 by_key = self.key.compliance(self.teeth[on], loads.rows(at_position))
@@ -146,9 +144,9 @@ class _DisplacedGear(_FaceGear):
     """
 
     def _loads(self, position: IntArray, on: IntArray) -> FaceLoads:
-        at = position[::2], on[::2] // 2
+        center, _, _ = self.patches.by_slice(position[::2], on[::2] // 2)  # two loads on each slice
         widest = self.patches.half_width.max()
-        near, center = NEAR * widest, self.patches.by_slice(*at)[0]
+        near = NEAR * widest
         center = np.minimum(center, self.grid.s[-1] - widest - near)
         alike = np.full(center.shape, widest), np.zeros(center.shape), self.low[on[::2]], self.high[on[::2]]
         above, below = (face_loads(self.grid, center + way, *alike) for way in (near, -near))

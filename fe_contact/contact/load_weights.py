@@ -28,9 +28,9 @@ def load_sums(problem: ContactProblem, solution: ContactSolution, rows: FloatArr
 def load_weights(
     problem: ContactProblem, solution: ContactSolution, rows: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return derivatives by the normal approach of each candidate; parameters of `load_sums`.
+    """Return the derivatives of the transmission error and of `load_sums` by the candidates' normal approach.
 
-    They follow, with the terms of `adjoint`, from dF = S (m dSTE - dg) and n'dF = 0.
+    Parameters are those of `load_sums`. With the terms of `adjoint`, dF = S (m dSTE - dg) and n'dF = 0.
 
     Returns
     -------
@@ -40,8 +40,8 @@ def load_weights(
         Change of the means per normal approach taken away, in their unit per m.
     """
     c = problem.candidates
+    # the torque share n, and its products with the quantities; `pushed` is S times each of them
     shares = c.torque_share * np.concatenate([np.ones((1, *c.gap.shape)), rows])
-    # S times the torque share n, and times its products with the quantities
     pushed = np.zeros((len(shares), *solution.force.shape))
     middle, half = np.zeros((2, *solution.force.shape))  # further results of `weigh`, not used here
     weigh(point_problems(problem), solution.force, shares, pushed, middle, half)

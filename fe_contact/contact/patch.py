@@ -36,30 +36,31 @@ class Patches:
     count: int = 1
     """Number Q of patches on a slice."""
     bulge: FloatArray | float = 0.0
-    """`fe_contact.hertz.lateral_share` of the material times the curvature of the flank, 1/m; 0 of a half
-    plane.
-    """
+    """`fe_contact.hertz.lateral_share` times the curvature of the flank, 1/m; 0 of a half plane."""
     at_tip: BoolArray | bool = False
     """Whether a patch ends at the tip edge."""
 
     def rows(self, keep: IntArray) -> Patches:
         """Return the patches at the positions `keep`."""
-        bulge, at_tip = (
-            np.asarray(np.broadcast_to(values, self.center.shape)[keep])
-            for values in (self.bulge, self.at_tip)
+        shape = self.center.shape
+        return replace(
+            self,
+            center=self.center[keep],
+            half_width=self.half_width[keep],
+            edge_share=self.edge_share[keep],
+            bulge=np.asarray(np.broadcast_to(self.bulge, shape)[keep]),
+            at_tip=np.asarray(np.broadcast_to(self.at_tip, shape)[keep]),
         )
-        arrays = self.center[keep], self.half_width[keep], self.edge_share[keep]
-        return Patches(*arrays, self.count, bulge, at_tip)
 
     def by_slice(
         self, position: int | IntArray, slices: IntArray
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return centers, half-widths and edge shares (k, Q) on some slices, at one position or one each."""
-        arrays = (self.center, self.half_width, self.edge_share)
-        first, second, third = (
-            values.reshape(len(values), -1, self.count)[position, slices] for values in arrays
+        center, half_width, edge_share = (
+            values.reshape(len(values), -1, self.count)[position, slices]
+            for values in (self.center, self.half_width, self.edge_share)
         )
-        return first, second, third
+        return center, half_width, edge_share
 
     @property
     def centroid(self) -> FloatArray:
@@ -111,6 +112,7 @@ class Patches:
     def mean_distance(self) -> FloatArray:
         """Mean distance E|x - y| in m of two points of the load, 0.576 half-widths of a semi-ellipse."""
         smooth, edge = 1.0 - self.edge_share, self.edge_share
+        # E|x - y| of two points of the semi-ellipse, of one point each, and of two of the singular load
         parts = 256.0 * smooth**2 + 640.0 * smooth * edge + 240.0 * edge**2
         return np.asarray(parts * self.half_width / (45.0 * math.pi**2))
 

@@ -37,9 +37,7 @@ class Touch:
     curvature: FloatArray
     low: FloatArray
     high: FloatArray
-    """`slope`, `curvature`, `low`, `high`: Gap about the touching points in the transverse section, towards
-    tip 1; see `strip.Gap`.
-    """
+    """`slope`, `curvature`, `low`, `high`: Gap in the transverse section, towards tip 1; see `strip.Gap`."""
     offset: FloatArray
     jump: FloatArray
     bend: FloatArray
@@ -114,10 +112,11 @@ def conjugate_touch(pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, 
         ("exit", beyond_1, touch_roll_2, opening_1),
     )
     for side, overshoot, touch_roll, opening in sides if corners else ():
-        at = np.nonzero(overshoot > 0.0)
-        corner = corner_contact(pair, side, overshoot[at])
-        valid = tuple(index[corner.valid] for index in at)
-        gap[valid], touch_roll[valid] = corner.gap[corner.valid], corner.flank_roll_length[corner.valid]
+        beyond = np.nonzero(overshoot > 0.0)
+        corner = corner_contact(pair, side, overshoot[beyond])
+        valid = tuple(index[corner.valid] for index in beyond)
+        gap[valid] = corner.gap[corner.valid]
+        touch_roll[valid] = corner.flank_roll_length[corner.valid]
         opening[valid] = corner.slope_angle[corner.valid]
         lever_1[valid] = corner.lever_arm_ratio_pinion[corner.valid]
         lever_2[valid] = corner.lever_arm_ratio_wheel[corner.valid]
@@ -127,11 +126,28 @@ def conjugate_touch(pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, 
     low = s_2 - pair.wheel.flank_coordinate(tip_2)
     no_breaks, zero = np.zeros((*gap.shape, 0)), np.zeros(gap.shape)
     return Touch(
-        s_1, s_2, gap, radius, lever_1, lever_2,
-        opening_2 - opening_1, 1.0 / radius, np.minimum(low, 0.0), np.maximum(high, 0.0),
-        no_breaks, no_breaks, no_breaks,
-        zero, zero, _lag_at_edges(pair, lever_1, lever_2), zero, zero, zero, zero, roll_1,
-    )  # fmt: skip
+        s_1=s_1,
+        s_2=s_2,
+        gap=gap,
+        radius=radius,
+        lever_1=lever_1,
+        lever_2=lever_2,
+        slope=opening_2 - opening_1,
+        curvature=1.0 / radius,
+        low=np.minimum(low, 0.0),
+        high=np.maximum(high, 0.0),
+        offset=no_breaks,
+        jump=no_breaks,
+        bend=no_breaks,
+        shift=zero,
+        approach_error=zero,
+        lag=_lag_at_edges(pair, lever_1, lever_2),
+        slope_1=zero,
+        slope_2=zero,
+        turn_1=zero,
+        turn_2=zero,
+        roll_1=roll_1,
+    )
 
 
 def _lag_at_edges(pair: ParallelAxes, lever_1: FloatArray, lever_2: FloatArray) -> FloatArray:
@@ -141,10 +157,9 @@ def _lag_at_edges(pair: ParallelAxes, lever_1: FloatArray, lever_2: FloatArray) 
     normal of the mate. A lag of gear 2 closes the gap at an edge times the lever arm only.
     """
     lag = np.ones(lever_2.shape)
-    at = np.nonzero((lever_1 != 1.0) | (lever_2 != 1.0))
-    levers = (pair.pinion, lever_1[at]), (pair.wheel, lever_2[at])
-    angle = sum(_angle_at_edge(gear, lever) for gear, lever in levers)
-    lag[at] = np.cos(angle) / lever_2[at]
+    edges = np.nonzero((lever_1 != 1.0) | (lever_2 != 1.0))
+    angle = _angle_at_edge(pair.pinion, lever_1[edges]) + _angle_at_edge(pair.wheel, lever_2[edges])
+    lag[edges] = np.cos(angle) / lever_2[edges]
     return lag
 
 

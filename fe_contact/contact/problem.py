@@ -31,9 +31,7 @@ from fe_contact.types import BoolArray, FloatArray, IntArray
 from host.loops import njit
 
 _SMALL_LOAD = 0.01
-"""Small load over the load of `PatchRule.edge_load`. Its strips are so short that their middles stand for
-those under any load.
-"""
+"""Small load over `PatchRule.edge_load`: its strips are so short that their middles hardly move with load."""
 
 _USUAL_STRIP = 0.012
 """Half strip over the relative radius of curvature; gears under rated loads have 0.01 to 0.04."""
@@ -55,18 +53,12 @@ class LoadedSlices:
     face_position: FloatArray
     """Distance of the slice's middle from the pinion's mid-face, m. Shape (n,)."""
     present: BoolArray
-    """Whether any contact can press on a slice; else the other entries of the slice are harmless numbers.
-    Shape (P, n).
-    """
+    """Whether any contact can press on a slice; else its other entries are harmless numbers. Shape (P, n)."""
     touch: Touch
-    """Touching points of plain involutes at the middles, arrays (P, n); at the ends of the path of contact
-    where the middle is beyond them.
-    """
+    """Touching points of plain involutes at the middles, at most at the ends of the path; arrays (P, n)."""
     patch_1: Patches
     patch_2: Patches
-    """`patch_1`, `patch_2`: Load patches on the driving and the driven gear, one under each point of the
-    contact line.
-    """
+    """`patch_1`, `patch_2`: Load patches on both gears, one under each point of the contact line."""
     slice_width: float
     """Width of a slice along the face, m."""
     base_helix_angle: float
@@ -108,7 +100,7 @@ class LoadedSlices:
         return self.end_1 == ENDLESS and self.end_2 == ENDLESS
 
     def half_planes(self, first: float, second: float) -> tuple[FloatArray, FloatArray]:
-        """Return 2 (1 - nu^2)/(pi E) of both gears under each patch (P, m): more at the own tip edge."""
+        """Return 2 (1 - nu^2)/(pi E) of both gears under each patch (P, m): more at the gear's tip edge."""
         return (
             first * (1.0 + (self.corner_1 - 1.0) * self.patch_1.at_edge),
             second * (1.0 + (self.corner_2 - 1.0) * self.patch_2.at_edge),
@@ -160,7 +152,7 @@ class Candidates:
 
     @property
     def blend(self) -> FloatArray:
-        """Parts of the force of each point on the slices of its pair, and of their motions at the point."""
+        """Parts of the force of each point on the slices of its pair, (points, slices)."""
         return np.asarray(self.curves @ self.heights)
 
     @property
@@ -199,9 +191,8 @@ class Candidates:
     @cached_property
     def strips(self) -> StripMiddles:
         """Middles of strips under a load small enough that they hardly depend on it, arrays (P, m)."""
-        return StripMiddles(
-            *(values.reshape(self.gap.shape) for values in strip_middles(*self._small_strips))
-        )
+        middles = strip_middles(*self._small_strips)
+        return StripMiddles(*(values.reshape(self.gap.shape) for values in middles))
 
     @property
     def rolling_radius(self) -> FloatArray:
@@ -213,7 +204,8 @@ class Candidates:
         """Return gaps about all touching points, and half strips there in m; 0 without a candidate."""
         table = gap_table(self.gap_about)
         half = np.sqrt(_SMALL_LOAD * self.slices.edge_load * self.radius)
-        return table.reshape(-1, table.shape[2]), np.where(np.isfinite(self.gap), half, 0.0).ravel()
+        half = np.where(np.isfinite(self.gap), half, 0.0)
+        return table.reshape(-1, table.shape[2]), half.ravel()
 
     @property
     def motion_arm(self) -> FloatArray:
@@ -244,7 +236,7 @@ class Candidates:
         return np.asarray((by_pair @ self.blend.T).reshape(*shape, -1))
 
     def rows(self, keep: IntArray) -> Candidates:
-        """Return the candidates of some positions, those of one base pitch."""
+        """Return the candidates, in one base pitch, at the positions `keep`."""
         return replace(
             self,
             position=self.position[keep],
@@ -262,16 +254,16 @@ class Candidates:
 
         The motion of a middle from this gap to the other adds to the `shift` of `touch`.
         """
-        moved = self.touching(touch)
-        return self.touching(replace(touch, shift=touch.shift + moved.strips.middle - self.strips.middle))
+        middle = self.touching(touch).strips.middle
+        return self.touching(replace(touch, shift=touch.shift + middle - self.strips.middle))
 
 
 @dataclass(frozen=True)
 class ContactProblem:
     """Candidates with the finite-element compliance between the slices on which they press.
 
-    The candidates may repeat the positions of the compliance in further base pitches: it does not know one
-    tooth from the next.
+    The candidates may repeat the Q positions of the compliance in further base pitches: all teeth have the
+    same compliance.
     """
 
     candidates: Candidates
@@ -287,14 +279,14 @@ class ContactProblem:
     tilt: FloatArray = field(default_factory=lambda: np.zeros((0, 0, 0)))
     """Tilt of the flanks at slice i per force on slice j, 1/N. It is also the growth of the compliance per
     motion of the patches of slice i towards tip 1. Patches move with the slope of the flanks, and in the
-    plane also with their tilt. Ndarray, shape (Q, n, n), or (0, 0, 0) where patches stay.
+    plane also with their tilt. Shape (Q, n, n), or (0, 0, 0) where patches stay.
     """
     share_1: FloatArray | float = 0.5
     """Part of gear 1 in the compliance of each slice. Ndarray, shape (Q, n), or float."""
 
     @property
     def half_planes(self) -> tuple[FloatArray, FloatArray]:
-        """`half_plane_1` and `half_plane_2` at each candidate (Q, m), 1/Pa: more at the own tip edge."""
+        """`half_plane_1` and `half_plane_2` at each candidate (Q, m), 1/Pa: more at the gear's tip edge."""
         return self.candidates.slices.half_planes(self.half_plane_1, self.half_plane_2)
 
     @cached_property
@@ -323,8 +315,8 @@ class ContactProblem:
         compliance[:, diagonal, diagonal] -= np.where(slices.present, local, 0.0)
         touch = self.candidates.touch
         if touch.slope_1.any() or touch.slope_2.any():
-            change = self.turned_by(*(self.candidates.on_mean(s) for s in (touch.slope_1, touch.slope_2)))
-            change = change[: len(compliance)]
+            slopes = self.candidates.on_mean(touch.slope_1), self.candidates.on_mean(touch.slope_2)
+            change = self.turned_by(*slopes)[: len(compliance)]
             compliance *= 1.0 + change[:, :, None] + change[:, None, :]
         return compliance
 
@@ -345,8 +337,9 @@ class ContactProblem:
     def law_length(self) -> FloatArray:
         """Reference length of the local law of each candidate (Q, m), m: greater near free ends.
 
-        Near a free end the approach is greater by k p [e(h) - e(l)], as with a longer reference length. h is
-        a usual half strip instead of the real one, so that the length does not depend on the load.
+        Near a free end the approach is greater by k p [e(h) - e(l)], as with a longer reference length (p is
+        the line load, e as in `bodies`). h is a usual half strip instead of the real one, so that the
+        length does not depend on the load.
         """
         slices, (first, second) = self.candidates.slices, self.half_planes
         if slices.endless:
@@ -359,7 +352,7 @@ class ContactProblem:
         return np.asarray(slices.law_length * np.exp(excess))
 
     def _end_excess(self, ends: FreeEnds, strip: FloatArray) -> FloatArray:
-        """Return e of half strips (Q, m) less that of the reference length."""
+        """Return the excess e of half strips (Q, m) less that of the reference length."""
         candidates = self.candidates
         if candidates.slices.endless:
             return np.zeros(strip.shape)
@@ -396,12 +389,12 @@ class ContactProblem:
         slices, touch = self.candidates.slices, self.candidates.slices.touch
         if not self.rolling.size:
             return no_edges(slices.pair.size)
-        first = touch.offset_1 < touch.offset_2
-        patches, planes = (slices.patch_1, slices.patch_2), (self.half_plane_1, self.half_plane_2)
-        corners = planes[0] * (slices.corner_1 - 1.0), planes[1] * (slices.corner_2 - 1.0)
+        first = touch.offset_1 < touch.offset_2  # whether the edge of gear 1 is the nearer one
+        corner_1 = self.half_plane_1 * (slices.corner_1 - 1.0)
+        corner_2 = self.half_plane_2 * (slices.corner_2 - 1.0)
         under_1, under_2 = self.half_planes
         at_tip, half, distance, at_edge, length = (
-            np.where(first, *(getattr(patch, name) for patch in patches))
+            np.where(first, getattr(slices.patch_1, name), getattr(slices.patch_2, name))
             for name in ("at_tip", "half_width", "edge_distance", "at_edge", "law_width")
         )
         nearest = np.minimum(touch.offset_1, touch.offset_2)
@@ -412,7 +405,7 @@ class ContactProblem:
             softness=2.0 * (under_1 + under_2) / slices.width,
             patch=np.where(at_tip, distance, nearest),
             missing=1.0 - at_edge,
-            corner=np.where(first, *corners) / slices.width,
+            corner=np.where(first, corner_1, corner_2) / slices.width,
             length=np.where(at_tip, length, nearest),
         )
         table = edge_table(strips, slices.present)
@@ -437,12 +430,13 @@ class ContactProblem:
         The local approach of a loaded candidate is not part of it.
         """
         pressed = self.candidates.on_slices(force)
-        radius, longest = self.radius, self.candidates.slices.law_length
-        edges = self.edges
-        rows = -1, len(self.compliance) if len(edges) > 1 else 1, 1, radius.shape[1]
-        radius = radius.reshape(-1, len(self.compliance), 1, radius.shape[1])
-        radius = np.where(edges[..., SIDE].reshape(rows) == 0.0, radius, 0.0)
-        by_pitch = pressed.reshape(-1, len(self.compliance), *pressed.shape[1:])
+        edges, longest = self.edges, self.candidates.slices.law_length
+        # axes: base pitches, positions Q (one row of edges stands for all), loads, slices
+        radius = self.radius
+        positions, slices = len(self.compliance), radius.shape[1]
+        side = edges[..., SIDE].reshape(-1, positions if len(edges) > 1 else 1, 1, slices)
+        radius = np.where(side == 0.0, radius.reshape(-1, positions, 1, slices), 0.0)
+        by_pitch = pressed.reshape(-1, positions, *pressed.shape[1:])
 
         def times(matrices: FloatArray, forces: FloatArray) -> FloatArray:
             return np.asarray(np.einsum("qij,tqlj->tqli", matrices, forces, optimize=True))

@@ -40,11 +40,10 @@ The approach is stationary in both, so that its own error is of the order of the
 """
 _STEPS = 100
 """Most steps of a search between bounds."""
-_NEWTON_STEPS, _EDGE_STEPS, _NEWTON_TOLERANCE = 8, 12, 1e-8
-"""Most steps of Newton's method for half length and middle together, without and with an edge, and the step
-over the half length that is small enough to be the last one. The remaining error is of the order of the
-square of that step.
-"""
+_NEWTON_STEPS, _EDGE_STEPS = 8, 12
+"""Most steps of Newton's method for half length and middle together, without and with an edge."""
+_NEWTON_TOLERANCE = 1e-8
+"""Last step of Newton's method over the half length. The error that is left is of the order of its square."""
 _TILTED = 0.1
 """Motion of the strip's middle for which `rolling_radii` chooses its tilts, over half the strip."""
 _NEAR = 1e-6
@@ -68,9 +67,7 @@ class Gap(NamedTuple):
 
     slope: FloatArray
     curvature: FloatArray
-    """`slope`, `curvature`: s and q; 1 and 1/m. The slope is zero except where flanks touch at an edge or a
-    break. Shape (n,) each.
-    """
+    """`slope`, `curvature`: s and q; 1 and 1/m. The slope is zero off edges and breaks. Shape (n,) each."""
     low: FloatArray
     high: FloatArray
     """`low`, `high`: Ends of the bodies, m; infinite where there is no end. Shape (n,) each."""
@@ -269,9 +266,7 @@ class StripMiddles(NamedTuple):
     """`middle`, `half`: Distance of the strip's middle from the touching point, and half its length, m."""
     slope: FloatArray
     curvature: FloatArray
-    """`slope`, `curvature`: Means of g' and g'' over the strip; 1 and 1/m. The slope differs from zero only
-    where the strip ends at an edge.
-    """
+    """`slope`, `curvature`: Means of g' and g'' over the strip; 1 and 1/m. The slope is zero off edges."""
 
 
 @njit(cache=True, error_model="numpy")

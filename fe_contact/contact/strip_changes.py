@@ -44,9 +44,7 @@ class Strips:
     """Distance from the pinion's mid-face, m. Shape (k,)."""
     middle: FloatArray
     half: FloatArray
-    """`middle`, `half`: Distance of the strip's middle from the touching point, and half its length, m. Shape
-    (k,) each.
-    """
+    """`middle`, `half`: Middle of the strip from the touching point, and half its length, m. Shape (k,)."""
 
     def removed(self, gap: GapTerm) -> FloatArray:
         """Return the mean of a gap over the strips (k,), m."""
@@ -62,7 +60,8 @@ class Strips:
         """Return the mean slope of a gap over the strips (k,)."""
         smooth, breaks = self._parted(gap)
         slope = (smooth[2] - smooth[0]) / (2.0 * _NODE * self.half)
-        return np.asarray(slope + sum(line.side * self._past(line, distance)[1] for line, distance in breaks))
+        past_breaks = [(line.side, self._past(line, distance)) for line, distance in breaks]
+        return np.asarray(slope + sum(side * slope_past for side, (_, slope_past) in past_breaks))
 
     @cached_property
     def _nodes(self) -> tuple[FloatArray, tuple[FloatArray, FloatArray]]:
@@ -77,8 +76,8 @@ class Strips:
         """
         x, rolls = self._nodes
         breaks = [(line, line.distance(self.s_1, self.s_2)) for line in gap.breaks(self.pair, self.face)]
-        of_breaks = sum(line.height(x - distance) for line, distance in breaks)
-        return gap(self.pair, *rolls, self.face) - of_breaks, breaks
+        beyond_breaks = sum(line.height(x - distance) for line, distance in breaks)
+        return gap(self.pair, *rolls, self.face) - beyond_breaks, breaks
 
     def _past(self, start: Break, distance: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the means over the strips of the material that a break removes, m, and of its slope."""
@@ -115,15 +114,11 @@ class ClosingLag:
     lag: FloatArray
     """Lag of gear 2 per slope of its flank (`flank_slope`), m. Shape (k,)."""
     way: FloatArray
-    """Motion of the touching point per slope of the gap, m; zero where it stays at an edge or a break. Shape
-    (k,).
-    """
+    """Motion of the touching point per slope of the gap, m; zero at an edge or a break. Shape (k,)."""
     at_break: BoolArray
     """Whether the touching point is at a break, and moves with it. Shape (k,)."""
     turns: tuple[FloatArray, FloatArray]
-    """Change of the slope of either flank per motion of the touching point, 1/m. Tuple of ndarray, shape
-    (k,).
-    """
+    """Change of the slope of either flank per motion of the touching point, 1/m. Shape (k,) each."""
 
     @classmethod
     def of(cls, strips: Strips, candidates: Candidates, at: tuple[IntArray, ...]) -> ClosingLag:
@@ -138,7 +133,7 @@ class ClosingLag:
         return cls(strips, excess, lag, way, at_break, (touch.turn_1[at], touch.turn_2[at]))
 
     def opened(self, gap: GapTerm, over: GapTerm) -> FloatArray:
-        """Return the normal approach (k,) in m that a gap takes away by the lag, less that of another."""
+        """Return how much more normal approach (k,) in m a gap takes away by the lag than the gap `over`."""
         if gap.along_profile or over.along_profile:
             return self.excess * self._change(gap, over, 0.0) + self.lag * self.slope(1, gap, over)
         roll = self.strips.roll_1
@@ -146,22 +141,22 @@ class ClosingLag:
         return self.excess * self._difference(gap, over, nominal)
 
     def slope(self, gear: int, gap: GapTerm, over: GapTerm) -> FloatArray:
-        """Return how much steeper the flank of a gear is by a gap than by another near it (k,)."""
+        """Return how much steeper the flank of a gear is by a gap than by the gap `over` near it (k,)."""
         coordinates, difference = (self.strips.s_1, self.strips.s_2), partial(self._difference, gap, over)
         steeper = flank_slope(self.strips.pair, gear, difference, coordinates, self._step)
         return np.asarray(steeper + self.turns[gear] * self._shift(gap, over))
 
     def _shift(self, gap: GapTerm, over: GapTerm) -> FloatArray:
-        """Return the motions of the touching points (k,), m; points at breaks move with these."""
+        """Return the motions of the touching points (k,), m; points at breaks move with the breaks."""
         strips, near = self.strips, _AT_TOUCH * self._step
         slope = (self._change(gap, over, near) - self._change(gap, over, -near)) / (2.0 * near)
         shift = self.way * slope
-        breaks = [term.breaks(strips.pair, strips.face) for term in (gap, over)]
-        if len(breaks[0]) != len(breaks[1]):
+        breaks, breaks_before = gap.breaks(strips.pair, strips.face), over.breaks(strips.pair, strips.face)
+        if len(breaks) != len(breaks_before):
             return np.asarray(shift)  # a relief of zero depth has no break at which a point could stay
-        for after, before in zip(*breaks, strict=True):
-            after_move, before_move = (term.distance(strips.s_1, strips.s_2) for term in (after, before))
-            shift = np.where(self.at_break & (np.abs(before_move) < near), after_move - before_move, shift)
+        for line, line_before in zip(breaks, breaks_before, strict=True):
+            after, before = (term.distance(strips.s_1, strips.s_2) for term in (line, line_before))
+            shift = np.where(self.at_break & (np.abs(before) < near), after - before, shift)
         return np.asarray(shift)
 
     def nodes(
@@ -184,7 +179,7 @@ class ClosingLag:
             toothing, roll = (pair.pinion, pair.wheel)[of], rolls_at(pair, strips.s_1, strips.s_2)[of]
             steeper = 0.5 * roll / (self._step * toothing.base_radius)
             per_step = per_step + steeper * (1.0 if of == 0 else -1.0)
-        for side in (1.0, -1.0):
+        for side in (1.0, -1.0):  # of the central difference
             for node, part in strips.nodes(gear, roll_length, face_position, (side * self._step)[None]):
                 yield node[0], side * per_step * part[0]
 
@@ -206,7 +201,7 @@ class ClosingLag:
 
 @dataclass(frozen=True)
 class FollowingPatches:
-    """Load patches that move with the slopes of small gaps, and what their motion changes."""
+    """Load patches that move with the slopes of small gaps, and the changes by their motion."""
 
     problem: ContactProblem
     slice_force: FloatArray
@@ -216,9 +211,7 @@ class FollowingPatches:
     index: IntArray
     """Index of each strip among all positions and candidates, flattened. Shape (k,)."""
     way: FloatArray
-    """Motion of the patch of each strip towards tip 1 per slope of the gap, m; patches of a slice move by
-    their mean. Shape (k,).
-    """
+    """Motion of a patch towards tip 1 per slope of the gap, m; a slice has their mean. Shape (k,)."""
 
     @classmethod
     def of(cls, pair: ParallelAxes, problem: ContactProblem, force: FloatArray) -> FollowingPatches:
@@ -235,7 +228,8 @@ class FollowingPatches:
 
     def opened(self, slopes: FloatArray) -> FloatArray:
         """Return the normal approach that small slopes (k,) take away from the candidates (P, L, m), m."""
-        c, shift = self.problem.candidates, np.zeros(self.problem.candidates.gap.shape)
+        c = self.problem.candidates
+        shift = np.zeros(c.gap.shape)
         shift.flat[self.index] = self.way * slopes
         by_slice = c.on_mean(shift)[:, None]
         rolled = by_slice * self._tilts + self._times(by_slice * self.slice_force, back=True)
@@ -285,16 +279,16 @@ class TurnedForces:
         zero = np.zeros(at[0].size)
         touching = c.touch.s_1[at], c.touch.s_2[at], c.touch.roll_1[at], c.face_position[at[1]]
         closing = ClosingLag.of(Strips(pair, *touching, zero, zero), c, at)
-        return cls(
-            problem, pressed, _times(problem.bodies, pressed), closing, np.ravel_multi_index(at, c.gap.shape)
-        )
+        index = np.ravel_multi_index(at, c.gap.shape)
+        return cls(problem, pressed, _times(problem.bodies, pressed), closing, index)
 
     def opened(self, gap: GapTerm, over: GapTerm) -> FloatArray:
-        """Return the normal approach (P, L, m) in m that a gap takes away, less that of another near it."""
-        c, slopes = self.problem.candidates, np.zeros((2, *self.problem.candidates.gap.shape))
-        for gear, slope in enumerate(slopes):
-            slope.flat[self.index] = self.closing.slope(gear, gap, over)
-        turned = self.problem.turned_by(*(c.on_mean(slope) for slope in slopes))[:, None]
+        """Return how much more normal approach (P, L, m) in m a gap takes away than the gap `over`."""
+        c = self.problem.candidates
+        slope_1, slope_2 = np.zeros((2, *c.gap.shape))
+        slope_1.flat[self.index] = self.closing.slope(0, gap, over)
+        slope_2.flat[self.index] = self.closing.slope(1, gap, over)
+        turned = self.problem.turned_by(c.on_mean(slope_1), c.on_mean(slope_2))[:, None]
         motion = turned * self.displacement + _times(self.problem.bodies, turned * self.slice_force)
         return c.at_points(motion)
 

@@ -73,18 +73,14 @@ def tooth_touch(
     Load patches stay where the common flanks touch: they define `shift`. Deviations of single teeth count
     as a lag: a pitch error of gear 2 turns its flank, and a lag of the same size closes it on any slope.
     """
-    candidates = np.nonzero(touch.gap != np.inf)  # more than a third of the candidates cannot touch
-    parts = list(
-        zip(
-            *(np.array_split(indices, candidates[0].size // _AT_ONCE + 1) for indices in candidates),
-            strict=True,
-        )
-    )
+    rows, columns = np.nonzero(touch.gap != np.inf)  # more than a third of the candidates cannot touch
+    count = rows.size // _AT_ONCE + 1
+    parts = list(zip(np.array_split(rows, count), np.array_split(columns, count), strict=True))
     results = []
     for at in parts:
         common = Touch(*(getattr(touch, name)[at] for name in touch.__dataclass_fields__))
         results.append(_touching(_Part(pair, model, common, face[at[1]], meeting[at])))
-    breaks = max((arrays[-1].shape[-1] for arrays in results), default=0)
+    breaks = max(arrays[-1].shape[-1] for arrays in results)
     changed = _with_breaks(tuple(getattr(touch, name).copy() for name in _MOVING), breaks)
     for at, arrays in zip(parts, results, strict=True):
         for all_values, values in zip(changed, _with_breaks(arrays, breaks), strict=True):
@@ -93,7 +89,7 @@ def tooth_touch(
 
 
 def _with_breaks(moving: tuple[FloatArray, ...], count: int) -> tuple[FloatArray, ...]:
-    """Return arrays of `_MOVING` with at least `count` breaks."""
+    """Return arrays of `_MOVING` with at least `count` breaks; the fields of the gap are the last of them."""
     first = len(moving) - len(Gap._fields)
     return *moving[:first], *with_breaks(Gap(*moving[first:]), count)
 
@@ -101,9 +97,9 @@ def _with_breaks(moving: tuple[FloatArray, ...], count: int) -> tuple[FloatArray
 def _touching(part: _Part) -> tuple[FloatArray, ...]:
     """Return the arrays that `_MOVING` names.
 
-    Where the gap of the teeth is less concave than the common gap is convex, a parabola in its place gives
-    the point of least gap. Elsewhere, and where the true gap differs from the parabola there, the least gap
-    is searched for in the sum of both gaps.
+    Where the gap of the teeth is less concave than the common gap is convex, it is replaced by a parabola,
+    which gives the point of least gap. Elsewhere, and where the true gap there differs from the parabola, the
+    least sum of both gaps is searched for.
     """
     stepped, poor = _stepped(part)
     rough = np.flatnonzero(poor | _sharp(part))
@@ -124,6 +120,7 @@ def _stepped(part: _Part) -> tuple[tuple[FloatArray, ...], BoolArray]:
     half = np.minimum(STEP / common.curvature, 0.2 * (common.high - common.low))
     middle = np.clip(zero, common.low + half, common.high - half)
     before, center, after = (part.gap(middle + way) for way in (-half, zero, half))
+    # the parabola level + steepness x + bend x^2/2 through the three samples
     bend = (before - 2.0 * center + after) / half**2
     steepness = (after - before) / (2.0 * half) - bend * middle
     level = center - middle * (steepness + 0.5 * bend * middle)

@@ -29,9 +29,7 @@ from host.loops import njit
 _SAMPLES = 17
 """Number of samples of a gap over the reach of its touching point."""
 _PASSES, _CUT_TIP_PASSES = 2, 4
-"""Most passes of the search for the touching point, from the lowest sample on; more where a tip is cut, since
-the sample may be further off.
-"""
+"""Most passes of the search from the lowest sample on; more for a cut tip, whose sample may be far off."""
 STEP = 0.01
 """Step of differences along the flank over the relative radius: about half a contact strip."""
 _REACH = 0.5
@@ -44,9 +42,7 @@ ROUGH, WAVY = 0.25, 0.05
 """Curvature of deviations over that of plain flanks above which flanks may touch at another crest, and above
 which no parabola describes them under load."""
 _STEP_ERROR = 10.0
-"""Allowed difference of the true gap after a step from its parabola, over `ALLOWED`. The remaining error is
-of higher order.
-"""
+"""Allowed difference of the true gap after a step from its parabola, over `ALLOWED`."""
 _ALIKE = 1e-4
 """Distance of samples over the step of differences below which they count as one."""
 _AT_ONCE = 8192
@@ -110,6 +106,7 @@ def _shifted(
     teeth: DeviatingTeeth | None,
 ) -> Touch:
     """Move the touching points to the least sum of conjugate gap, `gaps` and gaps of the teeth."""
+    # points that can touch, in one row
     shape, possible = touch.gap.shape, np.flatnonzero(np.isfinite(touch.gap))
     plain = {name: values.reshape(touch.gap.size, *values.shape[2:]) for name, values in vars(touch).items()}
     near = Touch(**{name: values[possible] for name, values in plain.items()})
@@ -130,8 +127,9 @@ def _shifted(
     changed |= flanks.closed(shift, touching.gap) | about._asdict()
     result = {}
     for name, values in changed.items():
-        same_shape = plain[name].shape[1:] == values.shape[1:]
-        all_values = plain[name].copy() if same_shape else np.zeros((touch.gap.size, *values.shape[1:]))
+        all_values = plain[name].copy()
+        if plain[name].shape[1:] != values.shape[1:]:  # more breaks than plain flanks have
+            all_values = np.zeros((touch.gap.size, *values.shape[1:]))
         all_values[possible] = values
         result[name] = all_values.reshape(*shape, *values.shape[1:])
     return replace(touch, **result)
@@ -160,9 +158,8 @@ def _touching(flanks: _Flanks) -> _Touching:
     parabolas.
     """
     sharp, wavy = flanks.rougher(ROUGH), flanks.rougher(WAVY)
-    shift, gap, poor, about = _by_parabolas(
-        flanks if not sharp.any() else flanks.rows(np.flatnonzero(~sharp))
-    )
+    smooth = flanks.rows(np.flatnonzero(~sharp)) if sharp.any() else flanks
+    shift, gap, poor, about = _by_parabolas(smooth)
     zero = np.zeros(shift.size)
     if not wavy.any() and not poor.any():
         return _Touching(shift, gap, zero, zero, about)
@@ -192,13 +189,13 @@ def _by_parabolas(flanks: _Flanks) -> tuple[FloatArray, FloatArray, BoolArray, G
     Returns their shift, the true gap at them, where it differs from the parabolas, and the gap about them.
     """
     shift, gap_at_shift = flanks.lowest_sample()
-    of: IntArray = np.arange(gap_at_shift.size)
+    of: IntArray = np.arange(gap_at_shift.size)  # numbers of the `flanks` that are searched still
     poor, arrays = np.zeros(gap_at_shift.size, dtype=bool), ()  # type: BoolArray, _Arrays
     step: FloatArray = np.zeros(0)
     for _ in range(_CUT_TIP_PASSES if flanks.cut_tips else _PASSES):
         if arrays:  # a flank without a step has found its touching point
-            on = np.flatnonzero(step)
-            flanks, of = flanks.rows(on), of[on]
+            moving = np.flatnonzero(step)
+            flanks, of = flanks.rows(moving), of[moving]
         x = shift[of]
         about = flanks.about(x)
         step = touching_offsets(about, flanks.first - x, flanks.last - x)
@@ -208,10 +205,10 @@ def _by_parabolas(flanks: _Flanks) -> tuple[FloatArray, FloatArray, BoolArray, G
         step = np.where(leads_down, step, 0.0)
         minimum, local_gap = shifted_gap(about, step)
         arrays = _replaced(arrays, of, tuple(local_gap))
-        poor[of] = ~leads_down | (
-            np.abs(gap_at_shift[of] + minimum - next_gap) > _STEP_ERROR * flanks.allowed
-        )
-        shift[of], gap_at_shift[of] = x + step, np.where(leads_down, next_gap, gap_at_shift[of])
+        step_error = np.abs(gap_at_shift[of] + minimum - next_gap)
+        poor[of] = ~leads_down | (step_error > _STEP_ERROR * flanks.allowed)
+        shift[of] = x + step
+        gap_at_shift[of] = np.where(leads_down, next_gap, gap_at_shift[of])
     return shift, gap_at_shift, poor, Gap(*arrays)
 
 
@@ -263,11 +260,11 @@ class _Flanks:
         """Return the gap in m at ways x (k,) of some of the touching points (k,)."""
         if self.cut_tips:
             return self.rows(of).gap(x)
-        touch, gears = self._touch, (self._pair.pinion, self._pair.wheel)
-        doubled = 2.0 * gears[0].base_radius, 2.0 * gears[1].base_radius
+        touch, pinion, wheel = self._touch, self._pair.pinion, self._pair.wheel
+        doubled = 2.0 * pinion.base_radius, 2.0 * wheel.base_radius
         flanks = touch.s_1, touch.s_2, touch.slope, touch.curvature
-        plain, *rolls = _plain_at_ways(x, of, flanks, doubled, float(gears[1].sign))
-        return plain + self._removed_at((rolls[0], rolls[1]), of)
+        plain, roll_1, roll_2 = _plain_at_ways(x, of, flanks, doubled, float(wheel.sign))
+        return plain + self._removed_at((roll_1, roll_2), of)
 
     def rougher(self, part: float) -> BoolArray:
         """Return where deviations may have more than this part of the curvature of plain flanks."""
@@ -311,12 +308,12 @@ class _Flanks:
         return fall
 
     def _nodes(self) -> Nodes:
-        """Return the nodes of all gaps along the flanks; those of the wheel run the other way."""
+        """Return the nodes of all gaps along the flanks; the nodes of the wheel run the other way."""
         touch, pair = self._touch, self._pair
         count = touch.s_1.size
-        sets = [
-            (surface.gear, [surface.nodes], np.zeros(count, dtype=np.int64)) for surface in self._surfaces
-        ]
+        # gear, lists of nodes, and the list of each touching point; list 0 of all is empty
+        every = np.zeros(count, dtype=np.int64)
+        sets = [(surface.gear, [surface.nodes], every) for surface in self._surfaces]
         sets += [] if self._teeth is None else self._teeth.nodes(pair)
         along, list_of = [np.zeros(0)], np.zeros((len(sets), count), dtype=np.int64)
         for k, (gear, lists, of) in enumerate(sets):
@@ -339,20 +336,17 @@ class _Flanks:
         bounded = are_alike and not self.cut_tips and all(term.only_removes for term in self._gaps)
         uncertain = np.flatnonzero(minimum > 0.0) if bounded else np.arange(lowest.size)
         part, near = np.linspace(0.0, 1.0, _SAMPLES)[:, None], self.rows(uncertain)
-        x = near.first + (near.last - near.first) * part
+        x = near.first + (near.last - near.first) * part  # (samples, uncertain)
         if bounded:
             gap = near._plain(x)
-        else:
-            gap = np.array([near.gap(way) for way in x]) if self.cut_tips else near.gap(x)
-        if bounded:
             below = gap < minimum[uncertain]
             gap[below] += near._removed(x[below], np.nonzero(below)[1])
-        lowest_row, columns = gap.argmin(axis=0), np.arange(uncertain.size)
-        lower = gap[lowest_row, columns] < minimum[uncertain]
-        lowest[uncertain[lower]], minimum[uncertain[lower]] = (
-            x[lowest_row, columns][lower],
-            gap[lowest_row, columns][lower],
-        )
+        else:
+            gap = np.array([near.gap(way) for way in x]) if self.cut_tips else near.gap(x)
+        best = gap.argmin(axis=0), np.arange(uncertain.size)
+        lower = gap[best] < minimum[uncertain]
+        lowest[uncertain[lower]] = x[best][lower]
+        minimum[uncertain[lower]] = gap[best][lower]
         return lowest, minimum
 
     def about(self, x: FloatArray) -> Gap:
@@ -394,7 +388,8 @@ class _Flanks:
         an edge touches.
         """
         touch = self._touch
-        (off, error), (_, gap) = np.zeros((2, x.size)), shifted_gap(self.about(x), np.zeros(x.size))
+        off, error = np.zeros((2, x.size))
+        _, gap = shifted_gap(self.about(x), np.zeros(x.size))
         inside = np.flatnonzero(wavy & (gap.slope == 0.0) & (gap.low < 0.0) & (gap.high > 0.0))
         if not inside.size:
             return off, error, gap
@@ -407,12 +402,8 @@ class _Flanks:
             return np.where(beyond > 0.0, np.maximum(gap, plain), gap)
 
         touching_gap = self.gap(x)
-        strip = rough_strip(
-            within_flanks,
-            x[inside],
-            touch.curvature[inside],
-            self._largest_fall()[inside],
-        )
+        fall = self._largest_fall()[inside]
+        strip = rough_strip(within_flanks, x[inside], touch.curvature[inside], fall)
         gap = with_breaks(gap, BREAKS)
         even_gap = strip.gap._replace(low=gap.low[inside], high=gap.high[inside])
         even_gap = with_breaks(even_gap, gap.offset.shape[1])
@@ -464,8 +455,8 @@ class _Flanks:
         """
         near = _NEAR * self.step
         slope, next_slope = (
-            np.clip(flank_slope(self._pair, gear, self._designed, places, self.step), -STEEPEST, STEEPEST)
-            for places in (self._places(x), self._places(x + near))
+            np.clip(flank_slope(self._pair, gear, self._designed, s, self.step), -STEEPEST, STEEPEST)
+            for s in (self._places(x), self._places(x + near))
         )
         return np.where(at_edge, 0.0, slope), np.where(at_edge, 0.0, (next_slope - slope) / near)
 

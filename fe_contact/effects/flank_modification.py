@@ -15,15 +15,13 @@ from fe_contact.contact import Break
 from fe_contact.contact.model import ContactModel
 from fe_contact.effects.effect import ContactScene, Effect, Verdict
 from fe_contact.flank.extent import Extent
-from fe_contact.flank.part import FlankPart, ReliefStart
+from fe_contact.flank.part import FlankPart
 from fe_contact.flank.tooth import Tooth
 from fe_contact.geometry import FlankGrid, FlankModification, ParallelAxes
 from fe_contact.types import FloatArray
 
 _ALONG_PROFILE, _ALONG_FACE = 65, 33
-"""Numbers of points, along roll length and face, of the lattice by which parts are bounded. They are odd, so
-that the middles are points.
-"""
+"""Points of the lattice that bounds parts, along roll length and face; odd, so that middles are points."""
 _BETWEEN = 0.25
 """Largest departure of a part from its lattice over the second difference. A smooth part departs from the
 linear interpolant by an eighth, a part with a kink by up to a quarter.
@@ -55,9 +53,8 @@ class ModificationGap:
 
     def extent(self, pair: ParallelAxes) -> Extent:
         """Return the bounds of the gap, the sum of those of both flanks."""
-        return _modification_extent(
-            self.pinion, pair.pinion, pair.pinion.tip_form_roll_length
-        ) + _modification_extent(self.wheel, pair.wheel, pair.wheel.tip_form_roll_length)
+        on_pinion = _modification_extent(self.pinion, pair.pinion, pair.pinion.tip_form_roll_length)
+        return on_pinion + _modification_extent(self.wheel, pair.wheel, pair.wheel.tip_form_roll_length)
 
     def breaks(self, pair: ParallelAxes, face: FloatArray) -> tuple[Break, ...]:
         """Return the breaks of the gap: the beginnings of reliefs and of rounded or chamfered tips.
@@ -67,13 +64,13 @@ class ModificationGap:
         sides = ((pair.pinion, self.pinion, face), (pair.wheel, self.wheel, face - pair.axial_offset))
         return tuple(
             Break(
-                index,
-                gear.flank_coordinate(start.roll_length),
+                gear=index,
+                position=gear.flank_coordinate(start.roll_length),
                 # the tip of the pinion and the root of the wheel lie on the same side of the contact
-                1 if start.towards_tip == (index == 0) else -1,
-                start.jump,
-                start.bend,
-                start.ends_flank,
+                side=1 if start.towards_tip == (index == 0) else -1,
+                jump=start.jump,
+                bend=start.bend,
+                ends_flank=start.ends_flank,
             )
             for index, (gear, modification, position) in enumerate(sides)
             for start in modification.relief_starts(gear, position)
@@ -86,20 +83,15 @@ class ModificationGap:
 
         `face` counts from mid-face of the pinion.
         """
-        return self.pinion.material_removed(pair.pinion, roll_1, face) + self.wheel.material_removed(
-            pair.wheel, roll_2, face - pair.axial_offset
-        )
+        on_pinion = self.pinion.material_removed(pair.pinion, roll_1, face)
+        return on_pinion + self.wheel.material_removed(pair.wheel, roll_2, face - pair.axial_offset)
 
 
 def _modification_extent(modification: FlankModification, gear: Tooth, tip_form: float) -> Extent:
     """Return the extent of the material that a modification removes from the usable flank of a gear.
 
-    It is the sum of the extents of the parts, as if all of them were deepest at one point.
-
-    Parameters
-    ----------
-    tip_form : float
-        Roll length at which the usable flank ends, m.
+    It is the sum of the extents of the parts, as if all of them were deepest at one point. The usable flank
+    ends at the roll length `tip_form`, m.
     """
     extents = (
         _part_extent(part, gear, tip_form)
@@ -112,7 +104,7 @@ def _modification_extent(modification: FlankModification, gear: Tooth, tip_form:
 
 def _part_extent(part: FlankPart, gear: Tooth, tip_form: float) -> Extent:
     """Bound a part by its values on a lattice, and by its slopes between the points."""
-    grid: FlankGrid | None = getattr(part, "flank_grid", None)
+    grid: FlankGrid | None = getattr(part, "flank_grid", None)  # only a free-form part has one
     if grid is not None:
         return grid.extent((gear.form_roll_length, gear.tip_roll_length))
     roll = np.linspace(gear.form_roll_length, tip_form, _ALONG_PROFILE)
@@ -121,15 +113,13 @@ def _part_extent(part: FlankPart, gear: Tooth, tip_form: float) -> Extent:
     bends = (np.abs(np.diff(removed, 2, axis=axis)).max() for axis in (0, 1))
     between = _BETWEEN * float(sum(bends))
     secant = np.abs(np.diff(removed, axis=0)).max() / abs(roll[1] - roll[0])
-    begin = max((_start_slope(start, gear) for start in part.relief_starts(gear, 0.0)), default=0.0)
     bend = np.abs(np.diff(removed, 2, axis=0)).max() / abs(roll[1] - roll[0])
+    slope = float(secant + bend)
+    for start in part.relief_starts(gear, 0.0):  # the slope over the roll length with which a relief begins
+        jump = np.max(np.abs(start.jump)) * np.max(start.roll_length) / gear.base_radius
+        slope = max(slope, float(jump))
     low, high = float(removed.min()) - between, float(removed.max()) + between
-    return Extent(low, high, max(float(secant + bend), begin))
-
-
-def _start_slope(start: ReliefStart, gear: Tooth) -> float:
-    """Return the slope with which a relief begins over the roll length."""
-    return float(np.max(np.abs(start.jump)) * np.max(start.roll_length) / gear.base_radius)
+    return Extent(low, high, slope)
 
 
 @dataclass(frozen=True)
@@ -187,11 +177,8 @@ class LeadModification(Effect):
 
     def across_face(self, scene: ContactScene) -> str | None:
         """Return the reason for a model over the face, a lead modification; None: there is none."""
-        return (
-            "lead modification"
-            if any(gear.modification.varies_along_face for gear in scene.gears.values())
-            else None
-        )
+        varies = any(gear.modification.varies_along_face for gear in scene.gears.values())
+        return "lead modification" if varies else None
 
     def without(self, scene: ContactScene) -> ContactScene:
         """Return the scene with plain leads."""

@@ -67,32 +67,25 @@ class PitchError(Effect):
 
     def called_for(self, scene: ContactScene) -> Verdict:
         """Call for the effect where a tooth of either gear has a pitch deviation."""
-        erring = [
-            (name, gear.pitch_deviation)
-            for name, gear in scene.gears.items()
-            if not gear.pitch_deviation.neutral
+        deviations = {name: gear.pitch_deviation for name, gear in scene.gears.items()}
+        figures = [
+            f"{name} f_p {1e6 * deviation.single:.3g} µm, F_p {1e6 * deviation.total:.3g} µm"
+            for name, deviation in deviations.items()
+            if not deviation.neutral
         ]
-        if not erring:
+        if not figures:
             return Verdict(False, "no tooth has a pitch deviation", neutral=True)
-        figures = ", ".join(
-            f"{name} f_p {1e6 * error.single:.3g} µm, F_p {1e6 * error.total:.3g} µm"
-            for name, error in erring
-        )
-        return Verdict(True, f"{figures}, over {_period(scene)} base pitches")
+        return Verdict(True, f"{', '.join(figures)}, over {_period(scene)} base pitches")
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         """Add the gap of both gears' teeth."""
         if all(gear.pitch_deviation.neutral for gear in scene.gears.values()):
             return model
-        # a tooth that is ahead by its deviation touches earlier: its gap is negative
-        late = (
-            -gear.pitch_deviation.on_line_of_action(gear.transverse_pressure_angle)
-            for gear in scene.gears.values()
-        )
-        gaps = (
-            PitchGap(index, tuple(deviations.tolist()), _period(scene))
-            for index, deviations in enumerate(late)
-        )
+        gaps = []
+        for index, gear in enumerate(scene.gears.values()):
+            # a tooth that is ahead by its deviation touches earlier: its gap is negative
+            gap = -gear.pitch_deviation.on_line_of_action(gear.transverse_pressure_angle)
+            gaps.append(PitchGap(index, tuple(gap.tolist()), _period(scene)))
         return replace(model, tooth_gaps=(*model.tooth_gaps, *gaps))
 
     def without(self, scene: ContactScene) -> ContactScene:

@@ -41,17 +41,17 @@ class SeatCompliance:
 
 
 def _reactions(shaft: Shaft) -> tuple[FloatArray, FloatArray]:
-    """Reactions of either bearing to a unit force and a unit moment at the seat."""
+    """Return the reactions of both bearings to a unit force and to a unit moment at the seat."""
     share = shaft.position / shaft.length
     return np.array([share - 1.0, 1.0 / shaft.length]), np.array([-share, -1.0 / shaft.length])
 
 
 def _section(shaft: Shaft, low: float, high: float, bending: float, shear: float) -> FloatArray:
-    """Flexibility of the part of the shaft from `low` to `high`, on which the moment is linear."""
+    """Return the flexibility of the shaft from `low` to `high`, a part on which the moment is linear."""
     first, second = _reactions(shaft)
     middle = 0.5 * (low + high)
-    force = np.zeros(2)
-    constant = np.zeros(2)  # moment = constant + force x
+    # shear force and moment (= constant + force x) by the loads on the left: unit force and unit moment
+    force, constant = np.zeros(2), np.zeros(2)
     for position, load in ((0.0, first), (shaft.length, second), (shaft.position, np.array([1.0, 0.0]))):
         if middle > position:
             force, constant = force + load, constant - position * load

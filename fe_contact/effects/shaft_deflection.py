@@ -39,7 +39,7 @@ class ShaftDeflection(Effect):
         return replace(model, compliances=(*model.compliances, _term(scene)))
 
     def across_face(self, scene: ContactScene) -> str | None:
-        """Say so where there is one."""
+        """Return the reason for a model over the face, a flexible shaft; None: there is none."""
         return "shafts that bend" if any(scene.pair.shafts) else None
 
     def without(self, scene: ContactScene) -> ContactScene:
@@ -53,11 +53,12 @@ def _term(scene: ContactScene) -> ShaftCompliance:
 
 
 def _skew(scene: ContactScene) -> float:
-    """Growth of the gap over the face in m, for an even load at the pitch point."""
+    """Return the growth of the gap over the face in m, for an even load at the pitch point."""
     pair = scene.pair
     half = 0.5 * pair.face_width
     face = pair.common_face_center + np.array([-half, 0.0, half])
     roll_1, roll_2 = (np.full((1, 3), float(roll)) for roll in pair.roll_lengths(0.0))
     force = float(pair.normal_force(scene.torque.max())) / math.cos(pair.base_helix_angle)
+    # at both ends and the middle of the face, by the force in the middle
     deflection = force * _term(scene)(pair, roll_1, roll_2, face)[0, :, 1]
     return float(deflection[2] - deflection[0])

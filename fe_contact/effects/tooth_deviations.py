@@ -13,14 +13,9 @@ from fe_contact.contact.touch import STEP
 from fe_contact.effects.effect import ContactScene, Effect, Verdict
 from fe_contact.effects.turning_gap import TurningGap
 from fe_contact.errors import InputError
-from fe_contact.geometry import (
-    NO_RUN_OUT,
-    ParallelAxes,
-    Toothing,
-    deviations_period,
-)
+from fe_contact.geometry import NO_RUN_OUT, ParallelAxes, Toothing, deviations_period
 
-_PLACES = 513
+_POINTS = 513
 """Number of points of the path of contact at which surfaces are sampled."""
 
 
@@ -52,7 +47,7 @@ class ToothDeviations(Effect):
         return replace(model, tooth_gaps=(*model.tooth_gaps, *gaps))
 
     def across_face(self, scene: ContactScene) -> str | None:
-        """Wobble, waves inclined to the contact lines, and flanks of teeth that vary along the face."""
+        """Name wobble, waves inclined to the contact lines, and flanks of teeth that vary along the face."""
         causes = dict.fromkeys(text for gear in scene.gears.values() for text in _across_face(gear).values())
         return " and ".join(causes) or None
 
@@ -63,7 +58,7 @@ class ToothDeviations(Effect):
                 raise InputError(f"{name}.{field}", text, "none for a plane model", "Use the 3-D model.")
 
     def without(self, scene: ContactScene) -> ContactScene:
-        """Return the scene of gears without them."""
+        """Return the scene of gears without these deviations."""
         return scene.with_gears(lambda _: {"run_out": NO_RUN_OUT, "waves": (), "tooth_flanks": ()})
 
 
@@ -88,10 +83,10 @@ def sharpest_crest(pair: ParallelAxes) -> float:
 def _hollow_surface(pair: ParallelAxes, index: int) -> float:
     """Return the largest hollow curvature of measured surfaces of a gear over that of the plain flanks.
 
-    It is a second difference over the points at `STEP` from each other: both ends and the middle of a strip.
+    The curvature is a second difference over both ends and the middle of a strip, `STEP` from each other.
     """
     gear = (pair.pinion, pair.wheel)[index]
-    roll_1 = np.linspace(pair.path_of_contact.start, pair.path_of_contact.end, _PLACES)
+    roll_1 = np.linspace(pair.path_of_contact.start, pair.path_of_contact.end, _POINTS)
     roll = roll_1 if index == 0 else pair.mating_roll_length(roll_1)
     curvature = pair.relative_curvature(roll_1)
     strip = STEP / curvature

@@ -22,6 +22,8 @@ _FACE = Direction.FACE
 
 @dataclass(frozen=True, kw_only=True)
 class _OneSidedRelief(FaceRelief):
+    """Relief at one end of the face: `_side` is the sign of the face positions there."""
+
     _side: ClassVar[int]
 
     def _outwards(self, face_position: FloatArray) -> FloatArray:
@@ -70,12 +72,12 @@ class _HelixSlope(Polynomial):
         5e-6,
     )
     powers: ClassVar[tuple[int, int]] = (0, 1)
-    weight: ClassVar[float] = 0.5
+    weight: ClassVar[float] = 0.5  # from -1 to 1 over the face: half the figure at either end
 
 
 @dataclass(frozen=True, kw_only=True)
 class _HelixForm(Polynomial):
-    """Form deviation f_fbeta of all teeth alike, as that of single teeth: its mean line is zero."""
+    """Form deviation f_fbeta that all teeth share: a parabola whose mean line over the face is zero."""
 
     helix_form: float = slope(
         _FACE,

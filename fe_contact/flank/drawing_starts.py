@@ -41,9 +41,7 @@ class _Way:
     """Largest value, in SI."""
     of_roll_length: Callable[[float, float], float]
     roll_length: Callable[[float, float], float]
-    """`of_roll_length`, `roll_length`: Functions of the base radius, m, and a roll length or the named value;
-    each returns the other one.
-    """
+    """`of_roll_length`, `roll_length`: Conversions at a base radius, m, to the named value and back."""
 
 
 WAYS = {
@@ -54,9 +52,7 @@ WAYS = {
         lambda base, roll: 2.0 * radius_at_roll_length(base, roll),
         lambda base, diameter: roll_length_at_radius(base, max(base, 0.5 * diameter)),
     ),
-    "start_roll_length": _Way(
-        "roll length", "m", 10.0, lambda _, roll: roll, lambda _, roll_length: roll_length
-    ),
+    "start_roll_length": _Way("roll length", "m", 10.0, lambda _, roll: roll, lambda _, roll: roll),
     "start_roll_angle": _Way(
         "roll angle", "rad", 2.0 * math.pi, lambda base, roll: roll / base, lambda base, angle: base * angle
     ),
@@ -94,13 +90,13 @@ class DrawingStarts:
     def lengths(self, modification: Mapping[str, Any], gear: Callable[[], Tooth]) -> dict[str, float]:
         """Return the lengths of the reliefs whose start is stated, by their field of `FlankModification`, m.
 
-        `modification`: the fields that are stated of it, in m; `gear` makes the gear, where one is needed.
+        `modification` has the stated fields, in m; `gear` makes the gear, where one is needed.
         Raises `InputError`: a relief has both length and start, or two starts, or acts without any; a start
         is beside the involute.
         """
         starts = {relief: self._start_of(relief, modification) for relief in RELIEFS}
         return {
-            f"{relief}_length": _along_radius(gear(), f"{relief}_{way}", value)
+            f"{relief}_length": relief_length(gear(), f"{relief}_{way}", value)
             for relief, start in starts.items()
             for way, value in start.items()
         }
@@ -124,26 +120,20 @@ class DrawingStarts:
         return {by_field[field]: value for field, value in starts.items()}
 
 
-def relief_length(gear: Tooth, field: str, start: float) -> float:
-    """Return the length along the radius, m, of a relief that starts where a field of `DrawingStarts` says.
-
-    Raises `InputError`: the start is beside the involute.
-    """
-    return _along_radius(gear, field, start)
-
-
 def relief_start(gear: Tooth, field: str, length: float) -> float:
     """Return the value of a field of `DrawingStarts`, SI, where a relief of a length, m, starts."""
-    end, other = (gear.tip_radius, gear.form_radius)
-    if not field.startswith("tip"):
-        end, other = other, end
+    at_tip = field.startswith("tip")
+    end, other = (gear.tip_radius, gear.form_radius) if at_tip else (gear.form_radius, gear.tip_radius)
     radius = end + math.copysign(min(length, abs(other - end)), other - end)
     way = WAYS[field.partition("_relief_")[2]]
     return way.of_roll_length(gear.base_radius, roll_length_at_radius(gear.base_radius, radius))
 
 
-def _along_radius(gear: Tooth, field: str, value: float) -> float:
-    """Return the length in m along the radius of a relief that starts where a field states it."""
+def relief_length(gear: Tooth, field: str, start: float) -> float:
+    """Return the length along the radius, m, of a relief that starts where a field of `DrawingStarts` says.
+
+    Raises `InputError`: the start is beside the involute.
+    """
     at_tip = field.startswith("tip")
     way = WAYS[field.partition("_relief_")[2]]
     form, tip = (
@@ -160,9 +150,9 @@ def _along_radius(gear: Tooth, field: str, value: float) -> float:
         low_name=names[low],
         high_name=names[high],
     )
-    if not bound.holds(value):
-        raise InputError(f"modification.{field}", value, bound, _REMEDY)
-    radius = radius_at_roll_length(gear.base_radius, way.roll_length(gear.base_radius, value))
+    if not bound.holds(start):
+        raise InputError(f"modification.{field}", start, bound, _REMEDY)
+    radius = radius_at_roll_length(gear.base_radius, way.roll_length(gear.base_radius, start))
     length = abs(radius - (gear.tip_radius if at_tip else gear.form_radius))
     return min(max(length, SHORTEST), abs(gear.tip_radius - gear.form_radius))
 

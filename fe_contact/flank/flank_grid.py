@@ -15,15 +15,11 @@ from fe_contact.types import FloatArray
 
 _LARGEST = 0.01  # m; catches micrometers given as meters
 LARGEST_INVENTION = 0.1e-6
-"""Allowed distance of the surface from the range of the nodes around it, m, beyond what their curvature
-explains.
-"""
+"""Allowed distance of the surface from the range of its nodes, m, beyond what their curvature explains."""
 _CONFIRMING = 4
 """Neighboring second differences that confirm a curvature; three next to a border of five nodes."""
 _MAX_UNLIKE = 3.0
-"""Largest ratio of second differences that confirm a curvature. A parabola has 1; a flat between two reliefs
-has next to it several times its own curvature.
-"""
+"""Largest ratio of second differences that confirm a curvature: a parabola has 1, flats by reliefs more."""
 _STEEPEST = 3.0
 """Bound of the slope of a monotone cubic over that of its chord."""
 
@@ -89,18 +85,17 @@ class FlankGrid:
         return any(value != row[0] for row in self.removed for value in row)
 
     def material_removed(self, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:
-        """Material removed in m at roll lengths and face positions in m, arrays of equal shape."""
+        """Return the material removed in m at roll lengths and face positions in m, arrays of equal shape."""
         import host.analysis  # noqa: F401, PLC0415 (says what to install)
         from fe_contact.flank.bicubic import bicubic  # noqa: PLC0415 (loads the compiler)
 
-        flat = (np.ascontiguousarray(axis, dtype=float).ravel() for axis in (roll_length, face_position))
-        removed = bicubic(
-            np.array(self.roll_length), np.array(self.face_position), self.nodes.reshape(4, -1), *flat
-        )
+        points = (np.ascontiguousarray(axis, dtype=float).ravel() for axis in (roll_length, face_position))
+        axes = np.array(self.roll_length), np.array(self.face_position)
+        removed = bicubic(*axes, self.nodes.reshape(4, -1), *points)
         return np.asarray(removed.reshape(roll_length.shape))
 
     def extent(self, ends: tuple[float, float]) -> Extent:
-        """Bounds of the material removed of a gear whose usable profile has these `ends`, roll lengths in m.
+        """Return bounds of the material removed on a usable profile between the roll lengths `ends` in m.
 
         At the ends of the grid the slope drops to zero.
         """
@@ -112,13 +107,16 @@ class FlankGrid:
     def _extent(self) -> Extent:
         """The extent of a surface between its nodes.
 
-        It leaves them by no more than it is allowed to, and is at most three times as steep as the chord: it
-        would turn back. A cubic is most curved at one of the ends of its cell.
+        It leaves the range of its nodes by no more than it is allowed to. A monotone cubic is at most three
+        times as steep as its chord, and most curved at one of the ends of its cell.
         """
-        values, axes = np.array(self.removed), (np.array(self.roll_length), np.array(self.face_position))
-        heights = (float(np.max(_sagitta(values, axis, i))) for i, axis in enumerate(axes))
+        values, roll = np.array(self.removed), np.array(self.roll_length)
+        heights = (
+            float(np.max(_sagitta(values, axis, direction)))
+            for direction, axis in enumerate((roll, np.array(self.face_position)))
+        )
         between = 0.0 if self.neutral else LARGEST_INVENTION + sum(heights)
-        step, slope = np.diff(axes[0])[:, None], self.nodes[1]
+        step, slope = np.diff(roll)[:, None], self.nodes[1]
         rise = np.diff(values, axis=0)
         bend = 6.0 * rise / step**2
         first = bend - (4.0 * slope[:-1] + 2.0 * slope[1:]) / step
@@ -155,7 +153,8 @@ def _slope(values: FloatArray, axis: FloatArray, direction: int) -> FloatArray:
     if len(secant) == 1:
         return np.moveaxis(np.repeat(secant, 2, axis=0), 0, direction)
     curvature = _curvature(secant, step)
-    before, after = secant + curvature * step, secant - curvature * step  # at the end, at the begin of cells
+    # slopes of a cell's parabola at its end, which lies before a node, and at its start, which lies after one
+    before, after = secant + curvature * step, secant - curvature * step
     bound = _lesser(before[:-1], after[1:])
     limit = np.maximum(3.0 * np.abs(_lesser(secant[:-1], secant[1:])), 1.5 * np.abs(bound))
     parabola = (step[1:] * secant[:-1] + step[:-1] * secant[1:]) / (step[:-1] + step[1:])
@@ -168,22 +167,24 @@ def _slope(values: FloatArray, axis: FloatArray, direction: int) -> FloatArray:
 def _end_slope(
     secant: FloatArray, inner: FloatArray, step: FloatArray, next_step: FloatArray, confirmed: FloatArray
 ) -> FloatArray:
-    """Slope at a border: that of the parabola, as confirmed or such that the surface does not turn back."""
+    """Return the slope at a border: the confirmed one, or that of the parabola, limited not to turn back."""
     parabola = secant + (secant - inner) * step / (step + next_step)
     return np.where(confirmed != secant, confirmed, _lesser(parabola, 3.0 * secant))
 
 
 def _curvature(secant: FloatArray, step: FloatArray) -> FloatArray:
-    """Half the second derivative in every cell: the lesser of those at its ends, 0 if unconfirmed."""
-    at_nodes = np.diff(secant, axis=0) / (step[:-1] + step[1:])
+    """Return half the second derivative in every cell: the lesser one of its ends, 0 if unconfirmed."""
+    at_nodes = np.diff(secant, axis=0) / (step[:-1] + step[1:])  # of inner nodes
     cells, nodes = len(secant), len(at_nodes)
     if nodes < _CONFIRMING - 1:
         return np.zeros_like(secant)
     count = min(_CONFIRMING, nodes)
+    # the nodes around each cell, from the one before its start, moved inwards at a border; (cells, count)
     around = np.clip(np.arange(cells) - 2, 0, nodes - count)[:, None] + np.arange(count)
     low, high = at_nodes[around].min(axis=1), at_nodes[around].max(axis=1)
-    alike = _MAX_UNLIKE * np.minimum(np.abs(low), np.abs(high)) > np.maximum(np.abs(low), np.abs(high))
-    ends = np.concatenate([at_nodes[:1], at_nodes, at_nodes[-1:]])
+    sizes = np.sort(np.abs([low, high]), axis=0)
+    alike = _MAX_UNLIKE * sizes[0] > sizes[1]
+    ends = np.concatenate([at_nodes[:1], at_nodes, at_nodes[-1:]])  # a border has that of the next node
     return np.where(alike & (low * high > 0.0), _lesser(ends[:-1], ends[1:]), 0.0)
 
 
@@ -198,21 +199,17 @@ def _beyond(nodes: FloatArray, roll: FloatArray, face: FloatArray) -> FloatArray
     weights = [_hermite_weights(at, axis) for axis in (roll, face)]
     value, along_roll, along_face, mixed = nodes
     ends = np.stack([[value, along_face], [along_roll, mixed]])  # (order in roll, in face, m, n)
-    corners = np.stack([[_corner(ends, a, b) for b in (0, 1)] for a in (0, 1)])
+    m, n = value.shape
+    # ends a, b of cell i, j and orders p, q along roll and face: (a, b, p, q, i, j); points k, l in a cell
+    corners = np.stack([[ends[..., a : m - 1 + a, b : n - 1 + b] for b in (0, 1)] for a in (0, 1)])
     surface = np.einsum("kapi,lbqj,abpqij->klij", *weights, corners, optimize=True)
     values = corners[:, :, 0, 0].reshape(4, *surface.shape[2:])
     out = np.maximum(surface.max((0, 1)) - values.max(0), values.min(0) - surface.min((0, 1)))
     return np.asarray(out - _sagitta(value, roll, 0) - _sagitta(value, face, 1))
 
 
-def _corner(ends: FloatArray, a: int, b: int) -> FloatArray:
-    """Return the nodal data at one corner of every cell."""
-    m, n = ends.shape[-2:]
-    return ends[..., a : m - 1 + a, b : n - 1 + b]
-
-
 def _hermite_weights(at: FloatArray, axis: FloatArray) -> FloatArray:
-    """Weights (points, end, value or slope, cells) of the cubic Hermite interpolant."""
+    """Return weights (points, end, value or slope, cells) of the cubic Hermite interpolant."""
     step, back = np.diff(axis), 1.0 - at
     value = np.stack([(1.0 + 2.0 * at) * back**2, at**2 * (3.0 - 2.0 * at)], axis=1)
     slope = np.stack([at * back**2, -back * at**2], axis=1)
@@ -220,9 +217,9 @@ def _hermite_weights(at: FloatArray, axis: FloatArray) -> FloatArray:
 
 
 def _sagitta(values: FloatArray, axis: FloatArray, direction: int) -> FloatArray:
-    """Return the height of the parabola over the chord in each cell, m, the higher of both sides."""
+    """Return the height of the parabola over the chord in each cell, m: the higher of two opposite sides."""
     if len(axis) < 3:
-        return np.zeros(())
+        return np.zeros(())  # two nodes: a straight line
     along = np.moveaxis(values, direction, 0)
     step = np.diff(axis)[:, None]
     height = 0.25 * step**2 * np.abs(_curvature(np.diff(along, axis=0) / step, step))

@@ -41,9 +41,10 @@ _DEFAULTS = {kind: (kind(), {entry.name: entry.default for entry in fields(kind)
 @dataclass_transform(frozen_default=True, kw_only_default=True)
 def _of_all_parts(kind: type[Flank]) -> type[Flank]:
     """Make a dataclass with the fields of all parts, which declare them."""
-    for entry in (entry for part in PARTS for entry in fields(part)):
-        kind.__annotations__[entry.name] = entry.type
-        setattr(kind, entry.name, field(default=entry.default, metadata=entry.metadata))
+    for part in PARTS:
+        for entry in fields(part):
+            kind.__annotations__[entry.name] = entry.type
+            setattr(kind, entry.name, field(default=entry.default, metadata=entry.metadata))
     return dataclass(frozen=True, kw_only=True)(kind)
 
 
@@ -62,7 +63,11 @@ class FlankModification(_Figures):
     @cached_property
     def parts(self) -> tuple[FlankPart, ...]:
         """The modifications one by one."""
-        return tuple(_part(self, kind) for kind in PARTS)
+        parts = []
+        for kind, (plain, default) in _DEFAULTS.items():
+            values = {name: getattr(self, name) for name in default}
+            parts.append(plain if values == default else kind(**values))
+        return tuple(parts)
 
     @cached_property
     def varies(self) -> Direction:
@@ -91,12 +96,12 @@ class FlankModification(_Figures):
 
     @cached_property
     def along_profile(self) -> FlankModification:
-        """The part that is the same all over the face."""
+        """The parts that are the same all over the face."""
         return _together(part for part in self.parts if Direction.FACE not in part.varies)
 
     @cached_property
     def along_face(self) -> FlankModification:
-        """The part that differs over the face; twisted or free, it varies along the profile too."""
+        """The parts that differ over the face; a twist and a free form vary along the profile, too."""
         return _together(part for part in self.parts if Direction.FACE in part.varies)
 
     def part_with(self, figure: str) -> FlankModification:
@@ -113,7 +118,7 @@ class FlankModification(_Figures):
             part.check_fits(gear)
 
     def tip_form_roll_length(self, gear: Tooth) -> float:
-        """Roll length in m at which the usable flank of `gear` ends and its tip's edge begins."""
+        """Return the roll length in m at which the usable flank of `gear` ends and its tip's edge begins."""
         ends = (float(start.roll_length) for start in self.relief_starts(gear) if start.ends_flank)
         return next(ends, gear.tip_roll_length)
 
@@ -145,7 +150,7 @@ class FlankModification(_Figures):
     def removed(self, gear: Tooth, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:
         """Return the sum over the parts, m: those of the profile, those of the face, then those of both.
 
-        The order of the sum is fixed, so that its rounding is.
+        The fixed order of the sum fixes its rounding.
         """
         removed = np.zeros(roll_length.shape)
         for direction in (Direction.PROFILE, Direction.FACE):
@@ -175,22 +180,15 @@ FLANK_FIELDS = declarations(FlankModification)
 
 def fields_of(*kinds: Kind) -> tuple[str, ...]:
     """Return the fields of a modification that are of one of these kinds."""
-    return tuple(name for name, fact in FLANK_FIELDS.items() if fact.kind in kinds)
-
-
-def _part(modification: FlankModification, kind: type[FlankPart]) -> FlankPart:
-    plain, default = _DEFAULTS[kind]
-    values = {name: getattr(modification, name) for name in default}
-    return plain if values == default else kind(**values)
-
-
-def _part_fields(part: FlankPart) -> dict[str, Any]:
-    return {name: getattr(part, name) for name in _DEFAULTS[type(part)][1]}
+    return tuple(name for name, declaration in FLANK_FIELDS.items() if declaration.kind in kinds)
 
 
 def _together(parts: Iterable[FlankPart]) -> FlankModification:
-    fields_of_parts = (_part_fields(part) for part in parts)
-    return FlankModification(**{name: value for values in fields_of_parts for name, value in values.items()})
+    values: dict[str, Any] = {}
+    for part in parts:
+        _, default = _DEFAULTS[type(part)]
+        values |= {name: getattr(part, name) for name in default}
+    return FlankModification(**values)
 
 
 UNMODIFIED = FlankModification()

@@ -100,9 +100,9 @@ class _CornerRelief(ProfileRelief):
         """See `FlankPart.relief_starts`; beyond the end of the triangle jump and bend are zero."""
         start, end = self._span(gear)
         inset = self._inset(gear, np.asarray(face_position))
-        reached = np.abs(inset) < abs(end - start)
+        inside_triangle = np.abs(inset) < abs(end - start)
         begin = self._begins(gear, np.clip(start + inset, *involute(gear)), end - start)
-        jump, bend = (np.where(reached, value, 0.0) for value in (begin.jump, begin.bend))
+        jump, bend = (np.where(inside_triangle, value, 0.0) for value in (begin.jump, begin.bend))
         return (ReliefStart(begin.roll_length, begin.towards_tip, jump, bend),)
 
     def _inset(self, gear: Tooth, face_position: FloatArray) -> FloatArray:
@@ -157,7 +157,7 @@ class _FreeForm(FlankPart):
 
     @cached_property
     def varies(self) -> Direction:
-        """Along the profile if anything is removed, along the face if any row differs along it."""
+        """Directions: the profile if anything is removed, the face if any row differs along it."""
         if self.flank_grid is None or self.flank_grid.neutral:
             return Direction.NONE
         across = Direction.FACE if self.flank_grid.varies_along_face else Direction.NONE
@@ -193,11 +193,5 @@ def check_reach(grid: FlankGrid, gear: Tooth) -> None:
         raise InputError(f"flank_grid.removed[{i}][{j}]", float(removed[i, j]), bound, remedy)
 
 
-class OverFlank(
-    _FlankTwist,
-    _GroundHelixCrowning,
-    _TriangularTipRelief,
-    _TriangularRootRelief,
-    _FreeForm,
-):
+class OverFlank(_FlankTwist, _GroundHelixCrowning, _TriangularTipRelief, _TriangularRootRelief, _FreeForm):
     """All modifications over the whole flank. The order of the bases is the order of their fields."""

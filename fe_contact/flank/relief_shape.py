@@ -14,8 +14,7 @@ from fe_contact.types import FloatArray
 Shape = Literal["linear", "parabolic", "circular", "exponential", "logarithmic"]
 """Names of the shapes, as in REXS 2.0 (attribute ``shape_of_relief``)."""
 
-
-_GROWTH = math.e - 1.0
+_GROWTH = math.e - 1.0  # scales the exponential and the logarithm to a depth of 1 at the end
 
 
 @dataclass(frozen=True)
@@ -27,15 +26,15 @@ class ReliefShape:
     slope: float
     """Derivative of the depth where it starts; 0 = tangential."""
     bend: Callable[[float], float]
-    """Second derivative there, of the ratio."""
+    """Second derivative where it starts, as a function of the ratio."""
 
     def __call__(self, fraction: FloatArray, ratio: float) -> FloatArray:
-        """Relative depth at fractions of the length: 0 before it starts, 1 from its end on."""
+        """Return the relative depth at fractions of the length: 0 before it starts, 1 from its end on."""
         return self.depth(np.minimum(np.maximum(fraction, 0.0), 1.0), ratio)
 
 
 def _arc(fraction: FloatArray, ratio: float) -> FloatArray:
-    """Arc of a circle of radius (1 + ratio^2) / (2 ratio) lengths, in a form that holds for a flat one."""
+    """Return the depth of a circle of radius (1 + ratio^2) / (2 ratio) lengths, valid for ratio 0, too."""
     diameter = 1.0 + ratio**2
     rise = np.sqrt(diameter**2 - (2.0 * ratio * fraction) ** 2)
     return np.asarray(2.0 * fraction**2 / (diameter + rise))

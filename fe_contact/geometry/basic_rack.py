@@ -52,23 +52,17 @@ class BasicRack:
 
     def __post_init__(self) -> None:
         declared_fields(self)
-        self._refuse_large_root_radius()
-
-    def _refuse_large_root_radius(self) -> None:
-        """Refuse a rounding larger than the full fillet, and a tooth space without a root."""
         limit = self.full_fillet_coefficient
         if limit < 0.0:
             crossing = "smaller: the flanks of the rack's tooth space cross above its root"
             remedy = "Lower the dedendum or the pressure angle."
-            raise InfeasibleGeometry(
-                "root radius", "dedendum_coefficient", self.dedendum_coefficient, crossing, remedy
-            )
-        if self.root_radius_coefficient > limit + 1e-12:  # the full fillet itself is allowed, to rounding
+            dedendum = self.dedendum_coefficient
+            raise InfeasibleGeometry("root radius", "dedendum_coefficient", dedendum, crossing, remedy)
+        radius = self.root_radius_coefficient
+        if radius > limit + 1e-12:  # the full fillet itself is allowed, to rounding
             bound = at_most(limit, note=", the full fillet")
             remedy = "Lower the root radius, the dedendum or the pressure angle."
-            raise InfeasibleGeometry(
-                "root radius", "root_radius_coefficient", self.root_radius_coefficient, bound, remedy
-            )
+            raise InfeasibleGeometry("root radius", "root_radius_coefficient", radius, bound, remedy)
 
     @property
     def full_fillet_coefficient(self) -> float:

@@ -5,18 +5,22 @@ from __future__ import annotations
 from fe_contact.geometry.parallel_axes import ParallelAxes
 
 BENDING_SHARE = 0.72
-"""Excess of the mean in plane stress over plane strain, in parts of that of the moduli, nu^2/(1 - nu^2):
-contact has none."""
+"""Excess of the mean STE in plane stress over plane strain, over the excess of the moduli, nu^2/(1 - nu^2).
+It is below 1 since the local contact has no such excess.
+"""
 
-TOOTH_DECAY, BODY_DECAY = 3.2, 0.42
-"""Face width in modules at which half is left: of teeth; of teeth with bodies over z^0.75, z the geometric
-mean of the teeth."""
+TOOTH_DECAY = 3.2
+"""Face width in modules at which half of the excess of teeth is left."""
+BODY_DECAY = 0.42
+"""The same of teeth with bodies, over z^0.75 with the geometric mean z of the numbers of teeth."""
 
-CORRECTION_ERROR, INTERNAL_CORRECTION_ERROR = 0.03, 0.05
-"""Error of the correction of STE that is computed for a finite width, over the correction: of external and of
-internal pairs. The largest seen of mean, peak-to-peak and harmonics of external pairs (docs/lab/index.md,
-"Constants") is 0.033, of peak-to-peak at a face of 1.2 modules, of which the mesh covers its part. A coarse
-mesh and the even load make the correction of an internal pair of 5 modules 0.02 to 0.042 too small."""
+CORRECTION_ERROR = 0.03
+"""Error of the computed correction of STE for a finite width, over the correction, of external pairs. The
+largest of mean, peak-to-peak and harmonics (docs/lab/index.md, "Constants") is 0.033, of peak-to-peak at a
+face of 1.2 modules; the error of the mesh covers part of it.
+"""
+INTERNAL_CORRECTION_ERROR = 0.05
+"""The same of internal pairs: a coarse mesh and the even load cost 0.02 to 0.042 at a face of 5 modules."""
 
 
 def correction_error(pair: ParallelAxes) -> float:
@@ -28,9 +32,9 @@ def finite_width_excess(pair: ParallelAxes) -> tuple[float, float]:
     """Estimate the relative excess of mean and peak-to-peak STE of a spur pair over those in plane strain.
 
     The ends of the face are free, so a narrow gear is in plane stress and a very wide one in plane strain.
-    The mean has the bodies, too, which are larger than the teeth; peak-to-peak, that of usual flanks, has the
-    teeth alone. Within 15 and 20 % of finite elements on 30 pairs, faces of 1.25 to 30 modules, internal
-    ones included; what a result is corrected by is computed (docs/effects.md#finite_width).
+    Teeth and bodies make the mean; the teeth alone make peak-to-peak, on usual flanks. The estimates are
+    within 15 and 20 % of finite elements on 30 external and internal pairs with faces of 1.25 to 30 modules.
+    The correction of a result is not this estimate but computed (docs/effects.md#finite_width).
     """
     modules, moduli = pair.face_width / pair.pinion.normal_module, _moduli(pair)
     body = BODY_DECAY * (pair.pinion.teeth * abs(pair.wheel.teeth)) ** 0.375

@@ -17,6 +17,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import NamedTuple
 
 from bounds.pitch_tolerance import RUN_OUT_SHARE, cumulative_pitch_of_class
 from fe_contact.errors import InputError, integer, within
@@ -29,83 +30,74 @@ NO_CLEARANCE = (0.0, 0.0)
 
 
 def single_pitch_tolerance(gear: Toothing, tolerance_class: int) -> float:
-    """f_pT in m: formula (5) of 5.3.2, 0.001 d + 0.4 m_n + 5 um of class 5, d and m_n in mm."""
-    module, diameter, _ = _sizes(gear)
-    return _of_class(0.001 * diameter + 0.4 * module + 5.0, tolerance_class)
+    """Return the single pitch tolerance f_pT in m: formula (5) of 5.3.2."""
+    return _of_class(_class_5(gear).single_pitch, tolerance_class)
 
 
 def cumulative_pitch_tolerance(gear: Toothing, tolerance_class: int) -> float:
-    """F_pT in m: formula (6) of 5.3.2, 0.002 d + 0.55 sqrt d + 0.7 m_n + 12 um of class 5."""
-    return _of_class(_cumulative_pitch(gear), tolerance_class)
+    """Return the cumulative pitch tolerance F_pT in m: formula (6) of 5.3.2."""
+    return _of_class(_class_5(gear).cumulative_pitch, tolerance_class)
 
 
 def run_out_tolerance(gear: Toothing, tolerance_class: int) -> float:
-    """F_rT in m: 0.9 F_pT, which is not rounded before (annex E)."""
-    return _of_class(RUN_OUT_SHARE * _cumulative_pitch(gear), tolerance_class)
+    """Return the run-out tolerance F_rT in m: 0.9 F_pT, which is not rounded before (annex E)."""
+    return _of_class(RUN_OUT_SHARE * _class_5(gear).cumulative_pitch, tolerance_class)
 
 
 def profile_slope_tolerance(gear: Toothing, tolerance_class: int) -> float:
-    """f_HalphaT in m: formula (7) of 5.3.3.1, 0.4 m_n + 0.001 d + 4 um of class 5, m_n and d in mm."""
-    return _of_class(_profile_slope(gear), tolerance_class)
+    """Return the profile slope tolerance f_HalphaT in m: formula (7) of 5.3.3.1."""
+    return _of_class(_class_5(gear).profile_slope, tolerance_class)
 
 
 def profile_form_tolerance(gear: Toothing, tolerance_class: int) -> float:
-    """f_falphaT in m: formula (8) of 5.3.3.2, 0.55 m_n + 5 um of class 5."""
-    return _of_class(_profile_form(gear), tolerance_class)
+    """Return the profile form tolerance f_falphaT in m: formula (8) of 5.3.3.2."""
+    return _of_class(_class_5(gear).profile_form, tolerance_class)
 
 
 def profile_tolerance(gear: Toothing, tolerance_class: int) -> float:
-    """F_alphaT in m: the root of the sum of squares of slope and form, neither of them rounded before."""
-    return _of_class(math.hypot(_profile_slope(gear), _profile_form(gear)), tolerance_class)
+    """Return F_alphaT in m: the root of the sum of squares of slope and form, neither rounded before."""
+    fifth = _class_5(gear)
+    return _of_class(math.hypot(fifth.profile_slope, fifth.profile_form), tolerance_class)
 
 
 def helix_slope_tolerance(gear: Toothing, tolerance_class: int) -> float:
-    """f_HbetaT in m: formula (10) of 5.3.4.1, 0.05 sqrt d + 0.35 sqrt b + 4 um of class 5, d and b in mm."""
-    return _of_class(_helix_slope(gear), tolerance_class)
+    """Return the helix slope tolerance f_HbetaT in m: formula (10) of 5.3.4.1."""
+    return _of_class(_class_5(gear).helix_slope, tolerance_class)
 
 
 def helix_form_tolerance(gear: Toothing, tolerance_class: int) -> float:
-    """f_fbetaT in m: formula (11) of 5.3.4.2, 0.07 sqrt d + 0.45 sqrt b + 4 um of class 5."""
-    return _of_class(_helix_form(gear), tolerance_class)
+    """Return the helix form tolerance f_fbetaT in m: formula (11) of 5.3.4.2."""
+    return _of_class(_class_5(gear).helix_form, tolerance_class)
 
 
 def helix_tolerance(gear: Toothing, tolerance_class: int) -> float:
-    """F_betaT in m: the root of the sum of squares of slope and form, neither of them rounded before."""
-    return _of_class(math.hypot(_helix_slope(gear), _helix_form(gear)), tolerance_class)
+    """Return F_betaT in m: the root of the sum of squares of slope and form, neither rounded before."""
+    fifth = _class_5(gear)
+    return _of_class(math.hypot(fifth.helix_slope, fifth.helix_form), tolerance_class)
 
 
-def _sizes(gear: Toothing) -> tuple[float, float, float]:
-    """Return m_n, d and b in mm."""
-    return 1e3 * gear.normal_module, 2e3 * gear.reference_radius, 1e3 * gear.face_width
+class _Class5(NamedTuple):
+    """Tolerances of class 5, not rounded, um."""
+
+    single_pitch: float
+    cumulative_pitch: float
+    profile_slope: float
+    profile_form: float
+    helix_slope: float
+    helix_form: float
 
 
-def _cumulative_pitch(gear: Toothing) -> float:
-    """Return the cumulative pitch tolerance of class 5, um."""
-    module, diameter, _ = _sizes(gear)
-    return cumulative_pitch_of_class(module, diameter)
-
-
-def _profile_slope(gear: Toothing) -> float:
-    """Return the profile slope tolerance of class 5, um."""
-    module, diameter, _ = _sizes(gear)
-    return 0.4 * module + 0.001 * diameter + 4.0
-
-
-def _profile_form(gear: Toothing) -> float:
-    """Return the profile form tolerance of class 5, um."""
-    return 0.55 * _sizes(gear)[0] + 5.0
-
-
-def _helix_slope(gear: Toothing) -> float:
-    """Return the helix slope tolerance of class 5, um."""
-    _, diameter, width = _sizes(gear)
-    return 0.05 * math.sqrt(diameter) + 0.35 * math.sqrt(width) + 4.0
-
-
-def _helix_form(gear: Toothing) -> float:
-    """Return the helix form tolerance of class 5, um."""
-    _, diameter, width = _sizes(gear)
-    return 0.07 * math.sqrt(diameter) + 0.45 * math.sqrt(width) + 4.0
+def _class_5(gear: Toothing) -> _Class5:
+    # m_n, d and b in mm
+    module, diameter, width = 1e3 * gear.normal_module, 2e3 * gear.reference_radius, 1e3 * gear.face_width
+    return _Class5(
+        single_pitch=0.001 * diameter + 0.4 * module + 5.0,
+        cumulative_pitch=cumulative_pitch_of_class(module, diameter),
+        profile_slope=0.4 * module + 0.001 * diameter + 4.0,
+        profile_form=0.55 * module + 5.0,
+        helix_slope=0.05 * math.sqrt(diameter) + 0.35 * math.sqrt(width) + 4.0,
+        helix_form=0.07 * math.sqrt(diameter) + 0.45 * math.sqrt(width) + 4.0,
+    )
 
 
 def _of_class(fifth: float, tolerance_class: int) -> float:
@@ -115,7 +107,9 @@ def _of_class(fifth: float, tolerance_class: int) -> float:
 
 def rounded(tolerance: float) -> float:
     """Round a tolerance in um: above 10 to whole ones, from 5 to halves, below to tenths (5.2.3)."""
-    parts = 1 if tolerance > 10.0 else 2 if tolerance >= 5.0 else 10
+    parts = 10  # of one um
+    if tolerance >= 5.0:
+        parts = 1 if tolerance > 10.0 else 2
     return math.floor(tolerance * parts + 0.5) / parts
 
 
@@ -172,11 +166,11 @@ def misalignment_range(
     """Return the misalignment of pairs of a class: axes that are not parallel, helix slopes, clearances.
 
     In the plane of action a deviation in the plane of the axes counts with the sine of the working pressure
-    angle, one out of it with the cosine. Over the face width the span of the bearings cancels: F_beta sin and
-    F_beta cos / 2, with the larger F_beta of the gears. The slope of a helix opens the flanks along the face
-    as a tilt does at the pitch point. A shaft in bearings with a clearance tilts by it over their span.
-    Raises `InputError`: no such class, a gear beyond the range of the standard, or a clearance without a
-    shaft.
+    angle, one out of it with the cosine. Over the face width the span of the bearings cancels: the two are
+    F_beta sin and F_beta cos / 2, with the larger F_beta of the gears. The slope of a helix opens the flanks
+    along the face as a tilt does at the pitch point. A shaft in bearings with a clearance tilts by the
+    clearance over their span. Raises `InputError`: no such class, a gear beyond the range of the standard, or
+    a clearance without a shaft.
 
     Parameters
     ----------

@@ -44,8 +44,8 @@ def find_form_point(
 
     Notes
     -----
-    With undercut, the fillet's upper end lies outside the tooth and its point on the base circle inside, so
-    the polar angles of fillet and involute at equal radius cross exactly once between.
+    With undercut, the fillet's upper end lies outside the tooth, and its point on the base circle inside. So
+    the polar angles of fillet and involute at equal radius cross exactly once between these points.
     """
     if tangent_roll_length >= 0.0:
         return FormPoint(tangent_roll_length, normal_pressure_angle, undercut=False)
@@ -64,7 +64,7 @@ def find_form_point(
     if radius(low) <= base_radius:  # an undercut below rounding error
         return FormPoint(0.0, low, undercut=False)
     at_base = brentq(lambda angle: radius(angle) - base_radius, low, high, xtol=1e-15, rtol=1e-15)
-    if outside(low) <= 0.0 or outside(at_base) >= 0.0:  # likewise
+    if outside(low) <= 0.0 or outside(at_base) >= 0.0:  # an undercut below rounding error
         return FormPoint(0.0, at_base, undercut=True)
     cut = brentq(outside, low, at_base, xtol=1e-15, rtol=1e-15)
     return FormPoint(roll_length_at_radius(base_radius, max(base_radius, radius(cut))), cut, undercut=True)

@@ -12,10 +12,10 @@ NARROWEST = 0.02  # seat in face widths
 
 
 def seat_compliance(gear: Toothing) -> float:
-    """Displacement along the line of action per normal force that rotation on an elastic seat adds, m/N.
+    """Return the displacement along the line of action per normal force by rotation on an elastic seat, m/N.
 
-    r_b^2 / k_torsion with k_torsion = r^2 w a k_t, a = 2 pi r or the width of a key: the gear turns as a
-    rigid body.
+    It is r_b^2 / k_torsion with k_torsion = r^2 w a k_t, where a is 2 pi r or the width of a key: the gear
+    turns as a rigid body.
     """
     key, modulus = gear.seat.key, gear.seat.tangential_foundation
     if modulus is None:

@@ -28,9 +28,7 @@ class _PrintedDigits:
     """The printed form of a quantity."""
 
     last: tuple[float, ...]
-    """Customary units of the last digit, m or 1. A sheet prints the first of them that all its values are
-    multiples of.
-    """
+    """Customary units of the last digit, m or 1. A sheet prints the first that divides all its values."""
     round_grid: float = 0.0
     """Grid of chosen values: its multiples are exact. 0: no grid."""
 

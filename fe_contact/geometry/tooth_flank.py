@@ -86,9 +86,9 @@ class ToothFlank:
     @cached_property
     def largest(self) -> float:
         """Bound of the deviation, m."""
-        grids = (abs(value) for grid in self._surface for row in grid.removed for value in row)
+        surface = (abs(value) for grid in self._surface for row in grid.removed for value in row)
         slopes = 0.5 * (abs(self.profile_slope) + abs(self.helix_slope))
-        return slopes + abs(self.profile_form) + abs(self.helix_form) + max(grids, default=0.0)
+        return slopes + abs(self.profile_form) + abs(self.helix_form) + max(surface, default=0.0)
 
     @property
     def shape(self) -> Hashable:
@@ -97,9 +97,9 @@ class ToothFlank:
 
     @property
     def hollow(self) -> float:
-        """Largest second derivative of slope and form by u of `coordinates` where the profile is hollow, m.
+        """Largest second derivative of the deviation by u of `coordinates` where the profile is hollow, m.
 
-        Slopes are straight; cosine waves have 0.5 (pi waves)^2 times the form, a hollow parabola twice it.
+        A slope has none, cosine waves have 0.5 (pi waves)^2 times the form, a hollow parabola twice the form.
         """
         waves = math.pi * self.profile_form_waves
         return 0.5 * waves**2 * abs(self.profile_form) if waves else 2.0 * max(-self.profile_form, 0.0)
@@ -114,6 +114,7 @@ class ToothFlank:
 
     @property
     def _surface(self) -> tuple[FlankGrid, ...]:
+        """The measured surface, or nothing where it is neutral."""
         return () if self.flank_grid is None or self.flank_grid.neutral else (self.flank_grid,)
 
 
@@ -146,7 +147,7 @@ def flanks_excess(
     tooth : ndarray of int
         Teeth in the order of meshing, the first is 0; those without an entry are as designed.
     roll_length, face : ndarray
-        Where on them, m; `face` from mid-face. All broadcast.
+        Points of these flanks, m; `face` from mid-face. All arrays broadcast.
     """
     return tooth_surfaces(gear, flanks).excess(tooth, roll_length, face)
 

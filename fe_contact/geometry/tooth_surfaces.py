@@ -26,10 +26,9 @@ class PackedGrids(NamedTuple):
     of_tooth: IntArray
     """Index of the surface of each tooth; -1: none. Shape (T,)."""
     sizes: IntArray
+    """Nodes of each surface along the profile, along the face, and in all. Shape (G, 3)."""
     starts: IntArray
-    """`sizes`, `starts`: Numbers of nodes along the profile, along the face and in all of each surface, and
-    index of its first entry in each of these arrays. Shape (G, 3) each.
-    """
+    """Index of the first entry of each surface in `roll`, in `face`, and along `nodes`. Shape (G, 3)."""
     roll: FloatArray
     face: FloatArray
     """`roll`, `face`: Axes of all surfaces, m."""
@@ -40,19 +39,17 @@ class PackedGrids(NamedTuple):
     def of(cls, grids: Sequence[FlankGrid | None]) -> PackedGrids:
         """Pack the surfaces of teeth in the order of meshing; None where a tooth has none."""
         measured = [grid for grid in grids if grid is not None]
-        number = np.cumsum([grid is not None for grid in grids]) - 1
-        of_tooth = np.where([grid is not None for grid in grids], number, -1)
+        has_grid = np.array([grid is not None for grid in grids], dtype=bool)
         shapes = [(len(grid.roll_length), len(grid.face_position)) for grid in measured]
         sizes = np.array([(m, n, m * n) for m, n in shapes], dtype=np.int64).reshape(-1, 3)
+        no_nodes = np.zeros((4, 0))  # where no tooth has a surface
         return cls(
-            of_tooth=of_tooth.astype(np.int64),
+            of_tooth=np.where(has_grid, np.cumsum(has_grid) - 1, -1).astype(np.int64),
             sizes=sizes,
             starts=np.cumsum(sizes, axis=0) - sizes,
             roll=np.array([roll for grid in measured for roll in grid.roll_length]),
             face=np.array([face for grid in measured for face in grid.face_position]),
-            nodes=np.concatenate(
-                [np.zeros((4, 0)), *(grid.nodes.reshape(4, -1) for grid in measured)], axis=1
-            ),
+            nodes=np.concatenate([no_nodes, *(grid.nodes.reshape(4, -1) for grid in measured)], axis=1),
         )
 
 
@@ -65,9 +62,7 @@ class ToothSurfaces:
     face_width: float
     """Face width of the gear, m."""
     amounts: FloatArray
-    """Slopes and forms of each tooth in the order of meshing, m, and the numbers of their waves. Shape (T,
-    6).
-    """
+    """Slope and form of the profile, m, waves of the form, and the same along the face. Shape (T, 6)."""
     grids: PackedGrids
     extents: Extent
     """Extents of the gaps by these flanks, arrays (T,): material missing, less material in excess."""
@@ -76,18 +71,16 @@ class ToothSurfaces:
 
     @classmethod
     def of(cls, gear: Tooth, amounts: FloatArray, grids: Sequence[FlankGrid | None]) -> ToothSurfaces:
-        """Lay out the `amounts` and the surfaces of teeth of a gear; those beyond them are as designed."""
+        """Lay out the `amounts` and the surfaces of the first teeth of a gear; others are as designed."""
         ends = gear.form_roll_length, gear.tip_roll_length
+        waves = amounts[:, 2]
         return cls(
             ends=ends,
             face_width=gear.face_width,
             amounts=amounts,
             grids=PackedGrids.of(grids),
             extents=_extents(ends, amounts, grids),
-            nodes=tuple(
-                profile_nodes(ends, *amount_and_grid)
-                for amount_and_grid in zip(amounts[:, 2], grids, strict=True)
-            ),
+            nodes=tuple(profile_nodes(ends, count, grid) for count, grid in zip(waves, grids, strict=True)),
         )
 
     def excess(self, tooth: IntArray, roll_length: FloatArray, face: FloatArray) -> FloatArray:
@@ -98,7 +91,7 @@ class ToothSurfaces:
         tooth : ndarray of int
             Teeth in the order of meshing, the first is 0.
         roll_length, face : ndarray
-            Where on them, m; `face` from mid-face. All broadcast.
+            Points of these flanks, m; `face` from mid-face. All arrays broadcast.
         """
         import host.analysis  # noqa: F401, PLC0415 (says what to install)
         from fe_contact.geometry.tooth_surface_loops import surfaces_excess  # noqa: PLC0415 (loads the compiler)
@@ -128,8 +121,9 @@ def _extents(ends: tuple[float, float], amounts: FloatArray, grids: Sequence[Fla
     """Return the extents (T,) of the gaps of teeth by their `amounts` (T, 6) and surfaces."""
     surfaces = [Extent() if grid is None else grid.extent(ends) for grid in grids]
     parts = (np.array([getattr(surface, field.name) for surface in surfaces]) for field in fields(Extent))
-    slope, helix = np.abs(amounts[:, 0]), np.abs(amounts[:, 3])
-    tilted, (_, form, waves) = 0.5 * (slope + helix), np.abs(amounts[:, :3]).T
+    slope, form, waves = np.abs(amounts[:, :3]).T
+    helix = np.abs(amounts[:, 3])
+    tilted = 0.5 * (slope + helix)
     profile, across = _form_ends(*amounts[:, 1:3].T), _form_ends(*amounts[:, 4:6].T)
     # the profile runs over 2: its form is steepest at the ends, or at a zero of its waves
     steep, phase = 2.0 / abs(ends[1] - ends[0]), math.pi * waves
@@ -145,6 +139,9 @@ def _extents(ends: tuple[float, float], amounts: FloatArray, grids: Sequence[Fla
 
 
 def _form_ends(height: FloatArray, waves: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the bounds of gaps by form deviations: their excess is 1/3 - u^2 of it, or half a cosine."""
+    """Return the bounds of gaps by form deviations.
+
+    A form without waves is (1/3 - u^2) `height` over -1 <= u <= 1, one with waves a cosine of half `height`.
+    """
     ends = np.where(waves > 0.0, [-0.5 * height, 0.5 * height], [-height / 3.0, 2.0 * height / 3.0])
     return ends.min(axis=0), ends.max(axis=0)

@@ -13,7 +13,7 @@ from fe_contact.material import Material
 
 
 def torsion_compliance(inner: float, outer: float, material: Material) -> float:
-    """Angle per moment between the edges of a disc, times its thickness: m rad / (N m).
+    """Return the angle per moment between the edges of a disc, times its thickness: m rad / (N m).
 
     The disc shears only: (1/r_i^2 - 1/r_o^2) / (4 pi G); radii in m.
     """
@@ -21,9 +21,9 @@ def torsion_compliance(inner: float, outer: float, material: Material) -> float:
 
 
 def shift_compliance(inner: float, outer: float, material: Material) -> float:
-    """Shift per force in the plane of a disc, between its rigid edges, times its thickness: m^2 / N.
+    """Return the shift per force in the plane of a disc between its edges, times its thickness: m^2 / N.
 
-    (kappa ln(r_o/r_i) - (r_o^2 - r_i^2) / (kappa (r_o^2 + r_i^2))) / (2 pi G (1 + kappa)), with
+    It is (kappa ln(r_o/r_i) - (r_o^2 - r_i^2) / (kappa (r_o^2 + r_i^2))) / (2 pi G (1 + kappa)), with
     kappa = (3 - nu) / (1 + nu); radii in m.
     """
     kappa = (3.0 - material.poissons_ratio) / (1.0 + material.poissons_ratio)
@@ -33,9 +33,9 @@ def shift_compliance(inner: float, outer: float, material: Material) -> float:
 
 
 def web_compliance(gear: Toothing) -> float:
-    """Compliance of the web of a gear beyond that of a solid body, along the line of action, m/N.
+    """Return the compliance of a web beyond that of a solid body, along the line of action, m/N.
 
-    A lower bound of what the blank adds: rim and hub are rigid here, and the force enters the web evenly.
+    It is a lower bound for the blank: rim and hub are rigid here, and the force enters the web evenly.
     """
     web = gear.web
     if web is None:

@@ -13,9 +13,9 @@ from fe_contact.types import FloatArray, IntArray
 
 RISE = 3  # groups of layers over which the thickness grows from an end to the middle
 
-TOLERATED = 0.3  # a part of the face that is longer than n groups of layers by less than this has n groups
+TOLERATED = 0.3  # groups by which a part of the face may be longer than its number of groups
 
-DIGITS = 12  # layers are equally thick if their thickness over the face width agrees in so many digits
+DIGITS = 12  # decimals of thickness over face width in which layers of one kind agree
 
 
 @dataclass(frozen=True)
@@ -23,9 +23,9 @@ class Layers:
     """Layers of elements over the face or its upper half; symmetric unless a web or a seat is not."""
 
     ends: FloatArray
-    """Axial positions of their ends, m; 0 is mid-face, increasing. Shape (L + 1,)."""
+    """Axial positions of the ends of layers, m; 0 is mid-face, increasing. Shape (L + 1,)."""
     kind: IntArray
-    """Layers of the same kind are equally thick, bit for bit. Shape (L,)."""
+    """Kind of each layer: layers of one kind are equally thick, bit for bit. Shape (L,)."""
     thickness: FloatArray
     """Thickness of each kind, m. Shape (kinds,)."""
 
@@ -55,8 +55,8 @@ def layers_across(
     """Divide `width` into `count` layers of which every `group` successive ones are equally thick.
 
     `group` divides `count`; a middle layer is `growth` times as thick as an end layer. A group ends at
-    each of `breaks`, increasing axial positions, m. Each part of the face has groups about as thick as
-    without them, and at least one; so there may be more than `count` layers.
+    each of `breaks`, increasing axial positions, m. Each part of the face between breaks has at least one
+    group, about as thick as without breaks; so there may be more than `count` layers.
     """
     if len(breaks):
         return _broken(width, width * group / count, group, growth, breaks)

@@ -34,9 +34,9 @@ if TYPE_CHECKING:
 
 RESET_BY_GMSH = ("SIGTERM", "SIGHUP", "SIGPIPE", "SIGINT")
 
-
+# numbers of gmsh: of a meshing algorithm, and of types of elements
 FRONTAL_DELAUNAY = 6
-QUADRILATERAL = 3
+TRIANGLE, QUADRILATERAL = 2, 3
 
 
 class _LibrarySearch(ModuleType):
@@ -106,7 +106,7 @@ def _grow_from(gmsh: Any, loops: list[list[list[float]]], tags: list[int], growt
 def _triangulate(
     gmsh: Any, loops: list[list[list[float]]], growth: float
 ) -> dict[str, list[list[float]] | list[list[int]]]:
-    """Mesh one region; points of the loops first."""
+    """Return the points and triangles of one region; points of the loops come first."""
     gmsh.clear()
     gmsh.model.add("region")
     added = [_add_loop(gmsh, loop) for loop in loops]
@@ -121,7 +121,7 @@ def _triangulate(
     for i, tag in enumerate(tags):
         number[int(tag)] = len(points)
         points.append([flat[3 * i], flat[3 * i + 1]])
-    corners = [number[int(tag)] for tag in gmsh.model.mesh.getElementsByType(2, surface)[1]]
+    corners = [number[int(tag)] for tag in gmsh.model.mesh.getElementsByType(TRIANGLE, surface)[1]]
     return {"points": points, "triangles": [corners[i : i + 3] for i in range(0, len(corners), 3)]}
 
 
@@ -147,10 +147,7 @@ def _fill_block(gmsh: Any, sides: list[list[list[float]]]) -> list[list[list[flo
 
 
 def _rows_above(bottom: list[int], quads: list[list[int]]) -> list[list[int]]:
-    """Order the nodes of a structured mesh in rows, walking up from the bottom one.
-
-    Relies on nothing but which quadrilaterals share a side.
-    """
+    """Order the nodes of a structured mesh in rows from the bottom up, by the sides that elements share."""
     neighbors: dict[frozenset[int], list[int]] = {}
     for number, quad in enumerate(quads):
         for a, b in zip(quad, quad[1:] + quad[:1], strict=True):
@@ -162,7 +159,8 @@ def _rows_above(bottom: list[int], quads: list[list[int]]) -> list[list[int]]:
         for a, b in zip(rows[-1], rows[-1][1:], strict=False):
             (number,) = set(neighbors[frozenset((a, b))]) - used
             used.add(number)
-            row += [_neighbor(quads[number], a, b)] if not row else []
+            if not row:
+                row.append(_neighbor(quads[number], a, b))
             row.append(_neighbor(quads[number], b, a))
         rows.append(row)
     return rows

@@ -21,7 +21,7 @@ from fe_contact.mesh.tooth_outline import LARGEST_ARC
 from fe_contact.mesh.tooth_sector import ToothSector
 from fe_contact.types import FloatArray, IntArray
 
-HALF = 0.5  # largest element of the plain ring, in parts of its thickness
+_ELEMENT_SHARE = 0.5  # largest element of a plain ring over the thickness of the ring
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ def _plain_rim(side: Piece, missing: int, pitch: float, inside: float, recipe: M
     x, y = side.nodes[-1]
     radius, length = float(np.hypot(x, y)), missing * pitch
     angle = float(np.arctan2(x, y))  # from the y axis, the middle of tooth 0, clockwise
-    largest = min(HALF * abs(1.0 - inside / radius), LARGEST_ARC)
+    largest = min(_ELEMENT_SHARE * abs(1.0 - inside / radius), LARGEST_ARC)
 
     def size(turned: FloatArray) -> FloatArray:
         distance = np.minimum(turned, length - turned)
@@ -93,17 +93,18 @@ def inner_rings(gear: Toothing, bottom_radius: float, recipe: MeshRecipe) -> tup
         thickness = [1.0, web.thickness / gear.face_width]
         if web.inner_radius > seat_radius:
             radii, thickness = [*radii, seat_radius], [*thickness, 1.0]
-    depths = [*(abs(a - b) for a, b in pairwise(radii)), np.inf]
     # a circle lies between two rings; none lies behind the last circle
-    return tuple(
-        _InnerRing(_divided_circle(radius, min(neighbors), abs(bottom_radius - radius), recipe), part)
-        for radius, neighbors, part in zip(radii[1:], pairwise(depths), thickness, strict=True)
-    )
+    depths = [*(abs(a - b) for a, b in pairwise(radii)), np.inf]
+    rings = []
+    for radius, neighbors, part in zip(radii[1:], pairwise(depths), thickness, strict=True):
+        circle = _divided_circle(radius, min(neighbors), abs(bottom_radius - radius), recipe)
+        rings.append(_InnerRing(circle, part))
+    return tuple(rings)
 
 
 def _divided_circle(radius: float, depth: float, distance: float, recipe: MeshRecipe) -> Outline:
     """Return a circle, clockwise; `depth` of the thinner ring beside it, `distance` from the sectors, m."""
-    size = min(recipe.body_size + recipe.growth * distance, HALF * depth)
+    size = min(recipe.body_size + recipe.growth * distance, _ELEMENT_SHARE * depth)
     step = min(size / radius, LARGEST_ARC)
     ends = divide(0.0, 2.0 * np.pi, lambda angle: np.full_like(angle, step))
     return Outline((piece("circle", arc(radius), ends),))
@@ -118,10 +119,11 @@ def joined_hub(
 ) -> Hub:
     """Join the meshes of the rings, from the sectors to the circle that the gear is held by.
 
-    Their boundary nodes get names. `toothed` is the outline that follows the sectors of `teeth` (t,), the
-    inner one where `sign` is -1; `thickness` is that of the rings over the face width.
+    `toothed` is the outline that follows the sectors of `teeth` (t,), the inner one where `sign` is -1 (ring
+    gear); `thickness` is that of the rings over the face width.
     """
-    mesh, parts = meshes[0], [np.full(len(meshes[0].triangles), thickness[0])]
+    mesh = meshes[0]
+    parts = [np.full(len(mesh.triangles), thickness[0])]
     for ring, thick in zip(meshes[1:], thickness[1:], strict=True):
         mesh = _joined(mesh, ring)
         parts.append(np.full(len(ring.triangles), thick))
@@ -145,14 +147,15 @@ def joined_hub(
 def _joined(outside: QuadraticMesh, inside: QuadraticMesh) -> QuadraticMesh:
     """Join two meshes along the inner boundary of `outside` and the outer boundary of `inside`.
 
-    The boundaries have the same nodes, `added` are the nodes of `inside` that are on none of them.
+    The two boundaries have the same nodes.
     """
+    seam = inside.boundary[0]
     added = np.ones(len(inside.points), dtype=bool)
-    added[inside.boundary[0]] = False
-    number = np.empty(len(added), dtype=np.int64)
+    added[seam] = False
+    number = np.empty(len(added), dtype=np.int64)  # of the nodes of `inside` in the joined mesh
     number[added] = len(outside.points) + np.arange(int(added.sum()))
     # the two run in opposite senses from the same node, which reversal makes the last and `roll` the first
-    number[inside.boundary[0]] = np.roll(outside.boundary[1][::-1], 1)
+    number[seam] = np.roll(outside.boundary[1][::-1], 1)
     return QuadraticMesh(
         points=np.concatenate([outside.points, inside.points[added]]),
         triangles=np.concatenate([outside.triangles, number[inside.triangles]]),

@@ -48,7 +48,8 @@ def quad_sector(gear: Toothing, recipe: SectorRecipe, limits: QualityLimits = QU
 def _sector_points(outline: SectorOutline, grid: SectorGrid) -> FloatArray:
     """Place all nodes: corners by gmsh, middles of inner sides between them, the rest on exact curves."""
     tooth, *body = fill_blocks(_blocks(outline), outline.profile.gear.normal_module)
-    points, number, low = np.empty((grid.nodes, 2)), grid.number, 2 * grid.body_rows
+    points, number = np.empty((grid.nodes, 2)), grid.number
+    low = 2 * grid.body_rows  # row of nodes at the split point; corners of elements are every other node
     # The blocks run from the bore up and from the right cut to the left one, as the grid does.
     points[number[: low + 1 : 2, ::2]] = np.concatenate([*(part[:-1] for part in body), body[-1][-1:]])
     stem = number[low:, 2 * grid.land : 2 * (grid.land + grid.across) + 1]
@@ -69,12 +70,13 @@ def _sector_points(outline: SectorOutline, grid: SectorGrid) -> FloatArray:
 def _blocks(outline: SectorOutline) -> list[Block]:
     """Return the tooth, and the body from the bore up, by corner points.
 
-    Their left is the loaded side, as in the grid. The body of a gear with a web is parted at its circles.
+    The body of a gear with a web is parted at its circles.
     """
     mirror = np.array([-1.0, 1.0])
     flank, cut = outline.right_flank[::2], outline.right_cut[::-2]
     rows = len(cut) - 1
-    levels = {0: outline.bore} | {rows + row: c for row, c in sorted(outline.circles.items())}
+    # upper edges of the parts by their row from the bore; circles count down from the split point
+    levels = {0: outline.bore} | {rows + row: circle for row, circle in sorted(outline.circles.items())}
     levels[rows] = outline.body_top
     blocks = [Block(outline.base[::2], flank * mirror, outline.tip[::2], flank)]
     for (low, bottom), (high, top) in pairwise(levels.items()):

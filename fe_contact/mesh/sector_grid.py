@@ -29,9 +29,7 @@ class SectorGrid:
 
     body_rows: int
     tooth_rows: int
-    """`body_rows`, `tooth_rows`: Rows of elements from the bore to the split point, and from the split point
-    to the tip.
-    """
+    """`body_rows`, `tooth_rows`: Rows of elements from the bore to the split point, and on to the tip."""
     land: int
     """Columns of elements of the land on each side of the tooth."""
     across: int

@@ -62,9 +62,7 @@ class SectorRecipe:
     """Elements along the fillet and root of the body: from the split point to the middle of the tooth space.
     """
     split: float = 0.5
-    """Position on the fillet of the split point, at which the tooth meets the body: 0 form point, 1 root. For
-    undercut teeth it is moved towards the root.
-    """
+    """Position of the split point on the fillet: 0 form point, 1 root; of undercut teeth nearer the root."""
     layer_growth: float = 1.5
     """Thickness of a middle layer over that of an end layer, >= 1."""
     merge_rows: tuple[int, ...] = (-2,)

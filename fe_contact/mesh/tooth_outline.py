@@ -37,7 +37,6 @@ class ToothOutline:
     """
 
     outline: Outline
-    """The loop."""
     s: FloatArray
     """Flank coordinates of the nodes of the piece ``flank``, root to tip, m. Shape (k,)."""
 
@@ -47,19 +46,19 @@ def tooth_outline(profile: ToothProfile, bottom_radius: float, recipe: MeshRecip
 
     `bottom_radius`: radius of the sector's lower end, away from the tip, m.
     """
-    end, bottom = profile.s_form - recipe.flank_margin, _fillet_end(profile, recipe)
-    s_low = end if end > bottom + SNAP * recipe.fillet_size else bottom
+    margin, fillet = profile.s_form - recipe.flank_margin, _fillet_end(profile, recipe)
+    s_low = margin if margin > fillet + SNAP * recipe.fillet_size else fillet
     ends = _flank_divisions(profile, s_low, recipe)
     flank = piece("flank", profile.flank, ends)
     surface = [*_root_pieces(profile, s_low, recipe), flank, _tip_piece(profile, recipe)]
-    inner = _inner_pieces(surface, 0.5 * profile.pitch_angle, bottom_radius, recipe)
+    bottom, side, center = _inner_pieces(surface, 0.5 * profile.pitch_angle, bottom_radius, recipe)
     s = np.empty(2 * len(ends) - 1)
     s[::2], s[1::2] = ends, middles(ends)  # corner and mid-side nodes in turn
-    return ToothOutline(Outline((*inner[:2], *surface, inner[2])), s)
+    return ToothOutline(Outline((bottom, side, *surface, center)), s)
 
 
 def _rim_limit(profile: ToothProfile, recipe: MeshRecipe, s: FloatArray) -> FloatArray:
-    """Return the largest element a thin rim admits: its thickness, growing away from the root."""
+    """Return the largest element that a thin rim admits: its thickness at the root, growing away from it."""
     gear = profile.gear
     thickness = max(gear.rim_thickness, THINNEST * gear.normal_module)
     return thickness + recipe.growth * np.maximum(s - profile.s_root, 0.0)

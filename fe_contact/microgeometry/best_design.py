@@ -1,4 +1,4 @@
-"""The best design of all searches, assessed by full analyses of it and of the design to begin with."""
+"""The best design of all searches, assessed by full analyses of this design and of the start design."""
 
 from __future__ import annotations
 
@@ -23,16 +23,13 @@ from model_studies.stage_clock import StageClock
 from model_studies.workers import InProcess, LocalFallback, Workers, WorkersLost, divided
 
 REFINED = 4
-"""Divisor of the number of designs in a further search. Such a search follows where the best design exceeds
-the limits in the full analysis, and adds the positions of that analysis.
+"""Number of designs of a search over that of a further search. A further search follows where the best design
+exceeds the limits in the full analysis; it adds the positions of that analysis.
 """
-
 
 ROUNDS = 3
-"""Most further searches. The full analysis of each new best design adds its positions to those of all
-searches before.
+"""Most further searches. Each adds the positions of the last full analysis to those of all searches before.
 """
-
 
 STEP = 0.05
 """Perturbation of the optimum over the range of a variable that does not scatter."""
@@ -40,13 +37,15 @@ STEP = 0.05
 
 @dataclass(frozen=True)
 class Choice:
-    """Start and optimum after full analyses; `runs[best]`, a search of `problem`, found the optimum."""
+    """Start and optimum after full analyses."""
 
     problem: DesignProblem
+    """Problem of the search that found the optimum."""
     start: ConfirmedDesign
     optimum: ConfirmedDesign
     runs: tuple[SearchRun, ...]
     best: int
+    """Index of the search that found the optimum, among the `runs`."""
 
     @property
     def run(self) -> SearchRun:
@@ -119,9 +118,9 @@ def _refined(
         method=SequentialLinearProgramming(sample=0),
         evaluations=max(1, search.evaluations // REFINED),
     )
-    positions = choice.problem.evaluator.position, choice.optimum.harris_map.position
-    evaluator = choice.problem.evaluator.at(np.union1d(*positions))
-    problem = replace(choice.problem, evaluator=evaluator)
+    evaluator = choice.problem.evaluator
+    positions = np.union1d(evaluator.position, choice.optimum.harris_map.position)
+    problem = replace(choice.problem, evaluator=evaluator.at(positions))
     with clock.stage("search"):
         best, workers = choice.run.coordinates, run.workers
         further = search_from(problem, shorter, best, search.starts, cancel=cancel, workers=workers)
@@ -136,7 +135,8 @@ def perturbation(best: tuple[DesignProblem, SearchRun, Scatter], variable: Desig
     problem, run, scatter = best
     values = problem.values(run.coordinates)
     step = scatter.modification.get(variable.name, STEP * (variable.high - variable.low))
-    ends = max(variable.low, values[variable.name] - step), min(variable.high, values[variable.name] + step)
+    value = values[variable.name]
+    ends = max(variable.low, value - step), min(variable.high, value + step)
     changes = []
     for end in ends:
         evaluation = problem.evaluator.evaluate(values | {variable.name: end})

@@ -14,10 +14,8 @@ from fe_contact.types import FloatArray, IntArray
 SAME = 1e-12
 """Misalignments that differ by less, in m, are equal: a sum in another order differs in its last bits."""
 
-
 Misalignments = float | Levels
 """One value for all loads, or one for each, m."""
-
 
 CALLED_FOR = "called for by designs that remove less"
 """Reason of an effect that is on although the design that decides about effects does not call for it."""
@@ -30,9 +28,7 @@ class DesignLoads:
     torque: FloatArray
     """Torque on the driving gear, N m. Shape (L,)."""
     misalignment: FloatArray
-    """Growth of the gap over the common face width, m: shafts, bearings and housing yield with the torque.
-    Shape (L,).
-    """
+    """Growth of the gap over the common face width as parts yield with the torque, m. Shape (L,)."""
 
     @classmethod
     def of(cls, torques: Levels, misalignment: Misalignments) -> DesignLoads:
@@ -51,7 +47,7 @@ class DesignLoads:
         return cls(torque, paired)
 
     def with_torques(self, further: Levels) -> tuple[DesignLoads, IntArray]:
-        """Return T loads, those here and loads at further torques, and the indices (L,) of those here.
+        """Return these loads with loads at further torques (T,), and the indices (L,) of these among them.
 
         Misalignments of further torques are linear between the loads, constant beyond the lowest and highest.
         """
@@ -65,9 +61,9 @@ class DesignLoads:
 
 def misalignment_axis(misalignment: FloatArray, deviation: FloatArray) -> FloatArray:
     """Return the axis of a table that holds misalignments (L,) with none and with each deviation (S,), m."""
-    values = np.concatenate([misalignment, np.add.outer(deviation, misalignment).ravel()])
-    rising = np.unique(values)
-    return np.asarray(rising[np.append(True, np.diff(rising) > SAME)])
+    values = np.unique(np.concatenate([misalignment, np.add.outer(deviation, misalignment).ravel()]))
+    is_new = np.append(True, np.diff(values) > SAME)
+    return np.asarray(values[is_new])
 
 
 def snapped_to_axis(axis: FloatArray, misalignment: FloatArray) -> FloatArray:
@@ -80,6 +76,9 @@ def _misalignments(misalignment: Misalignments, loads: int) -> FloatArray:
     values = np.atleast_1d(np.asarray(misalignment, dtype=object)).tolist()
     if len(values) not in (1, loads):
         raise InputError("misalignment", values, f"one number, or {loads}, one for each torque")
-    ends, remedy = (-LARGEST_DEVIATION, LARGEST_DEVIATION), SiNote("In m: 10 µm is 1e-5.")
-    names = [f"misalignment[{i}]" for i in range(len(values))] if np.ndim(misalignment) else ["misalignment"]
-    return np.array([within(*item, *ends, remedy) for item in zip(names, values, strict=True)])
+    remedy = SiNote("In m: 10 µm is 1e-5.")
+    checked = []
+    for i, value in enumerate(values):
+        name = f"misalignment[{i}]" if np.ndim(misalignment) else "misalignment"
+        checked.append(within(name, value, -LARGEST_DEVIATION, LARGEST_DEVIATION, remedy))
+    return np.array(checked)

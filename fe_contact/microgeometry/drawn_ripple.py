@@ -27,13 +27,9 @@ from model_studies.spread import quantile_bounds, quantiles
 DRAWN = 1000
 """Number of drawn pairs."""
 SOLVED = 16
-"""Number of drawn pairs that are solved. The ends of a band are off by 12 % of its width with 8 solved pairs,
-8 % with 16, 3 % with 64.
-"""
+"""Number of solved pairs: ends of a band are off by 12 % of its width with 8, 8 % with 16, 3 % with 64."""
 IN_A_PART = 4
-"""Number of pairs that are solved together; those of the first part have tangents. A part takes a fifth of a
-second.
-"""
+"""Number of pairs solved together, in a fifth of a second; those of the first part have tangents."""
 FRACTIONS = 0.05, 0.95
 """Fractions of the pairs below the ends of a band."""
 CONFIDENCE = 0.95
@@ -93,8 +89,9 @@ class DrawnRipple:
         Positions are those of a preview, every other one of a table. Raises `InputError` as
         `CondensedPair.table`, or for teeth that differ, or for an effect of the flanks that is off.
         """
-        request = pair, np.array([torque]), misalignment, center_distance_change
-        checked, contacts, _, nodes, plan = bodies.contact_problem(*request)
+        checked, contacts, _, nodes, plan = bodies.contact_problem(
+            pair, np.array([torque]), misalignment, center_distance_change
+        )
         if checked.model.period > 1:
             bound = "left out where teeth differ"
             raise InputError("tolerance_class", "a class", bound, "For those, loa scatter draws pairs.")
@@ -117,7 +114,7 @@ class DrawnRipple:
         return SOLVED - self.solved
 
     def further(self) -> DrawnRipple:
-        """Return the same with further pairs solved; the first part gets tangents too.
+        """Solve further pairs, `IN_A_PART` of them; the first part gets tangents, too.
 
         Raises `SolveError`: the contact of a pair cannot be solved.
         """
@@ -129,10 +126,10 @@ class DrawnRipple:
         if not is_first or derivatives is None:
             return replace(self, ste=np.concatenate([self.ste, ste]))
         design = linearized(self.evaluator, {}, self.names, NO_LIMITS)
-        nominal, variables = np.zeros((1, len(self.names))), (self.evaluator, self.names)
-        nominal_tangents = tangents_about(*variables, nominal, design.evaluation.ste, design.curves)
-        pair_tangents = tangents_about(*variables, part, ste, derivatives)
-        return replace(self, ste=ste, model=nominal_tangents.with_further(pair_tangents))
+        nominal = np.zeros((1, len(self.names)))
+        tangents = tangents_about(self.evaluator, self.names, nominal, design.evaluation.ste, design.curves)
+        pair_tangents = tangents_about(self.evaluator, self.names, part, ste, derivatives)
+        return replace(self, ste=ste, model=tangents.with_further(pair_tangents))
 
     def band(self) -> RippleBand:
         """Return the band of all pairs, once `SOLVED` are solved.
@@ -149,9 +146,10 @@ class DrawnRipple:
         low, high = quantiles(level, FRACTIONS)
 
         def spread(every_pair: FloatArray, by_model: FloatArray, by_contact: FloatArray) -> Spread:
-            quantile_ends = [quantile_bounds(every_pair, fraction, CONFIDENCE) for fraction in FRACTIONS]
-            lowest, highest = (float(value[0]) for value, _, _ in quantile_ends)
-            half_bounds = max(float(0.5 * (above - below)[0]) for _, below, above in quantile_ends)
+            # each end with the bounds of its confidence
+            ends = [quantile_bounds(every_pair, fraction, CONFIDENCE) for fraction in FRACTIONS]
+            lowest, highest = (float(value[0]) for value, _, _ in ends)
+            half_bounds = max(float(0.5 * (above - below)[0]) for _, below, above in ends)
             model_error = float(np.sqrt(np.mean((by_model - by_contact) ** 2)))
             return Spread(lowest, highest, error=float(np.hypot(half_bounds, model_error)))
 

@@ -15,14 +15,7 @@ from itertools import groupby
 import numpy as np
 
 from fe_contact.analysis.pairs.pair_contact import PairContact
-from fe_contact.contact import (
-    ContactModel,
-    ContactProblem,
-    ContactSolution,
-    contact_pressure,
-    in_pitches,
-    solve_contact,
-)
+from fe_contact.contact import ContactProblem, ContactSolution, contact_pressure, in_pitches, solve_contact
 from fe_contact.contact.plain_touch import Touch
 from fe_contact.contact.touch import modified_touch
 from fe_contact.effects import EFFECTS, ContactScene, compose
@@ -51,9 +44,7 @@ class Evaluation:
     root_stress: FloatArray = field(
         default_factory=lambda: np.full((1, 1), np.nan), metadata=in_unit("pa", "node", "torque")
     )
-    """Largest principal stress in the tension roots of both gears over positions, Pa; NaN where it is not
-    followed. Shape (S, L).
-    """
+    """Largest principal stress in the tension roots of both gears, Pa; NaN: not followed. Shape (S, L)."""
     root_stress_error: FloatArray = field(
         default_factory=lambda: np.full((1, 1), np.nan), metadata=in_unit("pa", "node", "torque")
     )
@@ -71,11 +62,11 @@ class Evaluation:
 
     @property
     def peak_to_peak(self) -> FloatArray:
-        """Over the positions (S, L), m; NaN where one of them was not solved."""
+        """Peak-to-peak over the positions (S, L), m; NaN where one of them was not solved."""
         return np.asarray(np.ptp(self.ste, axis=1))
 
     def violation(self, limits: Limits) -> float:
-        """Excess over the limits, in parts of them (of the load for the edges); 0: they are kept."""
+        """Return the sum of excesses over the limits, each over its limit (edges: over the load); 0: none."""
         excess = 0.0
         for value, limit in (
             (self.pressure, limits.max_pressure),
@@ -130,7 +121,7 @@ class Evaluator:
 
     @cached_property
     def runs(self) -> tuple[tuple[int, ...], ...]:
-        """All nodes in their order, those of the same flanks behind each other together."""
+        """All nodes in their order, grouped where successive ones have the same flanks."""
 
         def flanks(node: int) -> tuple[float, ...]:
             return tuple(self.nodes.modification(node).values())
@@ -140,29 +131,29 @@ class Evaluator:
     def solved(
         self, values: Mapping[str, float], nodes: Iterable[int]
     ) -> Iterator[tuple[ParallelAxes, ContactProblem, ContactSolution]]:
-        """Yield the pair as it comes out at some nodes, with its contact solved at each group of loads."""
+        """Yield the pair with its deviations at some nodes, and its contact solved at each group of loads."""
         touches: dict[tuple[float, ...], Touch] = {}
         for node in nodes:
             for group in self.groups:
                 yield self._at_node(values, node, group, touches)
 
     def evaluation(self, solved: Iterable[LoadFigures]) -> Evaluation:
-        """Put the figures of all that was `solved` together."""
-        figures = [
-            (
-                f.ste,
-                f.pressure.max(axis=(0, 2)),
-                f.face_load.max(axis=1),
-                f.edge_load_share.max(axis=0),
-                f.root_stress,
+        """Join the figures of all nodes and groups of loads, in the order of `solved`."""
+        figures = []
+        for f in solved:  # maxima at once: the pressures of all nodes would fill the memory
+            edge_load_share = f.edge_load_share.max(axis=0)
+            figures.append(
+                (f.ste, f.pressure.max(axis=(0, 2)), f.face_load.max(axis=1), edge_load_share, f.root_stress)
             )
-            for f in solved
-        ]
         parts = [self.gathered(figure) for figure in zip(*figures, strict=True)]
-        return Evaluation(*parts, *[np.full(parts[-1].shape, np.nan)] * 3)
+        ste, pressure, face_load_factor, edge_load_share, root_stress = parts
+        unknown = np.full(root_stress.shape, np.nan)
+        return Evaluation(
+            ste, pressure, face_load_factor, edge_load_share, root_stress, unknown, unknown, unknown
+        )
 
     def gathered(self, solved: Sequence[FloatArray]) -> FloatArray:
-        """Return arrays (..., l) of all that was `solved`, each at its loads, as one (S, ..., L)."""
+        """Join arrays (..., l) of all nodes and groups of loads, in the order of `solved`, to (S, ..., L)."""
         count, order = len(self.groups), np.argsort(np.concatenate(self.groups))
         nodes = [solved[k : k + count] for k in range(0, len(solved), count)]
         return np.stack([np.concatenate(parts, axis=-1)[..., order] for parts in nodes])
@@ -176,7 +167,7 @@ class Evaluator:
         return np.asarray(self.nodes.weight @ evaluation.peak_to_peak)
 
     def scattered(self, values: Mapping[str, float], node: int) -> ParallelAxes:
-        """Return the pair with a design as it comes out at a node."""
+        """Return the pair with a design and the deviations of a node."""
         return deviating(modified(self.contact.pair, values), self.nodes.modification(node))
 
     def _at_node(
@@ -192,17 +183,20 @@ class Evaluator:
         key = tuple(self.nodes.modification(node).values())
         face = bodies.candidates.face_position
         if key not in touches:
-            profile_touch = modified_touch(pair, bodies.candidates.touch, face, moving)
-            touches[key] = (
-                bodies.candidates.following(profile_touch).touch if bodies.tilt.size else profile_touch
-            )
+            touch = modified_touch(pair, bodies.candidates.touch, face, moving)
+            if bodies.tilt.size:  # load patches follow the touching points
+                touch = bodies.candidates.following(touch).touch
+            touches[key] = touch
         touch = modified_touch(pair, touches[key], face, steady) if steady else touches[key]
-        problem = _in_all_pitches(pair, bodies.touching(bodies.candidates.touching(touch)), model)
+        problem = bodies.touching(bodies.candidates.touching(touch))
+        if model.period > 1:
+            rows = np.repeat(np.arange(model.period), self.position.size)
+            problem = in_pitches(pair, problem, model, rows)
         return pair, problem, solve_contact(problem, load)
 
 
 def deviating(pair: ParallelAxes, deviation: Mapping[str, float]) -> ParallelAxes:
-    """Return a pair whose figures deviate by so much, m, as far as material and lengths are left."""
+    """Return a pair whose figures deviate by `deviation`, m, as far as material and lengths are left."""
     figures = {}
     for name, amount in deviation.items():
         designed = figure(pair, name)
@@ -215,14 +209,7 @@ def least_deviation(designed: float, name: str) -> float:
     quantity = name.rpartition(".")[2]
     if quantity in (*SLOPES, MISALIGNMENT):
         return -math.inf
-    return -(0.9 if quantity in LENGTHS else 1.0) * designed
-
-
-def _in_all_pitches(pair: ParallelAxes, problem: ContactProblem, model: ContactModel) -> ContactProblem:
-    if model.period == 1:
-        return problem
-    rows = np.repeat(np.arange(model.period), problem.candidates.position.size)
-    return in_pitches(pair, problem, model, rows)
+    return -(0.9 if quantity in LENGTHS else 1.0) * designed  # a tenth of a length is left
 
 
 @dataclass(frozen=True)
@@ -244,7 +231,7 @@ class LoadFigures:
     def of(
         cls, problem: ContactProblem, solution: ContactSolution, roots: RootInfluence | None
     ) -> LoadFigures:
-        """Read the figures off a solution."""
+        """Return the figures of a solution."""
         ste = np.where(solution.status == Status.CONVERGED, solution.deflection, np.nan)
         face_load = over_face(problem, solution.force)
         at_edges = on_edges(problem, solution.force) / carried(problem, solution.force).sum(axis=2)

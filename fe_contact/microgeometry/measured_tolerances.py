@@ -53,9 +53,9 @@ class MeasuredTolerances(Tolerances):
         """Symmetric square root (m, m) of the correlation matrix of the m measured figures."""
         names = list(self.mean)
         matrix = np.eye(len(names))
-        for (one, other), value in self.correlation.items():
-            i, j = names.index(one), names.index(other)
-            matrix[i, j] = matrix[j, i] = value
+        for (first, second), value in self.correlation.items():
+            i, j = names.index(first), names.index(second)
+            matrix[[i, j], [j, i]] = value
         values, vectors = np.linalg.eigh(matrix)
         if values.min(initial=1.0) < -_ROUNDING:
             remedy = "State fewer or smaller correlations."
@@ -78,16 +78,14 @@ class MeasuredTolerances(Tolerances):
 
     @property
     def distributions(self) -> tuple[Any, ...]:
-        """Distribution of every single deviation, in the order of `widths`, as a frozen one of scipy."""
+        """Distributions of single deviations in the order of `widths`, each a frozen one of scipy."""
         from scipy.stats import truncnorm  # noqa: PLC0415 (start-up time)
 
-        ends = -PROCESS_SPREAD, PROCESS_SPREAD
-        return tuple(
-            truncnorm(*ends, loc=self.mean[name], scale=width / PROCESS_SPREAD)
-            if name in self.mean
-            else of_class
-            for (name, width), of_class in zip(self.widths.items(), super().distributions, strict=True)
-        )
+        distributions = dict(zip(self.widths, super().distributions, strict=True))
+        for name, mean in self.mean.items():
+            deviation = self.widths[name] / PROCESS_SPREAD
+            distributions[name] = truncnorm(-PROCESS_SPREAD, PROCESS_SPREAD, loc=mean, scale=deviation)
+        return tuple(distributions.values())
 
     def to_json(self) -> Json:
         """Return plain JSON."""

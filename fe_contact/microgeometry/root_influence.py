@@ -134,7 +134,7 @@ class _GearRoots:
         return cls(on_nodes, 0.5 * (below_contact[0] + below_contact[1]), np.where(known, ahead, -1))
 
     def crests(self, pressed: FloatArray) -> tuple[FloatArray, FloatArray, IntArray]:
-        """Return the largest principal stress of each tooth (P, L, T), its components (3, ...), its place."""
+        """Return the largest principal stress of each tooth (P, L, T), its components, and its station."""
         on_nodes = self._at_rows(pressed)
         rows, (_, slices, nodes, _, stations) = pressed.shape[:2], self.influence.shape
         flat = on_nodes.reshape(-1, len(self.row), slices * nodes)
@@ -143,30 +143,29 @@ class _GearRoots:
         for tooth, loaded in np.argwhere(self.row >= 0):
             stress[tooth] += flat[:, loaded] @ by_distance[self.row[tooth, loaded]]
         parts = stress.reshape(len(self.row), *rows, 3, stations)
-        along, across, shear = np.moveaxis(parts, (3, 0), (0, 3))
+        components = np.moveaxis(parts, (3, 0), (0, 3))  # (3, P, L, T, R)
+        along, across, shear = components
         principal = 0.5 * (along + across) + np.hypot(0.5 * (along - across), shear)
-        at = principal.argmax(axis=-1)
-
-        def there(values: FloatArray) -> FloatArray:
-            return np.take_along_axis(values, at[..., None], axis=-1)[..., 0]
-
-        return there(principal), np.stack([there(along), there(across), there(shear)]), at
+        station = principal.argmax(axis=-1)
+        at_station = np.take_along_axis(components, station[None, ..., None], axis=-1)[..., 0]
+        return principal.max(axis=-1), at_station, station
 
     def near_rows(self, pressed: FloatArray, changed: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the largest stresses of teeth near the largest of all (R,), and their changes (R, d)."""
-        crest, (along, across, shear), at = self.crests(pressed)
-        p, load, tooth = near = np.nonzero(crest >= NEAR * crest.max())
-        half_difference, shear = 0.5 * (along[near] - across[near]), shear[near]
-        radius = np.maximum(np.hypot(half_difference, shear), 1e-300)
+        crest, components, station = self.crests(pressed)
+        p, load, tooth = np.nonzero(crest >= NEAR * crest.max())
+        along, across, shear = components[:, p, load, tooth]
+        half_difference = 0.5 * (along - across)
+        radius = np.maximum(np.hypot(half_difference, shear), 1e-300)  # above 0 for the quotients
         # derivatives of the principal stress by its components along, across and shear
         turn = 0.5 * half_difference / radius
         weight = np.stack([0.5 + turn, 0.5 - turn, shear / radius], axis=-1)
         row = self.row[tooth]
-        unit = self.influence[np.maximum(row, 0), :, :, :, at[near][:, None]]  # R, T, Z, K, 3
+        unit = self.influence[np.maximum(row, 0), :, :, :, station[p, load, tooth][:, None]]  # R, T, Z, K, 3
         by_force = np.einsum("rtzkc,rc,rtzk->rtz", unit, weight, self.on_nodes[p % len(self.on_nodes)])
         by_force *= (row >= 0)[..., None]
         force_change = changed[:, p, load].reshape(len(changed), p.size, -1)
-        return crest[near], np.einsum("rn,arn->ra", by_force.reshape(p.size, -1), force_change)
+        return crest[p, load, tooth], np.einsum("rn,arn->ra", by_force.reshape(p.size, -1), force_change)
 
     def _at_rows(self, pressed: FloatArray) -> FloatArray:
         """Return the forces at the nodes, (P, L, T, Z, K), N."""
@@ -182,7 +181,8 @@ def _on_profile(s: FloatArray, center: FloatArray) -> FloatArray:
     """
     low = np.clip(np.searchsorted(s, center) - 1, 0, s.size - 2)
     part = np.clip((center - s[low]) / (s[low + 1] - s[low]), 0.0, 1.0)
-    hats = (1.0 - part)[..., None] * np.eye(s.size)[low] + part[..., None] * np.eye(s.size)[low + 1]
+    part, unit = part[..., None], np.eye(s.size)
+    hats = (1.0 - part) * unit[low] + part * unit[low + 1]
     return np.asarray(hats.mean(axis=-2))
 
 
@@ -194,6 +194,6 @@ def _under_slices(unit: UnitRootStress, along: FloatArray, below: int) -> FloatA
         return np.asarray(stress[:, unit.index[:1]])
     layer = np.clip(np.searchsorted(unit.z, along) - 1, 0, unit.z.size - 2)
     part = np.clip((along - unit.z[layer]) / (unit.z[layer + 1] - unit.z[layer]), 0.0, 1.0)
-    ends = (stress[:, unit.index[2 * plane]] for plane in (layer, layer + 1))
-    share = (1.0 - part, part)
-    return np.asarray(sum(values * w[:, None, None, None] for values, w in zip(ends, share, strict=True)))
+    low, high = stress[:, unit.index[2 * layer]], stress[:, unit.index[2 * (layer + 1)]]
+    part = part[:, None, None, None]
+    return np.asarray(low * (1.0 - part) + high * part)

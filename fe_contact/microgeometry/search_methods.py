@@ -23,54 +23,43 @@ from fe_contact.types import FloatArray, Json
 from model_studies.progress import unreported
 
 SIMPLEX_SIZE, SIMPLEX_MERIT = 1e-3, 1e-4
-"""Size of a converged simplex, over the range of a variable, and its range of merits over the merit of the
-start.
-"""
-
+"""Size of a converged simplex over the ranges, and its range of merits over the merit of the start."""
 
 EDGE = 0.2
 """Edge of the first simplex over the ranges, towards the inside."""
 
-
 SPREAD = 1e-3
 """Standard deviation of the merit over a converged population, over its mean."""
 
-
 FIRST_REGION = 0.2
-"""Largest step of a linear program to begin with, in parts of the ranges."""
+"""Largest step of the first linear program, in parts of the ranges."""
 
-
-POOR, GOOD, POORER = 0.25, 0.75, 0.4
-"""Parts of the predicted fall below and above which the trust region shrinks or grows, and the part of the
-step that it shrinks to.
-"""
-
+POOR, GOOD = 0.25, 0.75
+"""Part of the predicted fall of the merit below which the trust region shrinks, and above which it grows."""
+POORER = 0.4
+"""Size of a trust region that shrinks over the step that was poor."""
 
 TRIED = 7
-"""Steps of every start; then the best of them is followed to its end."""
+"""Steps from every start, before the best walk is followed to its end."""
 
-
-ASIDE, MIN_GAIN, MISSES = 0.05, 0.005, 3
-"""Restarts of a walk near its end: largest distance over the ranges, least relative gain that counts, and
-number of consecutive restarts without such a gain that ends the walk.
+ASIDE = 0.05
+"""Largest distance of a restart from the end of a walk, in parts of the ranges."""
+MIN_GAIN, MISSES = 0.005, 3
+"""Least relative gain of a restart that counts, and number of restarts in a row without it that ends a walk.
 """
-
 
 FINISHED = 3
 """Number of rough walks that are continued by the merit: the best by it."""
 
-
 EXPLORED = 0.65
 """Part of the designs that exploration may use: the simplex behind it needs some hundred to converge."""
 
+LINEARIZED = 2.1
+"""Cost of a design with its slopes over that of a design; measured with five variables of a helical pair."""
+FOLLOWED = 75
+"""Number of designs of a walk to its end, and of its restarts."""
 
 Cancel = Callable[[], bool]
-
-
-LINEARIZED, FOLLOWED = 2.1, 75
-"""Cost of a design with its slopes in assessments (2.1 of a helical pair with five variables), and number of
-designs of the walk to the end and of its restarts.
-"""
 
 
 class Method(Protocol):
@@ -93,25 +82,25 @@ class Method(Protocol):
 class NelderMead:
     """Simplex of Nelder and Mead (1965) in bounds, its coefficients by dimension (Gao and Han 2012).
 
-    Cheap and local: start it more than once.
+    The search is cheap and finds a local minimum: start it more than once.
     """
 
     def minimize(
         self, merit: CountedMerit, rough: CountedMerit, start: FloatArray, seed: np.random.SeedSequence
     ) -> None:
-        """Search; nothing is random, and nothing is rough."""
-        bounds = Bounds(np.zeros(start.size), np.ones(start.size))
+        """Search by the merit alone; `rough` and `seed` are not used."""
+        edges = np.diag(np.where(start < 0.5, EDGE, -EDGE))
         minimize(
             merit,
             start,
             method="Nelder-Mead",
-            bounds=bounds,
+            bounds=Bounds(np.zeros(start.size), np.ones(start.size)),
             options={
-                "initial_simplex": np.vstack([start, start + np.diag(np.where(start < 0.5, EDGE, -EDGE))]),
+                "initial_simplex": np.vstack([start, start + edges]),
                 "xatol": SIMPLEX_SIZE,
                 "fatol": SIMPLEX_MERIT,
                 "adaptive": True,
-                "maxfev": 10**9,
+                "maxfev": 10**9,  # the merit ends the search
             },
         )
 
@@ -124,10 +113,10 @@ class NelderMead:
 class SequentialLinearProgramming:
     """Linear programs over the derivatives of the curves in a trust region, from design to design.
 
-    Peak-to-peak is made of maxima, whose kinks a program of all positions, loads and nodes sees [1]_. It is
-    local: a Sobol' sequence ranked by the rough merit gives further starts; each is followed for some
-    designs, the best of them to its end. Where a contact begins curves have kinks that a program sees from
-    one side only; so it is taken up again a little beside where it ended.
+    Peak-to-peak is made of maxima, whose kinks a program of all positions, loads and nodes sees [1]_. A walk
+    finds a local minimum. A Sobol' sequence ranked by the rough merit gives further starts: each is followed
+    for `TRIED` steps, the best to its end. Where a contact begins, curves have kinks that a program sees from
+    one side only; so the walk is restarted near its end.
 
     References
     ----------
@@ -138,7 +127,7 @@ class SequentialLinearProgramming:
     sample: int = 64
     """Points of the sequence, 0 to 4096; 0: from the start alone."""
     trials: int = 3
-    """The best of them that are followed, 0 to 64."""
+    """Number of its best points that are followed, 0 to 64."""
 
     def __post_init__(self) -> None:
         integer("method.sample", self.sample, 0, 4096)
@@ -147,15 +136,14 @@ class SequentialLinearProgramming:
     def minimize(
         self, merit: CountedMerit, rough: CountedMerit, start: FloatArray, seed: np.random.SeedSequence
     ) -> None:
-        """Search; the sequence and the points beside an end are random."""
+        """Search by both merits; the sequence and the restarts are random."""
         walks = [_begun(merit, _Walk(start))]
-        walks += [
-            _begun(merit, _Walk(point))
-            for point in _screened(rough, self.sample, self.trials, start.size, seed)
-        ]
+        for point in _screened(rough, self.sample, self.trials, start.size, seed):
+            walks.append(_begun(merit, _Walk(point)))
         if len(walks) > 1:
             walks = list(_following_walks(merit, walks, TRIED))
-        _try_neighbors(merit, _followed(merit, min(walks, key=lambda walk: walk.value)), seed)
+        best = min(walks, key=lambda walk: walk.value)
+        _try_neighbors(merit, _followed(merit, best), seed)
 
     def to_json(self) -> Json:
         """Return plain JSON."""
@@ -164,11 +152,11 @@ class SequentialLinearProgramming:
 
 @dataclass(frozen=True)
 class StagedLinearProgramming:
-    """Sequential linear programmes for a rough merit that is nearly the merit itself, and much cheaper.
+    """Sequential linear programs for a rough merit that is nearly the merit itself, and much cheaper.
 
-    The best points of a Sobol' sequence and the start are followed to their ends by the rough merit: where a
-    walk comes to is not told by its first steps. The best ends by the merit are followed on by it. `sample`,
-    `trials`: as of `SequentialLinearProgramming`.
+    The start and the best points of a Sobol' sequence are followed to their ends by the rough merit: the
+    first steps of a walk do not tell where it ends. The ends that are best by the merit are followed on by
+    it. `sample`, `trials`: as of `SequentialLinearProgramming`.
     """
 
     sample: int = 64
@@ -177,7 +165,7 @@ class StagedLinearProgramming:
     def minimize(
         self, merit: CountedMerit, rough: CountedMerit, start: FloatArray, seed: np.random.SeedSequence
     ) -> None:
-        """Search; where walks of the rough merit end, and those of the merit, is remembered by each."""
+        """Search by both merits, each of which remembers the ends of its walks."""
         merit(start)
         with suppress(BudgetUsed):
             points = [start, *_screened(rough, self.sample, self.trials, start.size, seed)]
@@ -185,14 +173,15 @@ class StagedLinearProgramming:
                 rough.end(walk.position)
             assessed, position = min(rough.ends, key=lambda design: design[0].merit)
             _try_neighbors(rough, _Walk(position, value=assessed.merit), seed)
-        known = sorted([*rough.ends, *filter(None, (rough.best,))], key=lambda design: design[0].order)
+        designs = [*rough.ends, rough.best] if rough.best else list(rough.ends)
         starts: list[FloatArray] = []
-        for _, position in known:
+        for _, position in sorted(designs, key=lambda design: design[0].order):
             if all(np.abs(position - other).max() > ASIDE for other in starts):
                 starts.append(position)
+        # by the merit, then by their order; the merit remembers the best design of the walks
         ranked = sorted(zip(merit.assessed_in_turn(starts), range(len(starts)), strict=True))
         for _ in _following_walks(merit, [_Walk(starts[index]) for _, index in ranked[:FINISHED]]):
-            pass  # the merit remembers the best
+            pass
 
     def to_json(self) -> Json:
         """Return plain JSON."""
@@ -202,7 +191,7 @@ class StagedLinearProgramming:
 def _screened(
     rough: CountedMerit, sample: int, trials: int, dimensions: int, seed: np.random.SeedSequence
 ) -> list[FloatArray]:
-    """Return the best trials of a sample of a Sobol' sequence, as far as the designs reach."""
+    """Return the best points of a sample of a Sobol' sequence, of those that the budget can assess."""
     from scipy.stats import qmc  # noqa: PLC0415 (start-up time)
 
     explored: list[tuple[float, FloatArray]] = []
@@ -210,7 +199,7 @@ def _screened(
         sequence = qmc.Sobol(dimensions, rng=np.random.default_rng(seed))
         points = list(sequence.random_base2((sample - 1).bit_length())[:sample])
         for value, point in zip(rough.assessed_in_turn(points), points, strict=True):
-            explored.append((value, point))
+            explored.append((value, point))  # one by one: the budget may end among them
     explored.sort(key=lambda trial: trial[0])
     return [point for value, point in explored[:trials] if np.isfinite(value)]
 
@@ -233,12 +222,16 @@ def _try_neighbors(merit: CountedMerit, best: _Walk, seed: np.random.SeedSequenc
 
 @dataclass(frozen=True)
 class _Walk:
-    """State of a walk by linear programs: `position` (d,) is the best design so far, `value` its merit."""
+    """State of a walk by linear programs."""
 
     position: FloatArray
+    """The best design so far. Shape (d,)."""
     region: float = FIRST_REGION
+    """Largest step of a coordinate."""
     value: float = np.inf
+    """Merit of the design."""
     linear: Merit | None = None
+    """Merit linearized there; None before the walk begins."""
 
 
 def _begun(merit: CountedMerit, walk: _Walk) -> _Walk:
@@ -248,7 +241,7 @@ def _begun(merit: CountedMerit, walk: _Walk) -> _Walk:
 
 
 def _followed(merit: CountedMerit, walk: _Walk, maximum: int | None = None) -> _Walk:
-    """Begin, and step until converged, or so often at most."""
+    """Begin the walk where it has not begun, and step until converged, at most `maximum` times."""
     walk = _begun(merit, walk) if walk.linear is None else walk
     for _ in range(maximum) if maximum is not None else count():
         if not np.isfinite(walk.value) or walk.region <= SIMPLEX_SIZE:
@@ -261,18 +254,18 @@ def _followed(merit: CountedMerit, walk: _Walk, maximum: int | None = None) -> _
 
 
 def _stepped(merit: CountedMerit, walk: _Walk) -> _Walk | None:
-    """Take a step if one promises anything; shorten the region where it keeps too little of it."""
-    ends = np.maximum(-walk.region, -walk.position), np.minimum(walk.region, 1.0 - walk.position)
+    """Take the step of the linear program, and adapt the region to its success; None: it promises nothing."""
     assert walk.linear is not None
-    step, promised = walk.linear.minimum(*ends)
-    if walk.value - promised <= SIMPLEX_MERIT * walk.value:
+    low, high = np.maximum(-walk.region, -walk.position), np.minimum(walk.region, 1.0 - walk.position)
+    step, predicted = walk.linear.minimum(low, high)
+    if walk.value - predicted <= SIMPLEX_MERIT * walk.value:
         return None
     point = np.clip(walk.position + step, 0.0, 1.0)
     value, linear = merit.linearize(point)
-    fulfilled, region = (walk.value - value) / (walk.value - promised), walk.region
-    if fulfilled < POOR:
+    part, region = (walk.value - value) / (walk.value - predicted), walk.region
+    if part < POOR:
         region = POORER * float(np.abs(step).max())
-    elif fulfilled > GOOD:
+    elif part > GOOD:
         region = min(2.0 * region, 1.0)
     return _Walk(point, region, value, linear) if value < walk.value else replace(walk, region=region)
 
@@ -280,7 +273,7 @@ def _stepped(merit: CountedMerit, walk: _Walk) -> _Walk | None:
 def _following_walks(
     merit: CountedMerit, walks: Sequence[_Walk], maximum: int | None = None
 ) -> Iterator[_Walk]:
-    """Follow walks that do not wait for each other, to their ends or so far at most, and yield each."""
+    """Follow independent walks to their ends, or for `maximum` steps at most, and yield each."""
     if len(walks) < 2 or not merit.divides:
         yield from (_followed(merit, walk, maximum) for walk in walks)
         return
@@ -291,9 +284,9 @@ def _following_walks(
 
 
 def _walked(problem: SearchProblem, task: tuple[_Walk, int | None, int]) -> tuple[_Walk, list[Design]]:
-    """Follow a walk: one task.
+    """Follow a walk: one task of a worker.
 
-    It may assess one design more than are left: the caller, who counts them, ends there as it would here.
+    It may assess one design more than are left: the search of the caller then ends as its budget is used.
     """
     walk, maximum, designs = task
     merit = CountedMerit(problem, Budget(designs, never, unreported), designs)
@@ -304,7 +297,7 @@ def _walked(problem: SearchProblem, task: tuple[_Walk, int | None, int]) -> tupl
 
 @dataclass(frozen=True)
 class DifferentialEvolution:
-    """Differential evolution (Storn and Price 1997) by the rough merit, then a simplex from its best.
+    """Differential evolution (Storn and Price 1997) by the rough merit, then a simplex from its best design.
 
     `population`: individuals for each variable, 3 to 50.
     """
@@ -317,7 +310,7 @@ class DifferentialEvolution:
     def minimize(
         self, merit: CountedMerit, rough: CountedMerit, start: FloatArray, seed: np.random.SeedSequence
     ) -> None:
-        """Search; the start is one of the first population."""
+        """Search from a population to which the start belongs."""
         merit(start)
         with suppress(BudgetUsed):
             differential_evolution(
@@ -327,7 +320,7 @@ class DifferentialEvolution:
                 rng=np.random.default_rng(seed),
                 popsize=self.population,
                 tol=SPREAD,
-                maxiter=10**6,
+                maxiter=10**6,  # the merit ends the search
                 polish=False,
             )
         NelderMead().minimize(merit, rough, start if rough.best is None else rough.best[1], seed)
@@ -338,5 +331,5 @@ class DifferentialEvolution:
 
 
 def never() -> bool:
-    """Nobody cancels."""
+    """Return False: nobody cancels."""
     return False

@@ -24,14 +24,11 @@ from fe_contact.types import FloatArray
 
 TORQUE, CENTER_DISTANCE = "torque", "center_distance_change"
 
-
 CONDITIONS = (TORQUE, MISALIGNMENT, CENTER_DISTANCE)
 """Operating conditions that a sweep can vary."""
 
-
 MAX_POINTS = 4096
 """Largest number of combinations of the values on the axes."""
-
 
 Values = Mapping[str, float]
 """Values of a design by the name of the axis, m."""
@@ -42,9 +39,7 @@ class SweepAxis:
     """An axis of a sweep."""
 
     name: str
-    """Name of the axis: one of `CONDITIONS`, a design variable ``gear.quantity``, or ``quantity`` alone for
-    both gears alike.
-    """
+    """One of `CONDITIONS`, a design variable ``gear.quantity``, or ``quantity`` alone: both gears alike."""
     values: tuple[float, ...]
     """Values on the axis, N m or m, increasing, at least two."""
 
@@ -89,18 +84,15 @@ class SweepRequest:
         """Every combination of the values of the other axes by name, those of the first slowest."""
         others = [axis for axis in self.axes if axis.name != TORQUE]
         names = [axis.name for axis in others]
-        return tuple(
-            dict(zip(names, values, strict=True)) for values in product(*(axis.values for axis in others))
-        )
+        combinations = product(*(axis.values for axis in others))
+        return tuple(dict(zip(names, values, strict=True)) for values in combinations)
 
     def flanks(self, design: Values) -> ParallelAxes:
         """Return the pair with the flanks of a design."""
-        figures = {
-            variable: design[axis.name]
-            for axis in self.axes
-            for variable in axis.variables
-            if axis.name in design
-        }
+        figures: dict[str, float] = {}
+        for axis in self.axes:
+            if axis.name in design:
+                figures |= dict.fromkeys(axis.variables, design[axis.name])
         return modified(self.pair, figures)
 
     def alignment(self, design: Values) -> tuple[float, float]:
@@ -114,30 +106,28 @@ class SweepRequest:
 
         All designs are checked; nothing is computed.
 
-        Raises `InputError`: no axis, more than two or one twice, too many points, or a value that cannot be
-        used.
+        Raises `InputError`: no axis, more than two, or one twice; too many points; a value cannot be used.
         """
         self._check_axes()
-        variables = [
-            DesignVariable(name, axis.values[0], axis.values[-1])
-            for axis in self.axes
-            for name in axis.variables
-        ]
+        variables: list[DesignVariable] = []
+        for axis in self.axes:
+            low, high = axis.values[0], axis.values[-1]
+            variables += [DesignVariable(name, low, high) for name in axis.variables]
         if variables:
             check_variables(self.pair, variables)
         for design in self.designs:
             self.flanks(design)  # raises where a modification does not fit its gear
-        acting = {axis.name: axis.largest for axis in self.axes}
-        over = {axis.name: axis.values for axis in self.axes}
+        largest = {axis.name: axis.largest for axis in self.axes}
+        swept = {axis.name: axis.values for axis in self.axes}
         axes = TableAxes(
             self.torques,
-            misalignments=over.get(MISALIGNMENT, (self.point.misalignment,)),
-            center_distance_changes=over.get(CENTER_DISTANCE, (self.point.center_distance_change,)),
+            misalignments=swept.get(MISALIGNMENT, (self.point.misalignment,)),
+            center_distance_changes=swept.get(CENTER_DISTANCE, (self.point.center_distance_change,)),
         )
         # as the documentation of `options` says, the choices of the caller for these three are ignored
         options = replace(self.options, positions=None, receipt="full", on_violation="report")
         # no table is stored, so its size has no limit; all designs have the same effects
-        return check_request(self.flanks(acting), axes, options, check_size=False, neglect=False)
+        return check_request(self.flanks(largest), axes, options, check_size=False, neglect=False)
 
     def _check_axes(self) -> None:
         names = [axis.name for axis in self.axes]

@@ -47,15 +47,12 @@ _TOOTH_POINT, _BEGUN = 0.4e-6, 10e-6
 a set per carrying slice in addition to that of other loads.
 """
 _TOUCHED = 14e-6
-"""CPU seconds to find the touching point of a candidate on flanks that differ. Met within 0.8 to 1.4 for
-pairs of class 6, in the plane and over the face.
-"""
+"""CPU seconds to find the touching point of a candidate on flanks that differ; met within 0.8 to 1.4."""
 _FACE_TILT = 2.7
 """Cost of assembly with the change of the compliance along sloping flanks, over that without it."""
 _PLANE_EXPECTED, _FACE_EXPECTED = (86.0, 0.37), (76.0, 0.25)
 """Final positions of the search at one load of a spur pair, and exponent of their growth with the number of
-loads, in the plane and over the face. Handovers move with the load. Pairs at 1 to 12 loads are met within 10
-%.
+loads: handovers move with the load. Pairs at 1 to 12 loads are met within 10 %.
 """
 _HANDED_OVER = 0.15
 """Overlap ratio over which teeth come into contact so gently that e times fewer positions are added."""
@@ -70,9 +67,7 @@ _RIPPLE_STIFFNESS, _RIPPLE_OVERLAP = 2.8e10, 0.5
 """Line load over ripple, N/m^2, of a spur pair: half of the deflection of a pair of teeth; the overlap
 ratio over which it falls by e."""
 _AT_ONCE = 1.3
-"""Additional cost of a point over the face where all slices of a tooth touch at once, over the usual cost.
-Two spur pairs have 1.0 to 2.3.
-"""
+"""Additional cost of a point where all slices of a tooth touch at once, over the usual: 1.0 to 2.3."""
 _UNLIKE = 1.4
 """Positions of a table whose teeth differ over those where teeth are alike, since each pitch has handovers of
 its own: 64 to 248 positions for pairs of class 6. Run-out and waves leave the handovers alike.
@@ -80,6 +75,7 @@ its own: 64 to 248 positions for pairs of class 6. Run-out and waves leave the h
 _TRIED_PER_NODE, _TRIED_PER_START = 9, 4
 """Positions that the search solves for each node that it adds, and for each node that it begins with."""
 _ASSESSED = 3
+"""Largest number of alignments that place the positions."""
 _SOLVED_MIDDLES = 0.25
 """Part of the intervals between fixed positions whose middles are solved, at most."""
 _PLANE_CHECK, _FACE_CHECK = 6e-3, 0.12
@@ -109,15 +105,11 @@ _SECTOR, _RING, _HUB_FREEDOM, _DEPTH = 1.89e-9, 2.06e-7, 5.34e-5, 2.72e-6
 _DEEP_RING = 9.4
 """Depth of a body in modules beyond which the mesh has a hub: three root circle pitches."""
 _READ_PLANE, _READ_SOLID = 1.5e-3, {True: 0.06, False: 0.02}
-"""CPU seconds to read the cached compliance of a gear in the plane, and over the face of a helical or a spur
-gear.
-"""
+"""CPU seconds to read a cached compliance, in the plane, and over the face of a helical or a spur gear."""
 _WORKING = 1.2
 """Memory of a condensation over the face over its largest working set: freed memory is not all used again."""
 _READING = 1.25
-"""Memory of a cached compliance over the face over its size: its mirror image, and the copies that contacts
-make of a block.
-"""
+"""Memory of a cached compliance over the face over its size: mirror image, and copies of blocks."""
 _SECTOR_BYTES, _HUB_BYTES = 9_000, 12_000
 """Bytes for each freedom of a sector, and for each freedom of a hub with `_HUB_FREEDOMS` of them. The factors
 of larger hubs have more entries for each freedom.
@@ -143,28 +135,32 @@ def contact_seconds(
     *,
     with_errors: bool = True,
 ) -> tuple[float, float, float]:
-    """CPU seconds of the search of positions, of the table, and of the solutions that measure its errors."""
+    """Return CPU seconds of the search of positions, of the table, and of the solutions for its errors."""
     points, distances, loads = alignments[0] * alignments[1], alignments[1], plan.load.size
-    nodes, assessed = expected_positions(pair, plan, model.period, points), min(points, _ASSESSED)
-    tried, window = expected_tries(pair, plan, model.period, points), plan.nodes.searched(model.period)
+    period = model.period
+    nodes, assessed = expected_positions(pair, plan, period, points), min(points, _ASSESSED)
+    tried, window = expected_tries(pair, plan, period, points), plan.nodes.searched(period)
     work = unit_work(pair, plan, plan.discretization.slices)
     search = work.of(tried * distances, 0) + work.in_pitches(tried * assessed, (loads,), window)
-    cycle = CycleSeconds.of(work, pair, model.period, nodes, (loads, plan.support.size))
-    derived = with_errors and cycle.pays_in_table(model.period)
+    cycle = CycleSeconds.of(work, pair, period, nodes, (loads, plan.support.size))
+    derived = with_errors and cycle.pays_in_table(period)
     table = work.of(nodes * distances, 0)
     table += points * (cycle.expected if derived else cycle.exact)
     table += _FACE_CHECK if plan.discretization.slices > 1 else 0.0
-    solved = 1 + solved_pitches(model.period, in_table=True)[1] if derived else model.period
-    return search, table, _errors(pair, plan, model.period, alignments, solved) if with_errors else 0.0
+    if not with_errors:
+        return search, table, 0.0
+    solved = 1 + solved_pitches(period, in_table=True)[1] if derived else period
+    return search, table, _errors(pair, plan, period, alignments, solved)
 
 
 def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, int], solved: int) -> float:
-    """CPU seconds of rougher solutions of some of the table, middles, and held-out points of its axes.
+    """Return CPU seconds of rougher solutions of a sample, of middles, and of held-out points of the axes.
 
-    In as many base pitches as are `solved` of its period.
+    `solved` is the number of base pitches of the period that are solved.
     """
     discretization, loads = plan.discretization, plan.load.size
-    nodes = expected_positions(pair, plan, period, alignments[0] * alignments[1])
+    tilts, distances = alignments
+    nodes = expected_positions(pair, plan, period, tilts * distances)
     work = unit_work(pair, plan, discretization.slices)
     rougher = [work, *([work] if discretization.corrected else [])]
     if discretization.slices > 1:
@@ -172,22 +168,19 @@ def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, 
     if plan.coarse_patch != plan.patch:
         rougher.append(work)
     sampled_loads, rows = min(loads, LOADS), sampled_positions(nodes).size
-    skews, distances = (min(count, ALIGNMENTS) for count in alignments)
-    seconds = sum(
-        w.of(rows * distances, 0) + w.in_pitches(rows * skews * distances, (sampled_loads,), solved)
-        for w in rougher
-    )
+    sampled_tilts, sampled_distances = min(tilts, ALIGNMENTS), min(distances, ALIGNMENTS)
+    assemblies, points = rows * sampled_distances, rows * sampled_tilts * sampled_distances
+    seconds = sum(w.of(assemblies, 0) + w.in_pitches(points, (sampled_loads,), solved) for w in rougher)
     if plan.positions is not None or period > 1:
-        middles, assessed = _SOLVED_MIDDLES * nodes, min(alignments[0] * alignments[1], _ASSESSED)
-        seconds += work.of(middles * alignments[1], 0) + work.in_pitches(
-            middles * assessed, (sampled_loads,), solved
-        )
+        middles, assessed = _SOLVED_MIDDLES * nodes, min(tilts * distances, _ASSESSED)
+        in_pitches = work.in_pitches(middles * assessed, (sampled_loads,), solved)
+        seconds += work.of(middles * distances, 0) + in_pitches
     validation_loads = (loads - 1) * (WIDE_PROBES if loads - 1 <= WIDE_INTERVALS else 1)
-    validation = rows * (validation_loads + WIDE_PROBES * (alignments[0] - 1) * sampled_loads)
-    further_rows = rows * (alignments[1] - 1)
+    validation = rows * (validation_loads + WIDE_PROBES * (tilts - 1) * sampled_loads)
+    further_rows = rows * (distances - 1)
     seconds += work.of(further_rows, validation + further_rows * sampled_loads)
     seconds += _FACE_CHECK if discretization.slices > 1 else _PLANE_CHECK
-    return seconds + _TABLE_POINT * nodes * period * alignments[0] * alignments[1] * loads
+    return seconds + _TABLE_POINT * nodes * period * tilts * distances * loads
 
 
 def memory_of_contact(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, int]) -> float:
@@ -206,7 +199,7 @@ def memory_of_contact(pair: ParallelAxes, plan: Plan, period: int, alignments: t
 
 
 def _with_tilt(pair: ParallelAxes, plan: Plan) -> bool:
-    """Whether beside the compliance its change along the flanks is assembled: where patches follow them."""
+    """Whether the change of the compliance along the flanks is assembled, too: where patches follow them."""
     sloped = any(gear.modification.varies_along_profile for gear in (pair.pinion, pair.wheel))
     return sloped or not isinstance(plan.discretization, FaceDiscretization)
 
@@ -240,14 +233,15 @@ def expected_tries(pair: ParallelAxes, plan: Plan, period: int, alignments: int)
 
 
 def expected_positions(pair: ParallelAxes, plan: Plan, period: int = 1, alignments: int = 1) -> int:
-    """Return the positions in one of many base pitches: requested, or with which the search usually ends."""
+    """Return the positions in one base pitch: requested, or with which a search usually ends."""
     if plan.positions is not None:
         return plan.positions
     start, over_face = plan.nodes.start, isinstance(plan.discretization, FaceDiscretization)
     at_one_load, power = _FACE_EXPECTED if over_face else _PLANE_EXPECTED
     added = (at_one_load * plan.load.size**power - start) * math.exp(-pair.overlap_ratio / _HANDED_OVER)
     expected = start * (_finer(pair, plan) if over_face and period == 1 else 1.0) + added
-    times = _UNLIKE if period > 1 and any(map(_unlike_teeth, (pair.pinion, pair.wheel))) else 1.0
+    unlike = _unlike_teeth(pair.pinion) or _unlike_teeth(pair.wheel)
+    times = _UNLIKE if period > 1 and unlike else 1.0
     return min(round(float(times * expected)), max_positions(plan, period * alignments))
 
 
@@ -256,7 +250,7 @@ def _unlike_teeth(gear: Toothing) -> bool:
 
 
 def _finer(pair: ParallelAxes, plan: Plan) -> float:
-    """Return how many times the first positions are needed where deviations add no ripple."""
+    """Return the factor of the first positions where no deviations add ripple."""
     lightest = float(plan.load.min()) / (pair.face_width * _RIPPLE_STIFFNESS)
     ripple = lightest * math.exp(-pair.overlap_ratio / _RIPPLE_OVERLAP)
     allowed = plan.nodes.tolerance * max(ripple, plan.nodes.least_ripple)
@@ -265,14 +259,14 @@ def _finer(pair: ParallelAxes, plan: Plan) -> float:
 
 
 def max_positions(plan: Plan, times: int) -> int:
-    """Return how many positions a search may end with, in so many base pitches and alignments."""
+    """Return how many positions a search may end with; `times` is base pitches times alignments."""
     return max(min(plan.nodes.maximum, MAX_ROWS // times), plan.nodes.start)
 
 
 class _Cost(NamedTuple):
     """CPU seconds of a compliance, bytes of the largest working set, and bytes that stay.
 
-    What is computed afresh holds little beside its working set, and is counted there.
+    A compliance that is not cached holds little in addition to its working set, and is counted there.
     """
 
     seconds: float
@@ -281,7 +275,7 @@ class _Cost(NamedTuple):
 
     @classmethod
     def of(cls, parts: Iterable[_Cost]) -> _Cost:
-        """One after the other."""
+        """Return the cost of parts one after the other."""
         costs = list(parts)
         working = max((cost.working for cost in costs), default=0.0)
         return cls(sum(cost.seconds for cost in costs), working, sum(cost.stored for cost in costs))
@@ -324,9 +318,8 @@ class Prediction:
 
     def to_json(self) -> Json:
         """Return plain JSON."""
-        return {"stages": self.stages, "cpu_seconds": self.cpu_seconds} | {
-            name: value for name, value in asdict(self).items() if name not in ("parts", "kind")
-        }
+        fields = {name: value for name, value in asdict(self).items() if name not in ("parts", "kind")}
+        return {"stages": self.stages, "cpu_seconds": self.cpu_seconds} | fields
 
 
 def log_name(kind: str, stage: str) -> str:
@@ -348,7 +341,7 @@ def predict_run(
     Parameters
     ----------
     model : ContactModel
-        For the base pitches of its period.
+        Model of the contact, whose period counts.
     alignments : (int, int)
         Numbers of misalignments and of center distances.
     cache : Path, optional
@@ -362,7 +355,7 @@ def predict_run(
     coarse = _compliance(pair, plan, cache, coarse=True) if with_errors else _Cost(0.0, 0.0, 0.0)
     search, solve, check = contact_seconds(pair, plan, model, alignments, with_errors=with_errors)
     slowness = host_slowness(cache)
-    # dense algebra has its own measurement of the host in it
+    # three dimensions: the cost of dense algebra is measured on this host
     speed = slowness if kind == "plane" else 1.0
     parts = {
         "compliance": {"bodies": fine.seconds * speed},
@@ -372,9 +365,9 @@ def predict_run(
     known = corrections(cache)
     correction = {stage: known.get(log_name(kind, stage), 1.0) for stage in STAGES}
     positions = expected_positions(pair, plan, model.period, alignments[0] * alignments[1])
-    memory = (
-        PROCESS_BYTES + memory_of_contact(pair, plan, model.period, alignments) + fine.stored + coarse.stored
-    )
+    memory = PROCESS_BYTES + memory_of_contact(pair, plan, model.period, alignments)
+    memory += fine.stored
+    memory += coarse.stored
     memory += max(fine.working, coarse.working)
     return Prediction(parts, correction, int(memory), positions, kind)
 
@@ -437,7 +430,7 @@ def body_seconds(gear: Toothing, recipe: MeshRecipe | SectorRecipe, cache: Path 
 
 
 def _section_cost(gear: Toothing, recipe: MeshRecipe) -> tuple[float, float]:
-    """CPU seconds and bytes of one gear in the plane on the reference host."""
+    """Return CPU seconds and bytes of one gear in the plane on the reference host, as fitted (see above)."""
     fineness = 0.05 * gear.normal_module / recipe.flank_size
     sector = 5000.0 * fineness**1.73
     depth = abs(gear.root_radius - gear.seat_radius) / gear.normal_module
@@ -466,15 +459,13 @@ def effort(pair: ParallelAxes, plan: Plan, model: ContactModel, alignments: tupl
     bodies = tuple(body.right_handed() for body in plan.bodies(pair))
     work = sum(contact_seconds(pair, plan, model, alignments))
     if isinstance(discretization, FaceDiscretization):
-        gears = dict.fromkeys(zip(bodies, discretization.recipes, strict=True))
-        return work + sum(_solid_effort(gear.teeth, recipe, plan.level) for gear, recipe in gears)
+        factor, by_layers, by_teeth, coarse = _SOLID_EFFORT[plan.level]
+        solids = []
+        for gear, recipe in dict.fromkeys(zip(bodies, discretization.recipes, strict=True)):
+            seconds = float(factor * recipe.layers**by_layers * gear.teeth**by_teeth)
+            solids.append(2.0 * _SOLID_MESHER + (1.0 + coarse) * seconds)
+        return work + sum(solids)
     for recipes in (discretization.recipes, discretization.coarse_recipes):
         sections = dict.fromkeys(zip(bodies, recipes, strict=True))
         work += sum(_section_cost(gear, recipe)[0] for gear, recipe in sections)
     return work + (_FREE_ENDS * len(dict.fromkeys(bodies)) if discretization.corrected else 0.0)
-
-
-def _solid_effort(teeth: int, recipe: SectorRecipe, level: str) -> float:
-    factor, layers, number, coarse = _SOLID_EFFORT[level]
-    seconds = float(factor * recipe.layers**layers * teeth**number)
-    return 2.0 * _SOLID_MESHER + (1.0 + coarse) * seconds

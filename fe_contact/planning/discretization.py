@@ -15,7 +15,6 @@ from fe_contact.types import Json
 PLANE_REFINEMENT = {"draft": 0.6, "medium": 0.8, "standard": 1.0, "fine": 2.0}
 """Refinement of plane meshes by level, over the standard one."""
 
-
 SECTOR_RECIPE: dict[str, Callable[[Toothing], SectorRecipe]] = {
     "draft": SectorRecipe.draft,
     "medium": SectorRecipe.medium,
@@ -23,26 +22,19 @@ SECTOR_RECIPE: dict[str, Callable[[Toothing], SectorRecipe]] = {
     "fine": SectorRecipe.fine,
 }
 
-
 SLICES = 15
 """Slices of the face. False orders of helical pairs are then about 1 nm."""
-
 
 FINER_SLICES = (23, 31)
 """Further numbers of slices that a tolerance may need."""
 
-
 SLICE_ORDER = 2.3
-"""Order of convergence of STE in the number of slices. Measured: 2.2 to 2.9 on helical pairs between 7 and 15
-slices.
-"""
-
+"""Order of convergence of STE in the number of slices: 2.2 to 2.9 on helical pairs with 7 to 15 slices."""
 
 SLICE_OVER_PATCH = 1.0
-"""Least width of a slice over the half-width of the load patches. With narrower slices the difference of the
-bodies' compliance and the local law's is not positive definite: heavy loads have no unique solution.
+"""Least width of a slice over the half-width of the load patches. With narrower slices the compliance of the
+bodies less that of the local law is not positive definite: heavy loads have no unique solution.
 """
-
 
 COARSER = 1.5
 """Element size of the coarse mesh of a solid over that of its fine mesh."""
@@ -64,13 +56,9 @@ class PlaneDiscretization:
     hypothesis: PlaneHypothesis
     recipes: tuple[MeshRecipe, MeshRecipe]
     coarse_recipes: tuple[MeshRecipe, MeshRecipe]
-    """`recipes`, `coarse_recipes`: Driving and driven gear; the coarse ones are half as fine, for the
-    discretization error. Shape (MeshRecipe, MeshRecipe) each.
-    """
+    """`recipes`, `coarse_recipes`: Recipes of both gears; the coarse ones, half as fine, tell the error."""
     finite_width: tuple[SectorRecipe, SectorRecipe] | None = None
-    """Recipes of solids of half the face, which give the correction for the finite width; None: the plane
-    alone. Shape (SectorRecipe, SectorRecipe).
-    """
+    """Recipes of solids of half the face for the correction of the finite width; None: the plane alone."""
 
     slices = 1
     remaining = 1.0 / 3.0
@@ -98,14 +86,12 @@ class FaceDiscretization:
 
     recipes: tuple[SectorRecipe, SectorRecipe]
     coarse_recipes: tuple[SectorRecipe, SectorRecipe]
-    """`recipes`, `coarse_recipes`: Driving and driven gear; the coarse ones for the discretization error.
-    Shape (SectorRecipe, SectorRecipe) each.
-    """
+    """`recipes`, `coarse_recipes`: Recipes of both gears; the coarse ones tell the discretization error."""
     slices: int
     """Number of slices of the common face width."""
     max_slices: int
-    """Largest useful number of slices, by two limits. Slices narrower than two thirds of a layer of either
-    gear move the same freedoms of the bodies; `SLICE_OVER_PATCH` is the other limit.
+    """Largest useful number of slices. Slices narrower than two thirds of a layer of either gear move the
+    same freedoms of the bodies; `SLICE_OVER_PATCH` is a second limit.
     """
 
     corrected = False
@@ -155,17 +141,17 @@ def plane_discretization(
     solids = (SectorRecipe.even_load(pair.pinion), SectorRecipe.even_load(pair.wheel))
     return PlaneDiscretization(
         hypothesis,
-        (first, second),
-        (first.refined(0.5), second.refined(0.5)),
-        solids if finite_width else None,
+        recipes=(first, second),
+        coarse_recipes=(first.refined(0.5), second.refined(0.5)),
+        finite_width=solids if finite_width else None,
     )
 
 
 def face_discretization(pair: ParallelAxes, level: str, slices: int | None = None) -> FaceDiscretization:
     """Choose the sectors of both gears and, unless they are given, the slices."""
-    first, second = (SECTOR_RECIPE[level](gear) for gear in (pair.pinion, pair.wheel))
+    first, second = SECTOR_RECIPE[level](pair.pinion), SECTOR_RECIPE[level](pair.wheel)
     coarse = _coarser(first, pair.pinion), _coarser(second, pair.wheel)
-    largest = min(_max_slices(pair, *side) for side in ((pair.pinion, first), (pair.wheel, second)))
+    largest = min(_max_slices(pair, pair.pinion, first), _max_slices(pair, pair.wheel, second))
     return FaceDiscretization((first, second), coarse, min(slices or SLICES, largest), largest)
 
 

@@ -16,14 +16,12 @@ from fe_contact.types import FloatArray
 _PLANE_RIPPLE, _SPUR_RIPPLE, _HELICAL_RIPPLE = 0.4, 0.4, 0.15
 """Peak-to-peak over mean of usual pairs: in the plane, over the face of spur and of helical pairs."""
 
-
 PLANE = {
     "draft": (8e-4, 1.2e-3),
     "medium": (4.6e-4, 5.6e-4),
     "standard": (2.6e-4, 2.6e-4),
     "fine": (5.4e-5, 5e-5),
 }
-
 
 SPUR = {
     "draft": (2.2e-3, 1.1e-3),
@@ -32,14 +30,12 @@ SPUR = {
     "fine": (4.6e-4, 4.6e-4),
 }
 
-
 HELICAL = {
     "draft": (5e-3, 3e-3),
     "medium": (3e-3, 1.6e-3),
     "standard": (1.8e-3, 8.5e-4),
     "fine": (8e-4, 4e-4),
 }
-
 
 RELIEVED = {
     "draft": (4e-3, 1.8e-3),
@@ -52,32 +48,26 @@ the plane, `SPUR` for spur pairs over the face, `HELICAL` and `RELIEVED` for hel
 modified profiles. Contact lines of modified profiles end under less load.
 """
 
-
 QUIET = {
     "draft": (1.4e-3, 9.8e-4),
     "medium": (1.4e-3, 5.2e-4),
     "standard": (5e-4, 2.5e-4),
     "fine": (4e-4, 2e-4),
 }
-"""Errors of mean and of peak-to-peak of helical pairs whose gears are both relieved (`is_relieved_helical`),
-over the mean's rise under load and the part of the change to the coarse mesh that second order leaves. They
-are medians of drawn pairs.
+"""Errors of mean and of peak-to-peak of helical pairs whose gears are both relieved (`is_relieved_helical`).
+They are over the product of the mean's rise under load and the part of the change to the coarse mesh that
+second order leaves, and are medians of drawn pairs.
 """
-
 
 QUIET_SCATTER = 0.3
 """Standard deviation of the logarithm of the stated over the expected error of these pairs."""
 
-
-HELICAL_SLICES, QUIET_SLICES, SPUR_SLICES, SLICES = 7e-4, 3e-4, 5e-5, 15
-"""Errors of peak-to-peak with `SLICES` slices over the mean's rise under load; for helical pairs times the
-overlap ratio.
-"""
-
+HELICAL_SLICES, QUIET_SLICES, SPUR_SLICES = 7e-4, 3e-4, 5e-5
+SLICES = 15
+"""Errors of peak-to-peak with `SLICES` slices over the mean's rise; helical: times the overlap ratio."""
 
 WIDTH_RIPPLE = 0.45
 """Peak-to-peak over mean of usual spur pairs."""
-
 
 PLANE_POSITIONS, FACE_POSITIONS = 0.14, 0.55
 """Error of peak-to-peak between positions over the allowed error of their search."""
@@ -90,7 +80,7 @@ class ExpectedCurves:
     force: FloatArray
     """Normal force, N. Shape (C,)."""
     added: FloatArray
-    """Mean less that at no load, m. Shape (C,)."""
+    """Rise of the mean under load, m. Shape (C,)."""
     mean: FloatArray
     peak_to_peak: FloatArray
     """`mean`, `peak_to_peak`: Expected mean and peak-to-peak STE, m. Shape (C,) each."""

@@ -1,10 +1,10 @@
 """The error of the method against full contact by regime, whatever the mesh.
 
-The floor is what full contact has proved of ordinary pairs. To it comes the larger of two that have unlike
-signs. Displacements are small: large ones turn bodies and flanks, in proportion to STE over the module.
-As teeth tilt contacts move, most where a soft gear runs on a stiff one; what is left of it grows with the
-whole (`flank_tilt`). Of peak-to-peak and harmonics the parts are of what teeth bend, which reliefs hide and
-do not make more exact.
+The floor is the error on ordinary pairs. The larger one of two errors of unlike signs adds to it. First, the
+method has small displacements, while large ones turn bodies and flanks in proportion to STE over the module.
+Second, contacts move as teeth tilt, most where a soft gear runs on a stiff one; the method misses a part of
+this (`flank_tilt`). Errors of peak-to-peak and harmonics are relative to the bending of teeth: reliefs make
+peak-to-peak smaller but not more exact.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from fe_contact.types import FloatArray
 _ALIKE, _UNLIKE = 0.1, 0.35
 """Mean change of STE over p R/(E* m^2) for gears of one material, and its growth for unlike materials.
 
-Measured on 12 pairs in plane strain, 17 to 90 teeth, external and internal, steel and 9 GPa, R/m of 1.7 to
-12, STE of 2 to 70 um: 0.04 to 0.15, and 0.2 to 0.55.
+Twelve pairs in plane strain have 0.04 to 0.15, and 0.2 to 0.55: 17 to 90 teeth, external and internal, steel
+and 9 GPa, R/m of 1.7 to 12, STE of 2 to 70 um.
 """
 
 FLOOR = (4e-4, 4.6e-4, 2.2e-3)
@@ -30,8 +30,8 @@ FLOOR = (4e-4, 4.6e-4, 2.2e-3)
 0.04 % of mean and peak-to-peak (docs/lab/index.md).
 """
 MODIFIED_FLOOR = (4e-4, 4.6e-4, 2.2e-3)
-"""Errors of mean, peak-to-peak and harmonics of modified flanks. In the plane points on reliefs are as far
-off as points on plain flanks, the mean of four pairs by 0.01 %.
+"""Errors of mean, peak-to-peak and harmonics of modified flanks. In the plane points on reliefs have the
+errors of points on plain flanks; the mean of four pairs is off by 0.01 %.
 """
 POINT_FLOOR = 1.2e-3
 """Error of a single point over the mean. Where teeth take over, tip edges carry."""
@@ -51,9 +51,7 @@ SPUR_RIPPLE, HELICAL_RIPPLE = 0.43, 0.1
 of 1.56 to 1.71; helical pairs have the least usual value.
 """
 HELICAL_OVERLAP = 0.5
-"""Overlap ratio from which the constants of helical pairs hold alone. The pairs of the calibration had 0.5
-and more.
-"""
+"""Least overlap ratio with the constants of helical pairs alone; pairs of the calibration had it and more."""
 RELIEVED_OVERLAP = 0.9
 """Least overlap ratio of the pairs that the constants of relieved helical pairs were set on."""
 HARMONIC_OVER_PEAK, FLAT_HARMONICS = 0.5, 3
@@ -63,7 +61,7 @@ since the handover is a step. From there harmonic k falls with 1/k.
 
 
 def flank_tilt(pair: ParallelAxes, force: FloatArray) -> FloatArray:
-    """Return the part of the mean transmission error that the tilt of the flanks takes off; `force` in N.
+    """Return the part by which the tilt of the flanks lowers the mean transmission error; `force` in N.
 
     The approach falls by 3 R tau^2/2 on a pair of teeth, R the relative radius of curvature, and the tilt
     tau grows with p/(E* m). In gears of one material those of both flanks nearly cancel
@@ -100,7 +98,7 @@ def model_errors(pair: ParallelAxes, force: FloatArray, values: FloatArray, *, o
 def in_small_displacements(
     pair: ParallelAxes, force: FloatArray, values: FloatArray, *, over_face: bool
 ) -> FloatArray:
-    """Return the errors against full contact whose displacements are small, as those of the bodies are, m.
+    """Return the errors against full contact with the small displacements that the bodies have, m.
 
     Parameters are those of `model_errors`.
     """
@@ -121,7 +119,7 @@ def of_bending(pair: ParallelAxes, values: FloatArray) -> FloatArray:
     ripple = bending_ripple(pair)
     number = np.arange(1, QUANTITIES - FIRST_HARMONIC + 1)
     harmonics = ripple * HARMONIC_OVER_PEAK * np.minimum(1.0, FLAT_HARMONICS / number)
-    over_mean = np.array([1.0, ripple, 0.0, *harmonics])
+    over_mean = np.array([1.0, ripple, 0.0, *harmonics])  # teeth that are alike bend at mesh orders only
     return np.asarray(np.maximum(values, np.multiply.outer(over_mean[: len(values)], values[MEAN])))
 
 
@@ -133,7 +131,7 @@ def bending_ripple(pair: ParallelAxes) -> float:
 def helical_share(pair: ParallelAxes) -> float:
     """Return the weight of the constants of helical pairs against those of spur pairs, 0 to 1.
 
-    A helix of next to no overlap leaves the errors of a spur pair.
+    It grows with the overlap: a pair of hardly any overlap has the errors of a spur pair.
     """
     return min(abs(pair.overlap_ratio) / HELICAL_OVERLAP, 1.0)
 
@@ -150,12 +148,13 @@ def point_error(
     pair: ParallelAxes, force: FloatArray, deflection: FloatArray, *, over_face: bool
 ) -> FloatArray:
     """Return the error at points (P, F) whose STE is `deflection`, m."""
-    lag = np.abs(deflection).T[None]
-    mean = model_errors(pair, force, lag, over_face=over_face)[0]
-    return np.asarray(AT_A_POINT * (mean + (POINT_FLOOR - floor_of(pair)[0]) * lag[0]).T)
+    lag = np.abs(deflection).T  # (F, P)
+    (mean_error,) = model_errors(pair, force, lag[None], over_face=over_face)
+    mean_floor, _, _ = floor_of(pair)
+    return np.asarray(AT_A_POINT * (mean_error + (POINT_FLOOR - mean_floor) * lag).T)
 
 
 def _by_quantity(part: tuple[float, float, float], values: FloatArray) -> FloatArray:
-    """Return the parts of the quantities (Q,) that there are."""
+    """Return the parts of the first quantities (Q,), as many as `values` has."""
     mean, ripple, harmonic = part
     return np.array([mean, ripple, *[harmonic] * (QUANTITIES - OFF_MESH)])[: len(values)]

@@ -21,20 +21,16 @@ from fe_contact.material import STEEL
 _SAMPLES = 33
 """Points of the fillet among which the critical section is sought."""
 
-
 _NOTCH = (1.0, 8.0)
 """Range in which the stress correction factor is valid: chord over twice the root radius [2]_."""
 
 
-def _sharing_pairs(pair: ParallelAxes) -> float:
-    """Return the least number of pairs that share the load; for wide helical gears their mean number."""
-    ratio, overlap = pair.transverse_contact_ratio, min(pair.overlap_ratio, 1.0)
-    return (1.0 - overlap) * max(1.0, math.floor(ratio)) + overlap * max(1.0, ratio)
-
-
 def _line_load(pair: ParallelAxes, normal_force: float) -> float:
     """Return the load per length of contact, N/m."""
-    return normal_force * math.cos(pair.base_helix_angle) / (pair.face_width * _sharing_pairs(pair))
+    ratio, overlap = pair.transverse_contact_ratio, min(pair.overlap_ratio, 1.0)
+    # the least number of pairs in contact; for wide helical gears their mean number
+    sharing_pairs = (1.0 - overlap) * max(1.0, math.floor(ratio)) + overlap * max(1.0, ratio)
+    return normal_force * math.cos(pair.base_helix_angle) / (pair.face_width * sharing_pairs)
 
 
 def pitch_point_pressure(pair: ParallelAxes, normal_force: float) -> float:
@@ -55,14 +51,14 @@ def nominal_deflection(pair: ParallelAxes, normal_force: float) -> float:
 def nominal_root_stresses(pair: ParallelAxes, normal_force: float) -> tuple[float, float]:
     """Return the nominal root stress of pinion and wheel, Pa: load at the end of single contact [2]_.
 
-    Of spur gears that is method B without its load factors; of helical gears the transverse section stands in
-    for the virtual spur gear.
+    For spur gears it is method B without its load factors; for helical gears the transverse section replaces
+    the virtual spur gear.
     """
     path, load = pair.path_of_contact, _line_load(pair, normal_force)
     high = min(path.start + path.base_pitch, path.end)
     low = max(path.end - path.base_pitch, path.start)
-    rolls = (high, float(pair.mating_roll_length(low)))
-    return _root_stress(pair.pinion, load, rolls[0]), _root_stress(pair.wheel, load, rolls[1])
+    on_wheel = float(pair.mating_roll_length(low))
+    return _root_stress(pair.pinion, load, high), _root_stress(pair.wheel, load, on_wheel)
 
 
 def _root_stress(gear: Toothing, load: float, roll_length: float) -> float:
@@ -73,6 +69,7 @@ def _root_stress(gear: Toothing, load: float, roll_length: float) -> float:
     arc = gear.sign * roll_length**2 / (2.0 * gear.base_radius)  # of the involute from its base
     point, normal = profile.flank(np.array([arc]))[0], profile.normal(np.array([arc]))[0]
     chord = 2.0 * float(section[0])
+    # the arm of the load about the section, where its line crosses the center line of the tooth (x = 0)
     lever = abs(float(point[1] - point[0] * normal[1] / normal[0] - section[1]))
     bending = 6.0 * lever * abs(float(normal[0])) * load / chord**2
     step = 0.01 * profile.fillet_length
@@ -80,4 +77,5 @@ def _root_stress(gear: Toothing, load: float, roll_length: float) -> float:
     # chord over twice the radius of curvature, which is 2 step / turn
     sharpness = min(max(chord * turn / (4.0 * step), _NOTCH[0]), _NOTCH[1])
     slimness = chord / max(lever, 1e-9 * chord)
-    return float(bending * (1.2 + 0.13 * slimness) * sharpness ** (1.0 / (1.21 + 2.3 / slimness)))
+    notch_factor = (1.2 + 0.13 * slimness) * sharpness ** (1.0 / (1.21 + 2.3 / slimness))  # Y_S [2]_
+    return float(bending * notch_factor)

@@ -8,13 +8,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from math import atan, cos, tan
 
 import numpy as np
 
 from bounds import DEPTHS, Direction, Finding, Kind, engineering
 from fe_contact.flank.modification import FLANK_FIELDS, fields_of
-from fe_contact.geometry import ParallelAxes, Shaft
+from fe_contact.geometry import ParallelAxes
 from fe_contact.geometry.toothing import Toothing
 from fe_contact.plausibility.check import CHECKS, assessed
 from fe_contact.plausibility.nominal_intensities import (
@@ -117,40 +116,35 @@ def _amount(field: str, amount: float, module: float) -> Iterator[Finding]:
 
 
 def _shafts(pair: ParallelAxes) -> Iterator[Finding]:
-    for name, shaft in zip(("pinion", "wheel"), pair.shafts, strict=True):
-        if shaft is not None:
-            yield from _shaft(f"{name}.shaft", shaft)
-
-
-def _shaft(name: str, shaft: Shaft) -> Iterator[Finding]:
-    reason = f"{engineering(shaft.length / shaft.diameter, 2)} diameters between the bearings are unusual"
-    yield from assessed(
-        "shaft_slenderness", f"{name}.length", shaft.length, "m", scale=shaft.diameter, reason=reason
-    )
-    if shaft.bearing_stiffness is not None:
-        yield from assessed("bearing_stiffness", f"{name}.bearing_stiffness", shaft.bearing_stiffness, "N/m")
+    for gear, shaft in zip(("pinion", "wheel"), pair.shafts, strict=True):
+        if shaft is None:
+            continue
+        name, length, stiffness = f"{gear}.shaft", shaft.length, shaft.bearing_stiffness
+        reason = f"{engineering(length / shaft.diameter, 2)} diameters between the bearings are unusual"
+        scale = shaft.diameter
+        yield from assessed("shaft_slenderness", f"{name}.length", length, "m", scale=scale, reason=reason)
+        if stiffness is not None:
+            yield from assessed("bearing_stiffness", f"{name}.bearing_stiffness", stiffness, "N/m")
 
 
 def _deviations(pair: ParallelAxes, skew: FloatArray, change: FloatArray) -> Iterator[Finding]:
     """Check the largest deviation of either axis, if it is not 0."""
-    for check, field, values in (
-        ("misalignment", "misalignments", skew),
-        ("center_distance_change", "center_distance_changes", change),
+    face = pair.face_width
+    for check, values, usual in (
+        ("misalignment", skew, _MISALIGNED * face),
+        ("center_distance_change", change, pair.pinion.normal_module),
     ):
         index = int(np.argmax(np.abs(values))) if values.size else 0
         value = float(values[index]) if values.size else 0.0
         if not value:
             continue
         reason = "smaller than can be aligned or measured"
-        name = f"{field}[{index}]"
-        usual = _MISALIGNED * pair.face_width if check == "misalignment" else pair.pinion.normal_module
+        name = f"{check}s[{index}]"  # the field of a request is the plural
         for finding in assessed(check, name, value, "m", reason=reason):
             yield replace(finding, high=usual)
         if check == "misalignment":
-            reason = f"{1e3 * abs(value) / pair.face_width:.3g} mrad of misalignment"
-            for finding in assessed(
-                "misalignment_over_face", name, value, "m", scale=pair.face_width, reason=reason
-            ):
+            reason = f"{1e3 * abs(value) / face:.3g} mrad of misalignment"
+            for finding in assessed("misalignment_over_face", name, value, "m", scale=face, reason=reason):
                 yield replace(finding, low=CHECKS["misalignment"].low or 0.0)
 
 
@@ -178,24 +172,17 @@ def _loads(pair: ParallelAxes, load: FloatArray, loads_as: str) -> Iterator[Find
             yield replace(finding, field=field, value=value, unit=unit, low=low, high=high)
 
 
-def mesh_findings(pair: ParallelAxes) -> tuple[Finding, ...]:
-    """Return the implausible values of the mesh of a pair that is geometrically possible."""
-    return tuple(_findings(pair))
-
-
-def _findings(pair: ParallelAxes) -> Iterator[Finding]:
+def mesh_findings(pair: ParallelAxes) -> Iterator[Finding]:
+    """Yield the implausible values of the mesh of a pair that is geometrically possible."""
     module = pair.pinion.normal_module
     for name, gear, clearance in zip(
         ("pinion", "wheel"), (pair.pinion, pair.wheel), pair.tip_clearances, strict=True
     ):
-        field, text = (
-            f"{name} tip clearance over module",
-            "the tip comes near the root of the mating gear",
-        )
+        field, text = f"{name} tip clearance over module", "the tip comes near the root of the mating gear"
         yield from assessed("tip_clearance", field, clearance / module, "1", reason=text)
         field, text = f"{name} tip thickness over module", "the tooth is nearly pointed"
-        helix = atan(tan(gear.helix_angle) * gear.tip_radius / gear.reference_radius)
-        thickness = gear.tip_tooth_thickness * cos(helix)
+        helix = math.atan(math.tan(gear.helix_angle) * gear.tip_radius / gear.reference_radius)
+        thickness = gear.tip_tooth_thickness * math.cos(helix)
         yield from assessed("tip_thickness", field, thickness / module, "1", reason=text)
     text = "the teeth hardly take over from each other"
     ratio = pair.active_contact_ratio

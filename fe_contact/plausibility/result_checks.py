@@ -18,10 +18,10 @@ def table_findings(
 
     Parameters
     ----------
-    static_transmission_error, max_pressure : (P, F, M, D) arrays
-        m and Pa; NaN where there is no solution.
+    static_transmission_error, max_pressure : ndarray, shape (P, F, M, D)
+        Arrays of the table, m and Pa; NaN where there is no solution.
     normal_module : float
-        m.
+        Normal module of the pair, m.
     """
     return (*_transmission_error(static_transmission_error, normal_module), *_pressure(max_pressure))
 

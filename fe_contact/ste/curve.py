@@ -26,9 +26,9 @@ from fe_contact.types import Estimate, FloatArray
 def _pairs_seen(database: SteFields, position: FloatArray) -> NDArray[np.int64]:
     """List the pairs that can carry load at `position` (not wrapped).
 
-    Where all teeth are alike (period 1) these are the stored pairs inside [0, 1); elsewhere the pair that is
-    j at phase 0 is j - n at n pitches, so that one index follows one pair of teeth through mesh. Longer
-    periods count anew at every whole pitch: their pairs are always the stored ones.
+    Where all teeth are alike (period 1) they are numbered as at phase 0: the pair j at phase 0 has the stored
+    index j - n after n pitches, so that one number follows one pair of teeth through mesh. Longer periods
+    count anew at every whole pitch: their pairs are always the stored ones.
     """
     if database.period > 1:
         return database.pair
@@ -37,38 +37,38 @@ def _pairs_seen(database: SteFields, position: FloatArray) -> NDArray[np.int64]:
 
 
 def _load_share(database: SteFields, position: FloatArray, point: OperatingPoint) -> FloatArray:
-    """Share of each of `_pairs_seen` at (Q,) positions: (Q, pairs), >= 0, each row sums to 1.
+    """Return the share of each of `_pairs_seen` at (Q,) positions: (Q, pairs), >= 0, each row sums to 1.
 
     The share of a pair of teeth is one curve over its own phase, zero beyond the stored pairs; C1 and
     monotone between knots in phase. As many pairs as the period has pitches meet in turn. Below the smallest
     stored load the share is that load's.
     """
     stored = at_operating_point(database, database.load_share, point)
-    pitch, fraction = np.floor(position).astype(np.int64), position
-    if database.period > 1:
-        fraction = position - pitch
-    query = fraction[:, None] + _pairs_seen(database, position)
-    met = (_pairs_seen(database, position) - pitch[:, None]) % database.period
-    share = np.empty(query.shape)
-    order = np.argsort(met, axis=None, kind="stable")
-    all_teeth, first = np.unique(met.flat[order], return_index=True)
-    for teeth, of_teeth in zip(all_teeth.tolist(), np.split(order, first[1:]), strict=True):
-        phase, shares = _over_phase(database, stored, teeth)
-        share.flat[of_teeth] = interpolate(Axis(phase), shares, query.flat[of_teeth])
+    pairs = _pairs_seen(database, position)
+    pitch = np.floor(position).astype(np.int64)
+    phase = (position - pitch if database.period > 1 else position)[:, None] + pairs
+    # which of the pairs of teeth of a period each entry is; the entries of one pair are evaluated together
+    teeth = (pairs - pitch[:, None]) % database.period
+    share = np.empty(phase.shape)
+    order = np.argsort(teeth, axis=None, kind="stable")
+    numbers, first = np.unique(teeth.flat[order], return_index=True)
+    for number, entries in zip(numbers.tolist(), np.split(order, first[1:]), strict=True):
+        knots, shares = _over_phase(database, stored, number)
+        share.flat[entries] = interpolate(Axis(knots), shares, phase.flat[entries])
     share = np.maximum(share, 0.0)
     return np.asarray(share / share.sum(axis=1, keepdims=True))
 
 
 def at_operating_point(database: SteFields, values: FloatArray, point: OperatingPoint) -> FloatArray:
     """Reduce (P, F, M, D, ...) to (P, ...) at one load and alignment."""
-    along_force = np.moveaxis(values, (1, 2, 3), (0, 1, 2))
+    values = np.moveaxis(values, 0, 3)  # (F, M, D, P, ...): each step interpolates over the first axis
     for axis, at in (
         (database.force, point.force),
         (database.misalignment, point.misalignment),
         (database.center_distance_change, point.center_distance_change),
     ):
-        along_force = interpolate(Axis(axis), along_force, np.array([at]))[0]
-    return along_force
+        values = interpolate(Axis(axis), values, np.array([at]))[0]
+    return values
 
 
 def _over_phase(database: SteFields, shares: FloatArray, teeth: int) -> tuple[FloatArray, FloatArray]:
@@ -78,18 +78,18 @@ def _over_phase(database: SteFields, shares: FloatArray, teeth: int) -> tuple[Fl
     the period.
     """
     period, position = database.period, database.position
-    phase, curve = [np.empty(0)], [np.empty(0)]
+    phase, curve = [], []
     for column, pair in enumerate(database.pair):
         pitch = (pair - teeth) % period
         knots = slice(*np.searchsorted(position, [pitch, pitch + 1]))
         phase.append((pair - pitch) + position[knots])
         curve.append(shares[knots, column])
-    ends = _knot_before(database, teeth), _knot_after(database, teeth)
-    return np.concatenate([ends[:1], *phase, ends[1:]]), np.concatenate([[0.0], *curve, [0.0]])
+    before, after = _knot_before(database, teeth), _knot_after(database, teeth)
+    return np.concatenate([[before], *phase, [after]]), np.concatenate([[0.0], *curve, [0.0]])
 
 
 def _knot_before(database: SteFields, teeth: int) -> float:
-    """Phase of the last knot before the first stored pair of `teeth`."""
+    """Return the phase of the last knot before the first stored pair of `teeth`."""
     pitch = (database.pair[0] - teeth) % database.period
     first = int(np.searchsorted(database.position, pitch))
     turned = database.period if first == 0 else 0
@@ -97,11 +97,11 @@ def _knot_before(database: SteFields, teeth: int) -> float:
 
 
 def _knot_after(database: SteFields, teeth: int) -> float:
-    """Phase of the first knot after the last stored pair of `teeth`."""
+    """Return the phase of the first knot after the last stored pair of `teeth`."""
     pitch = (database.pair[-1] - teeth) % database.period
-    next_one = int(np.searchsorted(database.position, pitch + 1))
-    turned = database.period if next_one == database.position.size else 0
-    return float((database.pair[-1] - pitch + turned) + database.position[next_one % database.position.size])
+    knot, count = int(np.searchsorted(database.position, pitch + 1)), database.position.size
+    turned = database.period if knot == count else 0
+    return float((database.pair[-1] - pitch + turned) + database.position[knot % count])
 
 
 @brief
@@ -120,9 +120,7 @@ class Curve:
     error: FloatArray
     """Half-width of the error band of the transmission error, m. Shape (Q,)."""
     interval_error: float
-    """Part of every error band by interpolation between the nodes of load, misalignment and center distance,
-    m: 0 on nodes, NaN where not estimated.
-    """
+    """Part of the error band by interpolation of loads and alignments, m: 0 on nodes, NaN: not estimated."""
     pair: NDArray[np.int64]
     """Pair index of each column of `_load_share`; the stored pairs if all positions lie in [0, 1) or the
     period is longer than a pitch. Shape (N,).
@@ -131,17 +129,13 @@ class Curve:
     """Part of the load on each pair. Shape (Q, N)."""
     mean: Estimate
     peak_to_peak: Estimate
-    """`mean`, `peak_to_peak`: Mean and peak-to-peak over one period, independent of `position`. An error of
-    NaN was not estimated.
-    """
+    """`mean`, `peak_to_peak`: Figures over one period, whatever `position` is. Error NaN: not estimated."""
     harmonics: tuple[Estimate, ...]
     """Mesh harmonics: amplitudes A_n of ste(x) = mean + sum A_n cos(2 pi n x + phi_n), n = 1 .. 20."""
     harmonic_phases: FloatArray
     """Phases phi_n of the mesh harmonics, rad. Shape (20,)."""
     spectrum: Spectrum
-    """All orders up to the 20th mesh harmonic; with a period of many pitches also the orders between the mesh
-    harmonics.
-    """
+    """All orders up to the 20th mesh harmonic, over many pitches also those between the mesh harmonics."""
     period: int
     """Period of the table, base pitches."""
     over_face: OverFace | None = None
@@ -154,9 +148,9 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
     """Evaluate the curve at positions `at` (the stored ones if None).
 
     The errors of mean, peak-to-peak and harmonics are those of all stored sources together
-    (`curve_errors.all_sources`). Of a table without them they are bounds for any error inside the pointwise
-    bands: of the mean the mean of the band, of peak-to-peak the sum of the bands at the two extremes, of an
-    order twice the mean band. Raises `InputError`: `at` is no list of finite positions within 1000 periods.
+    (`curve_errors.all_sources`). A table without sources has bounds for any error inside the pointwise bands:
+    for the mean the mean of the band, for peak-to-peak the sum of the bands at the two extremes, for an order
+    twice the mean band. Raises `InputError`: `at` is no list of finite positions within 1000 periods.
     """
     position = database.position if at is None else _positions(at, FARTHEST * database.period)
     even = even_positions(database.period)
@@ -164,12 +158,11 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
     ste, band, below = _evaluate(database, force, point, everywhere)
     mean_error, ripple_error, *of_orders = _errors(database, point, band, below, ste, even.size)
     orders = spectrum(ste[: even.size], database.period, database.geometry.teeth, np.array(of_orders))
-    mesh = slice(database.period - 1, None, database.period)
-    lowest, highest = int(np.argmin(ste)), int(np.argmax(ste))
+    mesh = slice(database.period - 1, None, database.period)  # the mesh orders among all orders
     stored = [part[even.size :] for part in (ste, band, below)]
     values, *error_parts = stored if at is None else _evaluate(database, force, point, position)
     mean = Estimate(float(np.mean(ste[: even.size])), mean_error, "m")
-    ripple = Estimate(float(ste[highest] - ste[lowest]), ripple_error, "m")
+    ripple = Estimate(float(ste.max() - ste.min()), ripple_error, "m")
     bias = stored_bias(database.metadata.receipt)
     return Curve(
         point=point,
@@ -218,18 +211,21 @@ def _errors(
     ste: FloatArray,
     even: int,
 ) -> list[float]:
-    """Errors (23,) of mean, peak-to-peak and orders in m; NaN: a source was not estimated."""
+    """Return the errors (23,) of mean, peak-to-peak and orders in m; NaN: a source was not estimated.
+
+    The first `even` of the positions are equally spaced.
+    """
     stored = database.curve_error.size > 0
-    left = below if stored else band + below
-    ends = left[int(np.argmin(ste))] + left[int(np.argmax(ste))]
-    mean = float(np.mean(left[:even]))
-    bounds = np.array([mean, ends, *[2.0 * mean] * (QUANTITIES - OFF_MESH)])
+    pointwise = below if stored else band + below
+    extremes = pointwise[int(np.argmin(ste))] + pointwise[int(np.argmax(ste))]
+    mean = float(np.mean(pointwise[:even]))
+    bounds = np.array([mean, extremes, *[2.0 * mean] * (QUANTITIES - OFF_MESH)])
     total = bounds + all_sources(errors_by_source(database, point)) if stored else bounds
     return [float(error) for error in total]
 
 
 def _positions(at: ArrayLike, farthest: int) -> FloatArray:
-    """Positions as a finite 1-D array of moderate reach."""
+    """Return positions as a finite 1-D array of moderate reach."""
     position = np.atleast_1d(np.asarray(at, dtype=float))
     if position.ndim != 1 or position.size == 0 or not np.all(np.abs(position) <= farthest):
         reach = from_to(-farthest, farthest)

@@ -59,9 +59,7 @@ OPTIONAL: dict[str, tuple[str, ...]] = {
 """Dimensions of the arrays that some tables do not have: they are empty there."""
 MISALIGNMENT, CENTER_DISTANCE = GRID[2:]
 INSERTED = {MISALIGNMENT: "misalignment_inserted", CENTER_DISTANCE: "center_distance_inserted"}
-"""Names of the marks of inserted nodes by axis; inserted loads are support loads between two loads of the
-axis.
-"""
+"""Names of the marks of inserted nodes by axis. Inserted loads are support loads between two of the axis."""
 INTEGER_TYPES: dict[str, type[np.signedinteger[Any]]] = {
     "pair": np.int64,
     "pairs_in_contact": np.int16,
@@ -96,9 +94,7 @@ class SteFields:
     `position` - floor(`position`) + j. Shape (N,).
     """
     static_transmission_error: FloatArray
-    """Transmission error along the transverse line of action, m, positive = the driven gear lags; NaN where
-    the solve failed. Shape (P, F, M, D).
-    """
+    """Transmission error, m, > 0: the driven gear lags; NaN where the solve failed. Shape (P, F, M, D)."""
     tangent_compliance: FloatArray
     """d STE / d F_bn in m/N, > 0. Shape (P, F, M, D)."""
     no_load_transmission_error: FloatArray
@@ -113,13 +109,9 @@ class SteFields:
     """
     pairs_in_contact: NDArray[np.int16]
     status: NDArray[np.int8]
-    """`pairs_in_contact`, `status`: Number of pairs that carry load; `fe_contact.types.Status` of the solve.
-    (P, F, M, D) integer arrays.
-    """
+    """`pairs_in_contact`, `status`: Pairs that carry load; `fe_contact.types.Status`. Shape (P, F, M, D)."""
     error_estimate: FloatArray
-    """Half-width of the error band of the transmission error, m, >= 0; NaN where it was not estimated. Shape
-    (P, F, M, D).
-    """
+    """Half-width of the error band of the STE, m, >= 0; NaN: not estimated. Shape (P, F, M, D)."""
     residuals: FloatArray
     """Equilibrium, penetration, tension, complementarity of the contact solution; NaN in base pitches that
     were not solved but follow from derivatives. Shape (P, F, M, D, 4).
@@ -235,7 +227,7 @@ class SteFields:
         return int(np.count_nonzero(self.failed))
 
     def summary(self) -> str:
-        """One or two lines: extent of the table, and loudly what failed in it."""
+        """Return the extent of the table and what failed in it, in one or two lines."""
         extent = " x ".join(f"{getattr(self, name).size} {name}" for name in GRID)
         if self.period > 1:
             extent += f" over {self.period} base pitches"
@@ -246,9 +238,9 @@ class SteFields:
             "center distances": self.inserted_center_distance_change,
         }
         text += "".join(f", {nodes.size} {name} inserted" for name, nodes in inserted.items() if nodes.size)
-        return (
-            f"{text}\nWARNING: {self.failure_message()}" if self.n_failed else f"{text}; all points converged"
-        )
+        if self.n_failed:
+            return f"{text}\nWARNING: {self.failure_message()}"
+        return f"{text}; all points converged"
 
     def failure_message(self, limit: int = 5) -> str:
         """Return number, reasons and positions of the points that failed (the first `limit`)."""
@@ -259,11 +251,13 @@ class SteFields:
 
     def _describe(self, point: tuple[int, ...]) -> str:
         units = ("", " N", " m", " m")
-        coordinates = (
+        coordinates = [
             f"{name} {getattr(self, name)[i]:.6g}{unit}"
             for name, i, unit in zip(GRID, point, units, strict=True)
-        )
-        return f"{', '.join(coordinates)}: {_status_name(int(self.status[point]))}"
+        ]
+        code = int(self.status[point])
+        status = Status(code).name if code in set(Status) else f"status {code}"
+        return f"{', '.join(coordinates)}: {status}"
 
     def require_complete(self) -> None:
         """Raise `SolveError`, with the table as its partial result, if any point failed."""
@@ -272,54 +266,46 @@ class SteFields:
 
     def identical(self, other: SteFields) -> bool:
         """Whether every stored bit (NaN payloads included), fact and metadata entry agrees."""
-        return (
-            self.geometry == other.geometry
-            and self.metadata == other.metadata
-            and self.period == other.period
-            and all(
-                _same_bits(getattr(self, name), getattr(other, name)) for name in (*DIMENSIONS, *OPTIONAL)
-            )
+        facts = ("geometry", "metadata", "period")
+        return all(getattr(self, name) == getattr(other, name) for name in facts) and all(
+            _same_bits(getattr(self, name), getattr(other, name)) for name in (*DIMENSIONS, *OPTIONAL)
         )
 
 
 def _check_shapes(table: SteFields) -> None:
-    sizes = {name: getattr(table, name).size for name in (*GRID, "pair", "support_force")} | {
-        "residual": len(RESIDUALS)
-    }
+    sizes = {name: getattr(table, name).size for name in (*GRID, "pair", "support_force")}
+    sizes["residual"] = len(RESIDUALS)
     for name, dimensions in DIMENSIONS.items():
         expected = tuple(sizes[dimension] for dimension in dimensions)
         actual = getattr(table, name).shape
         if actual != expected:
             raise DatabaseError(f"{name} has shape {actual}; ({', '.join(dimensions)}) needs {expected}")
-    likes = {"edge_pressure": "max_pressure", "load_arm": "max_pressure", "pair_pressure": "load_share"}
-    for name, like in likes.items():
+    # arrays of `OPTIONAL` are empty, or have the shape of another array
+    models = {"edge_pressure": "max_pressure", "load_arm": "max_pressure", "pair_pressure": "load_share"}
+    for name, model in models.items():
         values = getattr(table, name)
-        differs = values.size > 0 and values.shape != getattr(table, like).shape
-        _refuse(differs, name, f"have the dimensions of {like}")
+        differs = values.size > 0 and values.shape != getattr(table, model).shape
+        _refuse(differs, name, f"have the dimensions of {model}")
+    nodes = table.static_transmission_error.shape[1:]
     for name in ("curve_error", "load_arm_error"):
         errors = getattr(table, name)
-        _refuse(
-            errors.size > 0 and errors.shape[2:] != table.static_transmission_error.shape[1:],
-            name,
-            f"have the dimensions {', '.join(OPTIONAL[name])}",
-        )
+        differs = errors.size > 0 and errors.shape[2:] != nodes
+        _refuse(differs, name, f"have the dimensions {', '.join(OPTIONAL[name])}")
     for axis, name in INSERTED.items():
         marks = getattr(table, name)
         _refuse(marks.size > 0 and marks.shape != (sizes[axis],), name, f"have the dimension {axis}")
-    intervals, nodes = table.interval_error, table.static_transmission_error.shape[1:]
-    differs = intervals.size > 0 and intervals.shape != (3, *nodes)
+    differs = table.interval_error.size > 0 and table.interval_error.shape != (3, *nodes)
     _refuse(differs, "interval_error", "have the dimensions 3, force, misalignment, center_distance_change")
 
 
 def _check_axes(table: SteFields) -> None:
-    """Axes are finite and increasing, inside their domain, and loads are the torques."""
+    """Check that axes are finite, increasing and inside their domain, and that loads are the torques."""
     for name in (*GRID, "pair"):
         axis = getattr(table, name)
         _refuse(axis.size == 0 or not np.all(np.isfinite(axis)), name, "be non-empty and finite")
         _refuse(bool(np.any(np.diff(axis) <= 0)), name, "be strictly increasing")
-    _refuse(
-        np.intersect1d(table.force, table.support_force).size > 0, "support_force", "repeat no stored load"
-    )
+    repeated = np.intersect1d(table.force, table.support_force)
+    _refuse(repeated.size > 0, "support_force", "repeat no stored load")
     _refuse(bool(np.any(np.diff(table.support_force) <= 0.0)), "support_force", "be strictly increasing")
     _refuse(not np.all(table.support_force > 0.0), "support_force", "be above 0 N")
     is_integer = isinstance(table.period, int) and not isinstance(table.period, bool)
@@ -329,38 +315,29 @@ def _check_axes(table: SteFields) -> None:
     _refuse(table.force[0] <= 0.0, "force", "be above 0 N")
     _refuse(bool(np.any(np.diff(table.pair) != 1)), "pair", "be consecutive")
     carried = table.force * (table.geometry.base_radius[0] * math.cos(table.geometry.base_helix_angle))
-    _refuse(
-        not np.allclose(table.torque, carried, rtol=1e-9, atol=0.0),
-        "torque",
-        "equal F_bn cos(beta_b) r_b1 in N m",
-    )
+    differs = not np.allclose(table.torque, carried, rtol=1e-9, atol=0.0)
+    _refuse(differs, "torque", "equal F_bn cos(beta_b) r_b1 in N m")
 
 
 def _check_values(table: SteFields) -> None:
-    """Converged points hold numbers of plausible size and sign; failed points hold NaN."""
+    """Check that converged points hold numbers of plausible size and sign, and failed points NaN."""
     good = ~table.failed
-    ste, compliance = table.static_transmission_error, table.tangent_compliance
-    _refuse(
-        not np.all(np.isfinite(ste) == good), "static_transmission_error", "be finite exactly where converged"
-    )
+    finite, compliance = np.isfinite(table.static_transmission_error), table.tangent_compliance
+    _refuse(not np.all(finite == good), "static_transmission_error", "be finite exactly where converged")
     for name in ("static_transmission_error", "no_load_transmission_error"):
         # micrometers passed as meters are larger than the gear
         too_large = np.abs(getattr(table, name)) > table.geometry.base_radius[0]
         _refuse(bool(np.any(too_large)), name, "be in m (it exceeds the base radius)")
-    _refuse(
-        not np.all(np.isfinite(table.no_load_transmission_error)), "no_load_transmission_error", "be finite"
-    )
+    not_finite = not np.all(np.isfinite(table.no_load_transmission_error))
+    _refuse(not_finite, "no_load_transmission_error", "be finite")
     _refuse(not np.all(compliance[good] > 0.0), "tangent_compliance", "be above 0 m/N where converged")
     _refuse(not np.all(np.isfinite(compliance[good])), "tangent_compliance", "be finite where converged")
     for name in ("support_transmission_error", "support_tangent_compliance"):
         _refuse(not np.all(np.isfinite(getattr(table, name))), name, "be finite")
     share = table.load_share[good]
     _refuse(not np.all(share >= 0.0), "load_share", "be >= 0 where converged")
-    _refuse(
-        not np.allclose(share.sum(axis=-1), 1.0, rtol=0.0, atol=1e-6),
-        "load_share",
-        "sum to 1 where converged",
-    )
+    sums_to_1 = np.allclose(share.sum(axis=-1), 1.0, rtol=0.0, atol=1e-6)
+    _refuse(not sums_to_1, "load_share", "sum to 1 where converged")
     curves = {name: getattr(table, name) for name in ("curve_error", "load_arm_error", "interval_error")}
     for name, errors in {"error_estimate": table.error_estimate[good], **curves}.items():
         _refuse(bool(np.any(errors < 0.0)), name, "be >= 0 m, or NaN where not estimated")
@@ -369,11 +346,6 @@ def _check_values(table: SteFields) -> None:
 def _refuse(wrong: bool, name: str, demand: str) -> None:
     if wrong:
         raise DatabaseError(f"{name} must {demand}")
-
-
-def _status_name(code: int) -> str:
-    """Name of a status code; unknown codes keep their number."""
-    return Status(code).name if code in set(Status) else f"status {code}"
 
 
 def _same_bits(first: NDArray[Any], second: NDArray[Any]) -> bool:

@@ -41,7 +41,7 @@ class Axis:
         return np.diff(self.knots)
 
     def neighbors(self, per_interval: FloatArray, outside: float) -> tuple[FloatArray, FloatArray]:
-        """Values of the intervals left and right of every knot; `outside` beyond open ends."""
+        """Return the values of the intervals left and right of every knot, `outside` beyond open ends."""
         if self.period:
             return np.roll(per_interval, 1, axis=0), per_interval
         edge = np.full((1, *per_interval.shape[1:]), outside)
@@ -56,18 +56,18 @@ class Axis:
             inside = np.where((query >= first) & (query < first + self.period), query, wrapped)
         else:
             inside = np.clip(query, first, self.knots[-1])
-        left = np.clip(
-            np.searchsorted(self.knots, inside, side="right") - 1, 0, max(len(self.spacing) - 1, 0)
-        )
+        intervals = len(self.spacing)  # 0: an open axis of one knot
+        left = np.searchsorted(self.knots, inside, side="right") - 1
+        left = np.clip(left, 0, max(intervals - 1, 0))
         right = np.mod(left + 1, len(self.knots))
-        width = self.spacing[left] if len(self.spacing) else np.ones_like(inside)
+        width = self.spacing[left] if intervals else np.ones_like(inside)
         outside = np.zeros(query.shape, bool) if self.period else (query != inside)
         return Stencil(left, right, width, (inside - self.knots[left]) / width, outside)
 
 
 @dataclass(frozen=True)
 class Stencil:
-    """Stencil of queries: the two knots, interval width, fraction in [0, 1], beyond an open end or not."""
+    """Stencil of queries: the two knots, interval width, fraction in [0, 1], whether beyond an open end."""
 
     left: IntArray
     right: IntArray
@@ -92,7 +92,7 @@ class Stencil:
 
 
 def monotone_slopes(axis: Axis, values: FloatArray) -> FloatArray:
-    """Slopes (P, ...) at the knots for values (P, ...): between knots nothing exceeds the two ends."""
+    """Return slopes (P, ...) at the knots by which the values (P, ...) bound each piece."""
     if len(axis.knots) == 1:
         return np.zeros_like(values)
     low, high = _monotone_box(axis, values)
@@ -100,7 +100,7 @@ def monotone_slopes(axis: Axis, values: FloatArray) -> FloatArray:
 
 
 def ordered_slopes(axis: Axis, levels: FloatArray) -> FloatArray:
-    """Slopes of a family of curves (P, ..., L), increasing in L: none overshoots, none touches the next.
+    """Return slopes of curves (P, ..., L), increasing in L, by which none overshoots or touches the next.
 
     Each slope has its box (monotone pieces), each pair of neighbors a bound on the difference (their gap
     stays positive). Slopes of 0 fulfill all bounds, so a solution exists: one pass up the curves narrows each
@@ -139,7 +139,7 @@ def _secants(axis: Axis, values: FloatArray) -> FloatArray:
 
 
 def _monotone_box(axis: Axis, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Bounds of the slope at every knot: three times the flatter chord, zero at an extremum."""
+    """Return the bounds of the slope at every knot: three times the flatter chord, zero at an extremum."""
     before, after = axis.neighbors(_secants(axis, values), np.inf)
     low = np.where((before < 0.0) & (after < 0.0), 3.0 * np.maximum(before, after), 0.0)
     high = np.where((before > 0.0) & (after > 0.0), 3.0 * np.minimum(before, after), 0.0)
@@ -150,7 +150,7 @@ def _monotone_box(axis: Axis, values: FloatArray) -> tuple[FloatArray, FloatArra
 
 
 def _akima_slopes(axis: Axis, values: FloatArray) -> FloatArray:
-    """Akima's slopes: of the two chords at a knot, the one in line with its next neighbor counts more."""
+    """Return Akima's slopes: of two chords at a knot, the one in line with its next neighbor counts more."""
     chords = _secants(axis, values)
     if axis.period:
         two_left, left, right, two_right = (np.roll(chords, shift, axis=0) for shift in (2, 1, 0, -1))
@@ -167,7 +167,7 @@ def _akima_slopes(axis: Axis, values: FloatArray) -> FloatArray:
 
 
 def _extended_chords(chords: FloatArray) -> FloatArray:
-    """Two more chords beyond each open end, in arithmetic progression (Akima's end rule)."""
+    """Add two chords beyond each open end, in arithmetic progression (Akima's end rule)."""
     if len(chords) == 1:
         return np.repeat(chords, 5, axis=0)
     first = 2.0 * chords[:1] - chords[1:2]
@@ -176,9 +176,10 @@ def _extended_chords(chords: FloatArray) -> FloatArray:
 
 
 def _gap_bounds(axis: Axis, gaps: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Bounds on the slope of the gap to the next curve at every knot, down and up."""
+    """Return the bounds, down and up, on the slope of the gap to the next curve at every knot."""
     spacing = axis.spacing.reshape(-1, *(1,) * (gaps.ndim - 1))
-    before, after = axis.neighbors(np.broadcast_to(spacing, (len(spacing), *gaps.shape[1:])), 0.0)
+    spacing = np.broadcast_to(spacing, (len(spacing), *gaps.shape[1:]))
+    before, after = axis.neighbors(spacing, 0.0)  # no interval beyond an open end: its bound is infinite
     # the inner Bernstein coefficients of the gap are gap -+ slope * spacing / 3
     allowed = 3.0 * (1.0 - _MIN_GAP_SHARE) * gaps
     with np.errstate(divide="ignore"):

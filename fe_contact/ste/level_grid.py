@@ -29,9 +29,7 @@ class LevelGrid:
 
     axes: tuple[Axis, ...]
     nodal: dict[Order, FloatArray]
-    """Derivatives at the knots by their order; the order of zeros has the values. Shape: the number of knots
-    of each axis, then L.
-    """
+    """Derivatives at the knots by order; that of zeros has the values. Shape: knots of each axis, then L."""
 
     def value(self, at: tuple[Stencil, ...], columns: IntArray) -> FloatArray:
         """Return the values (Q, C) at the queries, of the levels with the indices `columns` (Q, C)."""
@@ -44,24 +42,25 @@ class LevelGrid:
         return self._sum(at, columns, [at[0].weight_slopes, *(stencil.weights for stencil in at[1:])])
 
     def _sum(self, at: tuple[Stencil, ...], columns: IntArray, weights: list[FloatArray]) -> FloatArray:
-        """Sum of weight times nodal number over the corners of each query's cell."""
-        sides = product(*((0, 1) if len(axis.knots) > 1 else (0,) for axis in self.axes))
+        """Return the sum of weight times nodal number over the corners of each query's cell."""
         total: FloatArray | float = 0.0
-        for corner in sides:
-            indices = ((stencil.left, stencil.right)[side] for stencil, side in zip(at, corner, strict=True))
+        for corner in _orders(self.axes):  # 0 and 1: left and right knot
+            indices = (
+                stencil.right if side else stencil.left for stencil, side in zip(at, corner, strict=True)
+            )
             node = (*(index[:, None] for index in indices), columns)
             for order, entry in self.nodal.items():
                 total = total + self._factor(weights, corner, order) * entry[node]
         return np.asarray(total)
 
     def _factor(self, weights: list[FloatArray], corner: Order, order: Order) -> FloatArray:
-        """Product of the one-axis weights of a corner and an order, (Q, 1); axes of one knot are left out."""
+        """Return the product of the weights of a corner and an order, (Q, 1), without axes of one knot."""
         by_axis = zip(self.axes, weights, corner, order, strict=True)
         factors = [weight[side, slope] for axis, weight, side, slope in by_axis if len(axis.knots) > 1]
         return np.asarray(prod(factors[1:], start=factors[0])[:, None] if factors else np.ones((1, 1)))
 
     def control_net(self) -> FloatArray:
-        """Bernstein coefficients of every cell, which bound the interpolant in it.
+        """Return the Bernstein coefficients of every cell, which bound the interpolant in it.
 
         Shape: 4 per axis (1 for an axis of one knot), last axis first; then the cells of each axis; then L.
         """
@@ -127,7 +126,8 @@ def monotone_stiffness(stiffness: LevelGrid, deflection: LevelGrid, level: Float
     below = _knot_minimum(stiffness.axes, _share_allowed(net[..., :-1], gaps, limit, dims))
     above = _knot_minimum(stiffness.axes, _share_allowed(net[..., 1:], gaps, limit, dims))
     free = np.ones_like(below[..., :1])  # no gap above the last level, none below the first
-    return stiffness.scaled(np.minimum(np.concatenate([below, free], -1), np.concatenate([free, above], -1)))
+    factor = np.minimum(np.concatenate([below, free], axis=-1), np.concatenate([free, above], axis=-1))
+    return stiffness.scaled(factor)
 
 
 def _share_allowed(net: FloatArray, gaps: FloatArray, limit: FloatArray, dims: int) -> FloatArray:
@@ -137,9 +137,10 @@ def _share_allowed(net: FloatArray, gaps: FloatArray, limit: FloatArray, dims: i
     means of products of the factors' coefficients. So a cell whose largest coefficients have a product within
     the limit has a share of 1, and the coefficients of its product are not formed.
     """
-    over = tuple(range(dims))
-    largest = (np.maximum(factor.max(axis=over), -factor.min(axis=over)) for factor in (net, gaps))
-    critical = prod(largest) > (1.0 - 2.0 * ROUNDING) * limit
+    coefficients = tuple(range(dims))  # array axes
+    largest_stiffness = np.maximum(net.max(axis=coefficients), -net.min(axis=coefficients))
+    largest_gap = np.maximum(gaps.max(axis=coefficients), -gaps.min(axis=coefficients))
+    critical = largest_stiffness * largest_gap > (1.0 - 2.0 * ROUNDING) * limit
     limit = np.broadcast_to(limit, critical.shape)[critical]
     product = _largest_product(net[..., critical], gaps[..., critical], dims)
     share = np.ones(critical.shape)

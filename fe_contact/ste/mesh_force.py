@@ -88,7 +88,7 @@ class MeshForce:
         misalignment: ArrayLike,
         center_distance_change: ArrayLike,
     ) -> ForceSample:
-        """Force, stiffness, position slope and validity; the arguments broadcast.
+        """Return force, stiffness, position slope and validity; the arguments broadcast.
 
         Raises `InputError`: an argument is not finite.
         """
@@ -100,9 +100,10 @@ class MeshForce:
         )
         at = self._stencils(x, m, c)
         lower = self._level_below(at, d)
-        cubic, top = self._cubic(at, lower), len(self.table.level) - 1
-        force, stiffness, position_slope = cubic.sample(d, lower < 0, lower == top)
-        lifted, above = lower < 0, (lower == top) & (d > cubic.deflection_ends[:, 1])
+        lifted, top = lower < 0, lower == len(self.table.level) - 1
+        cubic = self._cubic(at, lower)
+        force, stiffness, position_slope = cubic.sample(d, lifted, top)
+        above = top & (d > cubic.deflection_ends[:, 1])
         validity = _outside(at) + Validity.LIFTED_OFF * lifted + Validity.ABOVE_TABLE * above
         return ForceSample(
             force.reshape(shape),
@@ -119,10 +120,10 @@ class MeshForce:
         center_distance_change: ArrayLike,
         to_transverse: float = 1.0,
     ) -> tuple[FloatArray, NDArray[np.int8]]:
-        """Deflection in m that gives the transverse force `force` * `to_transverse` in N, and validity.
+        """Return the deflection in m at the transverse force `force` * `to_transverse` in N, and validity.
 
-        The exact inverse of `force_at`. Raises `InputError`: an argument is not finite, or a force is below
-        zero.
+        It is the exact inverse of `force_at`. Raises `InputError`: an argument is not finite, or a force is
+        below zero.
         """
         shape, (x, f, m, c) = _queries(
             position=position,
@@ -135,8 +136,8 @@ class MeshForce:
         deflection, validity = np.empty(f.size), np.empty(f.size, dtype=np.int8)
         for start in range(0, f.size, _BLOCK):
             part = slice(start, start + _BLOCK)
-            at_force = f[part] * to_transverse, x[part], m[part], c[part]
-            deflection[part], validity[part] = self._deflections(*at_force)
+            transverse = f[part] * to_transverse
+            deflection[part], validity[part] = self._deflections(transverse, x[part], m[part], c[part])
         return deflection.reshape(shape), validity.reshape(shape)
 
     def _deflections(
@@ -144,7 +145,8 @@ class MeshForce:
     ) -> tuple[FloatArray, NDArray[np.int8]]:
         at = self._stencils(x, m, c)
         lower = np.searchsorted(self.table.level, f, side="right") - 1
-        if np.array_equal(self.table.level[lower], f):  # at levels, as stored loads are: no stiffness counts
+        # stored loads are levels: there the deflection needs no cubic
+        if np.array_equal(self.table.level[lower], f):
             deflection = self.levels.value(at, lower[:, None])[:, 0]
         else:
             deflection = self._cubic(at, lower).deflection(f, lower == len(self.table.level) - 1)
@@ -179,9 +181,11 @@ class MeshForce:
         )
 
 
-def _outside(at: tuple[Stencil, ...]) -> NDArray[np.int64]:
-    misaligned = Validity.OUTSIDE_MISALIGNMENT * at[1].outside
-    return np.asarray(misaligned + Validity.OUTSIDE_CENTER_DISTANCE * at[2].outside)
+def _outside(at: tuple[Stencil, Stencil, Stencil]) -> NDArray[np.int64]:
+    """Return the flags of queries outside the axes of alignments, as a sum."""
+    _, misalignment, center_distance = at
+    flags = Validity.OUTSIDE_MISALIGNMENT * misalignment.outside
+    return np.asarray(flags + Validity.OUTSIDE_CENTER_DISTANCE * center_distance.outside)
 
 
 def _queries(**arguments: ArrayLike) -> tuple[tuple[int, ...], list[FloatArray]]:

@@ -1,7 +1,7 @@
 """STE databases as netCDF-4 files.
 
 The errors of a curve have an axis of sources (`SOURCES`) and one of quantities; `OFF_MESH` is the index of
-orders that are no mesh orders. The checksum of a file begins with a text that only some files have.
+orders that are no mesh orders.
 """
 
 from __future__ import annotations
@@ -154,7 +154,7 @@ def json_attribute(path: Path, attributes: Json, name: str) -> Any:
 
 
 def digest(arrays: Mapping[str, Any], before: str = "") -> str:
-    """SHA-256 over the text `before`, and names, types, shapes and bytes of the arrays, in their order."""
+    """Return the SHA-256 of the text `before`, and of name, type, shape and bytes of each array."""
     hasher = hashlib.sha256(before.encode())
     for name, values in arrays.items():
         array = np.ascontiguousarray(values)
@@ -188,9 +188,9 @@ def read(path: Path) -> dict[str, Any]:
         if attributes["schema_version"] < _OFF_MESH_SINCE and content.get(name, np.empty(0)).size:
             content[name] = np.insert(content[name], OFF_MESH, np.nan, axis=1)
     documents = {name: json_attribute(path, attributes, name) for name in _JSON_ATTRIBUTES}
-    stated_bias = (documents["receipt"].get("bias") or {}).get("stated")  # older files alone have it
-    if stated_bias:
-        content |= _without_bias(content, stated_bias)
+    bias = documents["receipt"].get("bias") or {}  # only older files have one
+    if bias.get("stated"):
+        content |= _without_bias(content, bias["stated"])
     return content | {
         "geometry": _gear_pair(path, attributes),
         "metadata": Metadata(

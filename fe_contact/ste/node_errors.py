@@ -84,20 +84,21 @@ def error_band(table: SteFields, position: FloatArray, places: NodePlaces) -> Fl
     Parameters
     ----------
     position : ndarray, shape (n,)
-        Base pitches.
+        Positions in base pitches.
     places : NodePlaces
-        Of all points, or a single one.
+        Loads and alignments of the points, or one for all.
     """
     along_position = Axis(table.position, float(table.period)).stencil(position)
     if places.force.left.size == 1:
-        stored = _linear((along_position,), places.at_nodes(np.moveaxis(table.error_estimate, 0, 3))[0])
+        at_knots = places.at_nodes(np.moveaxis(table.error_estimate, 0, 3))[0]  # (P,)
+        stored = _linear((along_position,), at_knots)
     else:
         stored = _linear((along_position, *places.stencils), table.error_estimate)
     return np.asarray(stored + places.interval_error(table))
 
 
 def force_error(table: SteFields, points: FloatArray, force: FloatArray, stiffness: FloatArray) -> FloatArray:
-    """Return the error (n,) of mesh forces in N: that of the transmission error under them times stiffness.
+    """Return the error (n,) of mesh forces in N: the error of the transmission error times stiffness.
 
     NaN where it is not estimated: beyond the axes, above the highest load, below the smallest, without
     contact.
@@ -120,7 +121,7 @@ def force_error(table: SteFields, points: FloatArray, force: FloatArray, stiffne
 def _linear(
     stencils: tuple[Stencil, ...] | list[Stencil], values: FloatArray, rows: tuple[IntArray, ...] = ()
 ) -> FloatArray:
-    """Interpolate values linearly over their first axes, (Q, ...); NaN of one knot leaves the others alone.
+    """Interpolate values linearly over their first axes, (Q, ...); a NaN counts beside its knot only.
 
     `rows`: indices (Q,) of axes before those of the stencils.
     """
@@ -128,13 +129,11 @@ def _linear(
     # an axis of one node has no right-hand side
     sides = ((0,) if np.array_equal(stencil.left, stencil.right) else (0, 1) for stencil in stencils)
     for corner in product(*sides):
-        weight = np.ones(stencils[0].left.size)
+        weight, index = np.ones(stencils[0].left.size), []
         for stencil, side in zip(stencils, corner, strict=True):
             weight = weight * (stencil.fraction if side else 1.0 - stencil.fraction)
-        index = tuple(
-            stencil.right if side else stencil.left for stencil, side in zip(stencils, corner, strict=True)
-        )
+            index.append(stencil.right if side else stencil.left)
         term = values[(*rows, *index)]
         weight = weight.reshape(-1, *[1] * (term.ndim - 1))
-        total = total + np.where(weight > 0.0, weight * term, 0.0)
+        total = total + np.where(weight > 0.0, weight * term, 0.0)  # without the NaN of a knot of no weight
     return np.asarray(total)

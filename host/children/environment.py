@@ -29,13 +29,7 @@ _ROOT = str(Path(__file__).resolve().parents[2])
 
 
 def child_environment(**further: str) -> dict[str, str]:
-    """Return the environment of a child: one thread, and modules found where this process finds ours.
-
-    Parameters
-    ----------
-    **further : str
-        Variables beside those inherited.
-    """
+    """Return the environment of a child: what it inherits, one thread, our packages, `further` variables."""
     inherited = {
         name: value
         for name, value in os.environ.items()

@@ -100,13 +100,15 @@ def _show(summary: dict[str, Any], *, several_alignments: bool) -> None:
     show_effects(out, summary["effect_ledger"])
     for line in assumption_lines(receipt):
         out.print(line)
-    out.print(_cost(receipt, load["normal_force_n"] / load["torque_n_m"]))
+    out.print()
+    for line in _cost(receipt, load["normal_force_n"] / load["torque_n_m"]):
+        out.print(line)
     out.print(f"points {summary['points']}, failed {summary['failed_points']}")
     out.print(f"content hash {summary['content_hash']}")
 
 
 def _over_face(load: dict[str, Any]) -> str:
-    """Return mean and peak-to-peak of the gears of finite width: those of the plane model, corrected."""
+    """Return mean and peak-to-peak over the face, as text: those of the plane model, corrected."""
     mean, ripple = (
         with_error(load[f"{name}_over_face_um"], load.get(f"{name}_over_face_error_um", math.nan))
         for name in ("mean", "peak_to_peak")
@@ -138,36 +140,30 @@ def _of_cycle(cycle: dict[str, Any]) -> str:
     )
 
 
-def _cost(receipt: dict[str, Any], newton_metre: float = 1.0) -> str:
-    """Return one line with time by stage and memory, and lines on the table's tolerance."""
-    seconds = {name: spent["cpu_seconds"] for name, spent in receipt["stages"].items()}
-    stages = ", ".join(f"{name} {engineering(spent, 2)}" for name, spent in seconds.items())
+def _cost(receipt: dict[str, Any], newton_metre: float) -> Iterator[str]:
+    """Yield lines on time by stage, memory, errors and tolerance; `newton_metre`: force of 1 N m, N."""
+    stages = [f"{name} {engineering(cost['cpu_seconds'], 2)}" for name, cost in receipt["stages"].items()]
     memory = receipt["peak_memory_bytes"] / 2**20
-    text = f"\ncost {engineering(receipt['cpu_seconds'], 3)} CPU s ({stages}), {memory:.0f} MiB"
+    yield f"cost {engineering(receipt['cpu_seconds'], 3)} CPU s ({', '.join(stages)}), {memory:.0f} MiB"
     others = receipt.get("elsewhere", {})
     if others.get("tasks"):
-        text += (
-            f"\nof these {engineering(others['cpu_seconds'], 3)} CPU s in {others['tasks']} tasks of workers"
-        )
+        yield f"of these {engineering(others['cpu_seconds'], 3)} CPU s in {others['tasks']} tasks of workers"
     if predicted := receipt.get("predicted"):
-        pitches, seconds = predicted["pitches"], predicted["cpu_seconds"]
-        text += f"\nperiod {pitches} base pitches; contact predicted {engineering(seconds, 2)} CPU s"
+        seconds = engineering(predicted["cpu_seconds"], 2)
+        yield f"period {predicted['pitches']} base pitches; contact predicted {seconds} CPU s"
     if cycle := receipt.get("cycle"):
-        text += f"\n{_of_cycle(cycle)}"
-    for line in _inserted(receipt.get("held_out", {}), newton_metre):
-        text += f"\n{line}"
-    if errors_text := _validation_errors(receipt.get("held_out", {})):
-        text += f"\nlargest error at held-out points between the nodes: {errors_text} (in the errors there)"
+        yield _of_cycle(cycle)
+    held_out = receipt.get("held_out", {})
+    yield from _inserted(held_out, newton_metre)
+    if errors_text := _validation_errors(held_out):
+        yield f"largest error at held-out points between the nodes: {errors_text} (in the errors there)"
     if allowed := receipt.get("misalignment_range"):
-        text += f"\n{allowed}"
-    for line in tolerance_lines(receipt, newton_metre):
-        text += f"\n{line}"
+        yield allowed
+    yield from tolerance_lines(receipt, newton_metre)
     if outgrown := receipt.get("patch_outgrown_points", 0):
-        text += f"\ncontact outgrew its load patch at {outgrown} points: the load is far above usual loads"
-    missing = receipt.get("not_estimated", [])
-    if missing:
-        text += f"\nerrors NOT estimated: {', '.join(missing).replace('_', ' ')}"
-    return text
+        yield f"contact outgrew its load patch at {outgrown} points: the load is far above usual loads"
+    if missing := receipt.get("not_estimated", []):
+        yield f"errors NOT estimated: {', '.join(missing).replace('_', ' ')}"
 
 
 def _inserted(axes: dict[str, Any], newton_metre: float) -> Iterator[str]:
@@ -188,10 +184,10 @@ def _validation_errors(axes: dict[str, Any]) -> str:
 
 
 def _row(load: dict[str, Any]) -> list[str]:
-    """One load of the table, each figure with its error."""
-    values = [load["mean_um"], load["peak_to_peak_um"], *load["harmonics_um"]][: 2 + _MAX_HARMONICS]
+    """Return the row of a load, each figure with its error."""
+    values = [load["mean_um"], load["peak_to_peak_um"], *load["harmonics_um"]]
     errors = [math.nan] * len(values)
     if "mean_error_um" in load:
         errors = [load["mean_error_um"], load["peak_to_peak_error_um"], *load["harmonics_error_um"]]
-    figures = [with_error(value, error) for value, error in zip(values, errors, strict=False)]
+    figures = map(with_error, values[: 2 + _MAX_HARMONICS], errors)
     return [f"{load['torque_n_m']:.6g}", engineering(load["normal_force_n"], 4), *figures]

@@ -21,7 +21,7 @@ KINDS = {
     "studies": "tasks of studies",
     "tables": "STE tables of the meshes of scenes",
 }
-"""Folders of the cache, with words for their contents."""
+"""Folders of the cache, with descriptions of their contents."""
 _DAY = 86_400.0
 _GB = 1e9
 
@@ -30,31 +30,24 @@ def run_list(*, as_json: bool) -> None:
     """Print the contents of the cache."""
     by_kind = {kind: files_in(cache_home() / kind) for kind in KINDS}
     if as_json:
-        kinds = {
-            kind: {"files": len(files), "bytes": sum(f.size for f in files)}
-            for kind, files in by_kind.items()
-        }
+        kinds = {kind: {"files": len(files), "bytes": _bytes(files)} for kind, files in by_kind.items()}
         print_json({"folder": str(cache_home()), "limit_bytes": _limit_bytes(), "kinds": kinds})
         return
-    rows = [
-        [
-            *(kind, KINDS[kind], str(len(files)), _size(files)),
-            f"{(time.time() - files[0].used) / _DAY:.1f}" if files else "",
-        ]
-        for kind, files in by_kind.items()
-    ]
+    rows = []
+    for kind, files in by_kind.items():  # the files of a kind begin with the one that is unused longest
+        age = f"{(time.time() - files[0].used) / _DAY:.1f}" if files else ""
+        rows.append([kind, KINDS[kind], str(len(files)), _megabytes(files), age])
     out = console()
     out.print(table(["kind", "what", "files", "MB", "oldest use, days"], rows, text_columns=["kind", "what"]))
-    every = [file for files in by_kind.values() for file in files]
-    line = f"{_size(every)} MB of {engineering(1e3 * _limit_bytes() / _GB, 4)} MB in {cache_home()}"
-    out.print(line, soft_wrap=True)
+    size = _megabytes([file for files in by_kind.values() for file in files])
+    limit = engineering(1e3 * _limit_bytes() / _GB, 4)
+    out.print(f"{size} MB of {limit} MB in {cache_home()}", soft_wrap=True)
 
 
 def run_limit(gigabytes: float | None, *, as_json: bool) -> None:
     """Remove the longest unused files until the rest fits."""
     maximum = _limit_bytes() if gigabytes is None else round(gigabytes * _GB)
-    removed = evict(cache_home(), maximum)
-    _tell(removed, as_json=as_json)
+    _print_removed(evict(cache_home(), maximum), as_json=as_json)
 
 
 def run_clear(kinds: list[str], *, as_json: bool) -> None:
@@ -66,7 +59,7 @@ def run_clear(kinds: list[str], *, as_json: bool) -> None:
     removed = [file for folder in folders for file in files_in(folder)]
     for folder in folders:
         shutil.rmtree(folder, ignore_errors=True)
-    _tell(removed, as_json=as_json)
+    _print_removed(removed, as_json=as_json)
 
 
 def keep_small() -> None:
@@ -85,12 +78,16 @@ def _limit_bytes() -> int:
     return int(text)
 
 
-def _tell(removed: list[UsedFile], *, as_json: bool) -> None:
+def _print_removed(files: list[UsedFile], *, as_json: bool) -> None:
     if as_json:
-        print_json({"removed_files": len(removed), "removed_bytes": sum(file.size for file in removed)})
-        return
-    console().print(f"removed {len(removed)} files, {_size(removed)} MB")
+        print_json({"removed_files": len(files), "removed_bytes": _bytes(files)})
+    else:
+        console().print(f"removed {len(files)} files, {_megabytes(files)} MB")
 
 
-def _size(files: list[UsedFile]) -> str:
-    return engineering(sum(file.size for file in files) / 1e6, 4)
+def _bytes(files: list[UsedFile]) -> int:
+    return sum(file.size for file in files)
+
+
+def _megabytes(files: list[UsedFile]) -> str:
+    return engineering(_bytes(files) / 1e6, 4)

@@ -18,6 +18,7 @@ from lineofaction.cli.verbs import (
     of_imports,
     of_inspections,
     of_listening,
+    of_machine,
     of_pages,
     of_services,
     of_validation,
@@ -42,6 +43,7 @@ FAMILIES = (
     of_inspections,
     of_housings,
     of_services,
+    of_machine,
 )
 """Modules of verbs, in the order of the help."""
 
@@ -51,7 +53,6 @@ app = typer.Typer(
     help="Open contact analysis for gear noise: STE databases of gear pairs, and the dynamics they excite.",
     epilog=_EPILOG,
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
@@ -65,6 +66,13 @@ app.add_typer(of_services.access_keys, name="keys", rich_help_panel="service")
 app.add_typer(of_services.cache, name="cache", rich_help_panel="results")
 app.add_typer(of_services.database, name="database", rich_help_panel="service")
 app.add_typer(of_services.store, name="store", rich_help_panel="service")
+
+
+def verb_names() -> list[str]:
+    """Return the names of all verbs, those of studies among them."""
+    group: Any = typer.main.get_command(app)
+    names: list[str] = group.list_commands(None)
+    return names
 
 
 def main() -> None:

@@ -51,7 +51,7 @@ def _chosen_scenes(only: Sequence[str]) -> list[HardScene]:
     for name in names:
         if name not in known:
             raise BadInput.of("only", name, f"a scene or a family: {', '.join(sorted(known))}")
-    return [s for s in HARD_SCENES if not names or s.name in names or s.family in names]
+    return [scene for scene in HARD_SCENES if not names or {scene.name, scene.family} & set(names)]
 
 
 def _show(outcomes: Sequence[Outcome], output: Path | None) -> None:
@@ -71,6 +71,5 @@ def _show(outcomes: Sequence[Outcome], output: Path | None) -> None:
     passed = sum(outcome.passed for outcome in outcomes)
     seconds = sum(outcome.seconds for outcome in outcomes)
     busy = sum(outcome.cpu_seconds for outcome in outcomes)
-    summary = f"{passed} of {len(outcomes)} scenes passed in {seconds:.1f} s ({busy:.1f} s of CPU time)"
-    out.print(summary)
+    out.print(f"{passed} of {len(outcomes)} scenes passed in {seconds:.1f} s ({busy:.1f} s of CPU time)")
     print_written([] if output is None else [output])

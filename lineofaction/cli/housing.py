@@ -6,6 +6,7 @@ import json
 import shutil
 from collections.abc import Collection
 from contextlib import suppress
+from itertools import chain, count
 from pathlib import Path
 from typing import Any
 
@@ -38,7 +39,8 @@ NAMES = {"origin_mm": "--origin-mm", "x_axis": "--x-axis", "z_axis": "--z-axis"}
 def run_housing(
     file: InputFile,
     step: Path,
-    stands: tuple[str, str],
+    material: str,
+    stands_on: str,
     placed: dict[str, str | None],
     output: Path | None,
     *,
@@ -50,12 +52,11 @@ def run_housing(
 
     Parameters
     ----------
-    stands : tuple of str
-        Material, and the direction that the housing stands on.
+    stands_on : str
+        Direction that the foot of the housing looks to.
     placed : dict
         Typed values of `NAMES`, by field.
     """
-    material, stands_on = stands
     _check_known("--material", material, MATERIALS)
     _check_known("--stands-on", stands_on, DIRECTIONS)
     if output is None and file.project is not None:
@@ -90,10 +91,11 @@ def _placement(placed: dict[str, str | None]) -> Placement | None:
     vectors = {field: _vector(NAMES[field], text) for field, text in placed.items() if text is not None}
     if not vectors:
         return None
-    x, z = (vectors.get(f"{name}_axis", axis) for name, axis in (("x", np.eye(3)[0]), ("z", np.eye(3)[2])))
-    for name, axis in (("x", x), ("z", z)):
+    x = vectors.get("x_axis", np.array([1.0, 0.0, 0.0]))
+    z = vectors.get("z_axis", np.array([0.0, 0.0, 1.0]))
+    for field, axis in (("x_axis", x), ("z_axis", z)):
         if not axis.any():
-            raise BadInput.of(NAMES[f"{name}_axis"], axis.tolist(), "a direction: not all zero")
+            raise BadInput.of(NAMES[field], axis.tolist(), "a direction: not all zero")
     if abs(x @ z) > PERPENDICULAR * np.linalg.norm(x) * np.linalg.norm(z):
         raise BadInput.of(NAMES["x_axis"], x.tolist(), f"perpendicular to the z axis, {z.tolist()}")
     return Placement.of(x, z, vectors.get("origin_mm", np.zeros(3)))
@@ -107,9 +109,9 @@ def _vector(option: str, text: str) -> Any:
 
 
 def _write(file: InputFile, step: Path, output: Path, made: StepHousing) -> list[Path]:
-    """Write the scene with its housing, and the STEP file beside it.
+    """Write the scene with its housing, and the STEP file beside it; return the files.
 
-    A file of another content under its name is replaced where the housing that is replaced is alone of it.
+    A file of another content under its name is replaced where only the housing that is replaced has it.
     """
     target = output.parent / step.name
     in_place = target.exists() and target.samefile(step)
@@ -121,17 +123,15 @@ def _write(file: InputFile, step: Path, output: Path, made: StepHousing) -> list
     free = in_place or revised or not target.exists()
     if not free and target.read_bytes() != step.read_bytes():
         raise BadInput.of("output", str(target), "free for the STEP file", "Choose another folder or name.")
-    used_names = {part.get("name") for part in others}
-    unused = (
-        name for name in ("housing", *(f"housing {k}" for k in range(2, 102))) if name not in used_names
-    )
-    housing = {"name": [*made.replaced, *unused][0], "step_file": step.name, **made.fields}
+    name = made.replaced[0] if made.replaced else _new_name({part.get("name") for part in others})
+    housing = {"name": name, "step_file": step.name, **made.fields}
     table = base | {"housings": [*others, housing]}
-    find = in_folder(output.parent)
-    content = written_out(
-        table, lambda name, field: step if name == step.name else find(name, field), READERS
-    )
-    validated(SceneInput, content)
+    in_output_folder = in_folder(output.parent)
+
+    def find(name: str, field: str) -> Path:
+        return step if name == step.name else in_output_folder(name, field)
+
+    validated(SceneInput, written_out(table, find, READERS))
     text = _text(file, output, table, housing)
     if not in_place:  # first: a scene names no file that is missing
         with atomic_file(target) as draft:
@@ -141,15 +141,21 @@ def _write(file: InputFile, step: Path, output: Path, made: StepHousing) -> list
     return [output] if in_place else [output, target]
 
 
-def _text(file: InputFile, output: Path, table: dict[str, Any], housing: dict[str, Any]) -> str:
-    """Return the scene as a file: TOML with its comments and the housing at the end, where that says it.
+def _new_name(used: Collection[Any]) -> str:
+    names = chain(["housing"], (f"housing {number}" for number in count(2)))
+    return next(name for name in names if name not in used)
 
-    A housing that was written at the end before is replaced there.
+
+def _text(file: InputFile, output: Path, table: dict[str, Any], housing: dict[str, Any]) -> str:
+    """Return the scene as a file.
+
+    If the housing at the end of the file, or in place of its last one, makes that scene, the file keeps its
+    comments.
     """
     if output.suffix == ".json":
         return json.dumps(table, indent=1) + "\n"
-    text_of_file = read_text(file.path, str(file.path))
-    for base in (text_of_file, text_of_file.rpartition("[[housings]]")[0]):
+    original = read_text(file.path, str(file.path))
+    for base in (original, original.rpartition("[[housings]]")[0]):
         text = f"{base.rstrip()}\n\n{toml_text({'housings': [housing]})}"
         with suppress(BadInput):
             if toml_table(text, str(file.path)) == table:
@@ -181,13 +187,17 @@ def _show(made: StepHousing) -> None:
 def _row(name: str, made: StepHousing) -> tuple[str, ...]:
     bore = made.seated.bores[name]
     off = abs(bore.position[2] - made.seated.bearings[name][2])
-    figures = bore.diameter, even_length(made.seated, name), round(off, 9)
-    return name, *(engineering(value / MM, 5) for value in figures)
+    lengths = bore.diameter, even_length(made.seated, name), round(off, 9)  # off: to 1 nm, above rounding
+    return name, *(engineering(length / MM, 5) for length in lengths)
 
 
 def _as_json(made: StepHousing) -> dict[str, Any]:
     stand = made.stand
-    figures = {"mass_kg": made.mass, "mean_wall_mm": made.wall / MM, "left_out": list(made.omitted)}
-    return (
-        {"housing": made.fields} | figures | {"foot_faces": stand.faces, "foot_area_mm2": stand.area / MM**2}
-    )
+    return {
+        "housing": made.fields,
+        "mass_kg": made.mass,
+        "mean_wall_mm": made.wall / MM,
+        "left_out": list(made.omitted),
+        "foot_faces": stand.faces,
+        "foot_area_mm2": stand.area / MM**2,
+    }

@@ -17,9 +17,7 @@ from lineofaction.cli.output import check_writable, console, output_of, print_js
 from lineofaction.cli.run_sounds import RunSound, bearing_sounds
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import SOUND, run_in
-from lineofaction.gearbox.studies.listen.run import (
-    recording_metadata,
-)
+from lineofaction.gearbox.studies.listen.run import recording_metadata
 from lineofaction.report.comparison.compare import named_files
 from lineofaction.report.document import read_run
 from lineofaction.report.drawing.figure import number
@@ -57,11 +55,11 @@ def run_listen(
     for path, sound in zip(paths, sounds, strict=True):
         path.write_bytes(wav_file(sound.recording, scale))
     if as_json:
-        listed = [
+        entries = [
             {"file": str(path), **recording_metadata(sound.recording), **sound.figures}
             for path, sound in zip(paths, sounds, strict=True)
         ]
-        print_json({"full_scale": scale, "remark": remark, "files": listed})
+        print_json({"full_scale": scale, "remark": remark, "files": entries})
         return
     _show(sounds, scale, remark)
     for path in paths:

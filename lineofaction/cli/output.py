@@ -31,10 +31,10 @@ _MAX_HEADLINES = 2
 EMPHASIS = "bold"
 """Style of the line that states the result."""
 _THEME = Theme({"loa.error": "cyan", "loa.beside": "bright_black"})
-_WIDEST, _GAP, _INDENT, _MAX_LINES = 24, 2, "  ", 2
-"""Characters of a text before it wraps, characters between two columns of a table, indent of lines below a
-row, and most lines of a text in the last column; a longer text stands below its row.
-"""
+_WIDEST = 24  # characters of a text before it wraps
+_GAP = 2  # characters between two columns of a table
+_INDENT = "  "  # of lines below a row
+_MAX_LINES = 2  # of a text in the last column; a longer text stands below its row
 _FIGURE = re.compile(r"([+-]?\d+)((?:\.\d+)?(?: ?[^\d.e±].*?)?)( ?±.*)?")
 """Pattern of a number: the part before the decimal point, the decimals with the unit, and the error."""
 
@@ -122,7 +122,8 @@ def table(
         laid_out.append(_Column(name, cells if text else aligned(cells), text))
     below = laid_out.pop() if _is_long(laid_out, width) else None
     lines: list[Text | str] = [Text(title, "italic")] if title else []
-    for block in (blocks := _blocks(laid_out, width)):
+    blocks = _blocks(laid_out, width)
+    for block in blocks:
         foot = below if block is blocks[-1] else None
         # heads are filled from the bottom, so that their last lines stand above the cells
         head = _side_by_side([column.lines(column.head, wide)[::-1] for column, wide in block])[::-1]

@@ -27,7 +27,7 @@ _SHORTHANDS: Mapping[str, tuple[str, tuple[str, ...]]] = {
 }
 """Path that each option sets, and paths that it then leaves out."""
 _OF_ONE = ("output", "json", "csv")
-"""Options that need a single case: they name one file to write, or print one object."""
+"""Options that need a single case: one file to write, or one object to print."""
 
 
 def file_argument(text: str, metavar: str) -> Any:
@@ -74,17 +74,14 @@ def overridable(argument: str, subject: str = "case") -> Callable[[Callable[...,
 
             named, overrides = options[argument], _overrides(typed)
             several = isinstance(named, list)
-            files = [
-                parameters
-                for file in (named if several else [named])
-                for parameters in files_of(file, subject)
-            ]
-            read = [replace(file, overrides=overrides) for file in files]
+            files = []
+            for file in named if several else [named]:
+                files += [replace(part, overrides=overrides) for part in files_of(file, subject)]
             if several:
-                return verb(**options | {argument: read})
+                return verb(**options | {argument: files})
             if any(options.get(name) for name in _OF_ONE):
-                only(read, named.path, subject)
-            for file in read:  # of a folder each of its cases
+                only(files, named.path, subject)
+            for file in files:  # of a folder each of its cases
                 if file.part:
                     console().print(f"\n{file.part}", style=EMPHASIS)
                 answer = verb(**options | {argument: file})

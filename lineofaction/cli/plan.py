@@ -7,12 +7,7 @@ from fe_contact.analysis.run_plan import PlannedLevel, RunPlan
 from host.directories import cache_home
 from lineofaction.cli.analyze import show_effects
 from lineofaction.cli.assessed_case import assessed_case
-from lineofaction.cli.output import (
-    EMPHASIS,
-    console,
-    print_json,
-    table,
-)
+from lineofaction.cli.output import EMPHASIS, console, print_json, table
 from lineofaction.gearbox.convert.plan import plan_json, plan_of
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.units import UM
@@ -43,22 +38,24 @@ def _show_plan(plan: RunPlan) -> None:
         out.print(bias.text, soft_wrap=True)
     out.print()
     head = ["mesh", "CPU s", "GiB", "numerical", "plane", "method", "mean µm", "p-p µm"]
-    rows = [
-        [
-            f"{'> ' if entry in plan.passes else ''}{_mesh(entry, plan.chosen)}",
-            engineering(entry.cost.cpu_seconds, 2),
-            f"{entry.cost.memory_bytes / 2**30:.1f}",
-            engineering(100.0 * error.numerical, 2),
-            "bias" if error.bias else engineering(100.0 * error.plane, 2),
-            engineering(100.0 * error.method, 2),
-            # sizes in µm, as per cent of a small ripple mean little; blank if not known
-            *("" if size is None else engineering(size / UM, 2) for size in (error.mean, error.peak_to_peak)),
-        ]
-        for entry in plan.levels
-        for error in (entry.error,)
-    ]
+    rows = [_row(entry, plan) for entry in plan.levels]
     out.print(table(head, rows, "Cost, and errors in % and as a whole"))
     show_effects(out, plan_json(plan)["effect_ledger"])
+
+
+def _row(entry: PlannedLevel, plan: RunPlan) -> list[str]:
+    """Return the row of a mesh: its cost and its errors; those of the run begin with ``>``."""
+    error = entry.error
+    return [
+        f"{'> ' if entry in plan.passes else ''}{_mesh(entry, plan.chosen)}",
+        engineering(entry.cost.cpu_seconds, 2),
+        f"{entry.cost.memory_bytes / 2**30:.1f}",
+        engineering(100.0 * error.numerical, 2),
+        "bias" if error.bias else engineering(100.0 * error.plane, 2),
+        engineering(100.0 * error.method, 2),
+        # in µm, since per cent of a small ripple mean little; blank if not known
+        *("" if size is None else engineering(size / UM, 2) for size in (error.mean, error.peak_to_peak)),
+    ]
 
 
 def _mesh(entry: PlannedLevel, chosen: PlannedLevel) -> str:

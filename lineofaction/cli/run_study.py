@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import sys
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, nullcontext
+from collections.abc import Callable, Sequence
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from bounds import engineering
 from bounds.types import Json
@@ -16,7 +16,6 @@ from host import cpu_seconds
 from host.directories import cache_home
 from lineofaction.cli.costs import announce_cost, study_cost, tables_cost, written_out
 from lineofaction.cli.output import (
-    Report,
     check_writable,
     console,
     csv_text,
@@ -55,7 +54,6 @@ from lineofaction.report.document import write as write_result
 from lineofaction.report.drawing.marks import marked_page_of_case
 from lineofaction.report.presentation import presentation_of
 from lineofaction.report.title_block import titled
-from model_studies.workers import Workers
 
 Writer = Callable[[Any, Path], object]
 
@@ -63,84 +61,90 @@ _FIRST_LINES = 2
 """Number of the first lines of a study's text; a main result that stands among them is not printed twice."""
 
 
+class _Subject(NamedTuple):
+    """A case or a scene to study, and the folder of its files."""
+
+    content: CheckedCase | SceneInput
+    folder: Path
+
+    @property
+    def fields(self) -> Case | SceneInput:
+        """The case or the scene as its file has it."""
+        return self.content.case if isinstance(self.content, CheckedCase) else self.content
+
+
 def run_study(study: Study, options: Json) -> None:
     """Run a study as its verb was called; `options` holds argument and options by their names."""
     files = options[study.argument] if study.several else [options[study.argument]]
-    read = [_read(study, file) for file in files]
+    sources = [_read(study, file) for file in files]
     run = None if options.get("run") is None else read_run(options["run"], "run")
-    inputs = _inputs(study, options, read[0][0], files[0].project)
+    inputs = _inputs(study, options, sources[0].content, files[0].project)
     subjects = []
-    for file, (subject, folder) in zip(files, read, strict=True):
+    for file, source in zip(files, sources, strict=True):
         with located(file):
-            narrowed = study.run.narrowed(subject, inputs)
+            narrowed = study.run.narrowed(source.content, inputs)
             if isinstance(narrowed, CheckedCase):  # what is implausible about a scene is said with its tables
                 warn(case_warnings(narrowed))
-            subjects.append((narrowed, folder))
+            subjects.append(_Subject(narrowed, source.folder))
     targets = _targets(study, options["output"], files[0])
-    for subject, _ in subjects:
-        study.run.check(subject, inputs)
-    fields = [subject.case if isinstance(subject, CheckedCase) else subject for subject, _ in subjects]
+    for subject in subjects:
+        study.run.check(subject.content, inputs)
     runs = targets[0].with_name(f"{targets[0].stem}_runs") if targets else None
     interrupts = until_interrupted if study.run.interruptible else nullcontext
-    with (
-        open_executor(options["workers"], options["scheduler"]) as others,
-        _announced_cost(study, subjects, inputs, options, targets),
-        cached_workers(study, fields, inputs, others) as workers,
-        progress_bar(study.stages) as report,
-        interrupts() as cancel,
-    ):
-        means = Means(cache_home(), report, workers, cancel, runs, run)
-        results = [
-            study.run.compute(_made(subject, folder, options.get("service"), report, workers), inputs, means)
-            for subject, folder in subjects
-        ]
-        interrupted = cancel is not None and cancel()
+    with open_executor(options["workers"], options["scheduler"]) as executor:
+        if not options["json"]:
+            _announce_cost(study, subjects, inputs, options, targets)
+        with (
+            cached_workers(study, [subject.fields for subject in subjects], inputs, executor) as workers,
+            progress_bar(study.stages) as report,
+            interrupts() as cancel,
+        ):
+            means = Means(cache_home(), report, workers, cancel, runs, run)
+            results = [
+                study.run.compute(_with_tables(subject, options.get("service"), means), inputs, means)
+                for subject in subjects
+            ]
+            interrupted = cancel is not None and cancel()
     # processes of this machine are our children, whose time we know
-    remote_seconds = others.cost.cpu_seconds if options["scheduler"] else 0.0
+    remote_seconds = executor.cost.cpu_seconds if options["scheduler"] else 0.0
     result = results[0]
     if study.several:
         result = study.run.joined(dict(zip(_names(study, files), results, strict=True)))
     warn(study.run.warnings(result) or ())
-    source = read[0][0]
-    about = (source.case if isinstance(source, CheckedCase) else source).report
-    _write_and_print(study, (subjects[0][0], about), result, targets, options, remote_seconds)
+    _write(study, subjects[0].content, sources[0].fields.report, result, targets)
+    _print(study, result, targets, options, remote_seconds)
     if interrupted:
         raise KeyboardInterrupt("interrupted. The result above is the best so far.")
     if failure := study.run.failure(result):
         raise JobFailed(failure)
 
 
-@contextmanager
-def _announced_cost(
-    study: Study, subjects: Sequence[Any], inputs: Any, options: Json, targets: Sequence[Path]
-) -> Iterator[None]:
-    """Print on standard error what is known beforehand, and the cost if it is more than a moment."""
-    if not options["json"]:
-        for subject, folder in subjects:
-            if known := study.run.known_before(written_out(subject, folder), inputs):
-                sys.stderr.write(in_lines(known, sys.stderr) + "\n")
-        costs = [study_cost(study, subject, folder, inputs) for subject, folder in subjects]
-        if study.run.tables and options.get("service") is None:
-            costs += [tables_cost(*case) for case in subjects if isinstance(case[0], SceneInput)]
-        announce_cost(study.name, costs, targets)
-    yield
-
-
-def _write_and_print(
-    study: Study,
-    subject: tuple[Any, ReportInput | None],
-    result: Any,
-    targets: list[Path],
-    options: Json,
-    remote_seconds: float,
+def _announce_cost(
+    study: Study, subjects: Sequence[_Subject], inputs: Any, options: Json, targets: Sequence[Path]
 ) -> None:
-    """Write a result into its files and print it; `subject` is the case or scene, with its title block."""
+    """Print on standard error what is known beforehand, and the cost if it is more than a moment."""
+    for subject in subjects:
+        if known := study.run.known_before(written_out(*subject), inputs):
+            sys.stderr.write(in_lines(known, sys.stderr) + "\n")
+    costs = [study_cost(study, *subject, inputs) for subject in subjects]
+    if study.run.tables and options.get("service") is None:
+        costs += [tables_cost(scene, folder) for scene, folder in subjects if isinstance(scene, SceneInput)]
+    announce_cost(study.name, costs, targets)
+
+
+def _write(
+    study: Study, subject: Any, about: ReportInput | None, result: Any, targets: Sequence[Path]
+) -> None:
+    """Write a result of a case or scene into files; `about` is its title block."""
     for target in targets:
         target.parent.mkdir(exist_ok=True)
-        _writers(study, *subject)[target.suffix](result, target)
+        _writers(study, subject, about)[target.suffix](result, target)
         stamp(target, warnings_so_far())
-        if target.suffix == SUFFIX and (marks := _marks(subject[0])):
+        if target.suffix == SUFFIX and (marks := _marks(subject)):
             stamp_scene(target, {COMPLAINT: marks})
+
+
+def _print(study: Study, result: Any, targets: list[Path], options: Json, remote_seconds: float) -> None:
     if options["json"]:
         names = [str(target) for target in targets]
         files: Json = {"written": names[0], "file": names[0]} if names else {}
@@ -176,18 +180,17 @@ def _fields(study: Study, options: Json) -> Json:
     return fields
 
 
-def _read(study: Study, file: InputFile) -> tuple[CheckedCase | SceneInput, Path]:
+def _read(study: Study, file: InputFile) -> _Subject:
     if study.takes.subject == "scene" or (study.takes.subject != "case" and "shafts" in read_table(file)):
-        return assessed_scene(file)
-    return CheckedCase(read_model(Case, file)), file.folder
+        return _Subject(*assessed_scene(file))
+    return _Subject(CheckedCase(read_model(Case, file)), file.folder)
 
 
-def _made(
-    subject: CheckedCase | SceneInput, folder: Path, service: str | None, report: Report, workers: Workers
-) -> Any:
-    if isinstance(subject, CheckedCase):
-        return subject
-    return tabled_scene(subject, folder, service, report, workers)
+def _with_tables(subject: _Subject, service: str | None, means: Means) -> Any:
+    """Return a case as it is, a scene with its tables."""
+    if isinstance(subject.content, CheckedCase):
+        return subject.content
+    return tabled_scene(subject.content, subject.folder, service, means.report, means.workers)
 
 
 def _names(study: Study, files: Sequence[InputFile]) -> list[str]:

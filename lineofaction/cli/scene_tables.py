@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from functools import cache, partial
@@ -16,6 +17,7 @@ from lineofaction.cli.verb_warnings import warn
 from lineofaction.gearbox.convert.checked_case import CheckedCases
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.mesh_tables import MeshTables, finished
+from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.tabled_scene import ComputedTables
@@ -31,30 +33,33 @@ def tabled_scene(
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> TabledScene:
     """Return the scene with its tables and with its cases written out; its files are relative to `folder`."""
-    cases, source, run = CheckedCases(), None, finished
-
+    cases = CheckedCases()
     with ExitStack() as stack:
-        if service is not None:
+        if service is None:
+            cached = CachedTables(
+                lambda case: computed_tables.computed_table(cases.of(case), report, workers)
+            )
+            tables, run = MeshTables(folder, ComputedTables(cached.table)), finished
+            find_cached: Callable[[Case], SteDatabase | None] = cached.find
+        else:
             from dynamics.simulation import compile_ahead  # noqa: PLC0415 (start-up time)
             from lineofaction.client import JobState, LineOfActionClient  # noqa: PLC0415 (start-up time)
             from lineofaction.client.scene_calls import ServiceTables  # noqa: PLC0415 (start-up time)
 
             compiler = stack.enter_context(ThreadPoolExecutor(1))
-            ahead = cache(partial(compiler.submit, compile_ahead))  # compiles loops during the wait, once
+            compile_once = cache(partial(compiler.submit, compile_ahead))
 
             def watch(state: JobState) -> None:
                 if state.stage:
                     report(state.stage, state.stage_progress / 100.0)
                 if not state.ended:
-                    ahead()
+                    compile_once()  # loops, while tables are computed
 
             client = stack.enter_context(LineOfActionClient(service, progress=watch))
-            source, run = ServiceTables(client), client.driver.run
-        cached = CachedTables(lambda case: computed_tables.computed_table(cases.of(case), report, workers))
-        tables = MeshTables(folder, source or ComputedTables(cached.table))
+            tables, run = MeshTables(folder, ServiceTables(client)), client.driver.run
+            find_cached = lambda _: None  # noqa: E731 (the service has its own cache)
 
         def table_of(index: int, mesh: MeshInput) -> SteDatabase:
             return run(tables.of(index, mesh))
 
-        find_cached = cached.find if source is None else lambda _: None
         return scene_by_tables(scene, folder, table_of, cache_home(), report, warn, cases, find_cached)

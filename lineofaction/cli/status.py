@@ -78,8 +78,10 @@ def run_status(folder: Path, *, as_json: bool) -> None:
     """Print the state of the results of a folder."""
     if not folder.is_dir():
         raise BadInput.of("folder", str(folder), "a folder", "Make one with: loa open UNIT.rexs")
-    states, unread = status_of(folder), [_reason(error) for error in unread_in(folder)]
-    tables, costs = scene_tables_cost(folder).seconds, result_costs(states, folder)
+    states = status_of(folder)
+    unread = [_reason(error) for error in unread_in(folder)]
+    tables = scene_tables_cost(folder).seconds
+    costs = result_costs(states, folder)
     seconds = {name: cost.seconds for name, cost in costs.items() if isinstance(cost, StudyCost)}
     refused = {name: _reason(cost) for name, cost in costs.items() if isinstance(cost, BadInput)}
     due = [result.name for result in states if result.state != "fresh"]
@@ -95,22 +97,23 @@ def run_status(folder: Path, *, as_json: bool) -> None:
             | ({"refused": refused[result.name]} if result.name in refused else {})
             for result in states
         ]
-        known = {"tables_cpu_seconds": tables, "due_cpu_seconds": total}
-        known["not_predicted"] = sum(name not in seconds for name in due)
-        print_json({"results": entries, **known, "unread": unread})
+        not_predicted = sum(name not in seconds for name in due)
+        totals = {"tables_cpu_seconds": tables, "due_cpu_seconds": total, "not_predicted": not_predicted}
+        print_json({"results": entries, **totals, "unread": unread})
         return
     counts = Counter[str](result.state for result in states)
     out = console()
     out.print(", ".join(f"{counts[state]} {state}" for state in _STATES))
     if due:
-        kinds = {"that nothing predicts": sum(name not in costs for name in due)}
-        kinds["refused"] = sum(name in refused for name in due)
-        exceptions = " and ".join(f"{count} {kind}" for kind, count in kinds.items() if count)
+        unpriced = {
+            "that nothing predicts": sum(name not in costs for name in due),
+            "refused": sum(name in refused for name in due),
+        }
+        exceptions = " and ".join(f"{count} {kind}" for kind, count in unpriced.items() if count)
         remark = f", without {exceptions}" if exceptions else ""
         out.print(f"stale or missing: about {engineering(total, 2)} CPU s{remark}")
     if tables:
-        line = f"of that the tables of the scene, which are not kept: {engineering(tables, 2)} CPU s"
-        out.print(line)
+        out.print(f"of that the tables of the scene, which are not kept: {engineering(tables, 2)} CPU s")
     predictions = {name: engineering(cost, 2) for name, cost in seconds.items()}
     predictions |= dict.fromkeys(refused, "refused")
     rows = [

@@ -6,7 +6,7 @@ import math
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -26,14 +26,21 @@ _FARTHEST = 1e6
 """Largest position that ``--at`` accepts, base pitches."""
 _MAX_ORDERS = 8
 """Largest number of orders that are listed."""
-_NAME, _BAR, _SPARKS = 17, 16, 24
-"""Characters of a name, of the bar of the largest order, and of the curve."""
+_NAME = 17  # characters of a name
+_BAR = 16  # characters of the bar of the largest order
+_SPARKS = 24  # characters of the curve
 _DECIMALS = 4
 """Decimals of a figure in µm without an error."""
 _BLOCKS = "▁▂▃▄▅▆▇█"
 """Characters of a drawn curve, from its least to its largest value."""
-_Line = tuple[str, float, float | None]
-"""Name, value and error of a figure, µm; None: the error was not estimated."""
+
+
+class _Line(NamedTuple):
+    """A figure in µm with its error; None: the error was not estimated."""
+
+    name: str
+    value: float
+    error: float | None
 
 
 def run_ste(
@@ -161,27 +168,27 @@ def _answer(database: SteDatabase, following: str, curve: dict[str, Any]) -> Ite
     if curve["period"] == 1:
         yield f"harmonic 1 is {order_words(one, 'pinion')}"
     yield ""
-    figures = [
-        ("mean", *_with_error(curve, "mean_um")),
-        ("peak to peak", *_with_error(curve, "peak_to_peak_um")),
-    ]
     known, unknown = _orders(curve)
-    lines = (*figures, *known)
-    cells = aligned([_figure(value, error) for _, value, error in lines])
+    lines = [
+        _Line("mean", *_with_error(curve, "mean_um")),
+        _Line("peak to peak", *_with_error(curve, "peak_to_peak_um")),
+        *known,
+    ]
+    cells = aligned([_figure(line) for line in lines])
     width = max(map(len, cells))
-    mean, ripple, *levels = (
-        f"  {name:<{_NAME}} {cell:>{width}}" for (name, *_), cell in zip(lines, cells, strict=True)
+    mean, ripple, *orders = (
+        f"  {line.name:<{_NAME}} {cell:>{width}}" for line, cell in zip(lines, cells, strict=True)
     )
-    largest = max((amplitude for _, amplitude, _ in known), default=1.0)
+    largest = max((line.value for line in known), default=1.0)
     yield mean.rstrip()
     yield f"{ripple}  {_sparkline(curve['ste_um'])}  two periods"
-    for label, line in zip(levels, known, strict=True):
-        level, bar = 20.0 * math.log10(line[1]), "█" * round(_BAR * line[1] / largest)
-        yield f"{label}   {level:6.1f} dB re 1 µm  {bar}".rstrip()
+    for order, line in zip(orders, known, strict=True):
+        level, bar = 20.0 * math.log10(line.value), "█" * round(_BAR * line.value / largest)
+        yield f"{order}   {level:6.1f} dB re 1 µm  {bar}".rstrip()
     if unknown:
-        orders = ", ".join(name for name, _, _ in unknown)
-        below = max(error for _, _, error in unknown if error)
-        yield f"  {orders.replace(', harmonic', ',')}: below {engineering(below, 2)} µm, their error"
+        names = ", ".join(line.name for line in unknown)
+        below = max(line.error for line in unknown if line.error)
+        yield f"  {names.replace(', harmonic', ',')}: below {engineering(below, 2)} µm, their error"
     yield from _bands(curve)
     shares = np.array(curve["load_share"])
     carrying = (shares > 0.0).sum(axis=1)
@@ -218,24 +225,25 @@ def _with_error(curve: dict[str, Any], name: str) -> tuple[Any, Any]:
     return curve[name], curve.get(name.replace("_um", "_error_um"))
 
 
-def _figure(value: float, error: float | None) -> str:
+def _figure(line: _Line) -> str:
     """Write a figure to the digits of its error."""
-    if error is None:
-        return f"{value:.{_DECIMALS}f} (error not estimated)"
-    return with_error(value, error, "µm")
+    if line.error is None:
+        return f"{line.value:.{_DECIMALS}f} (error not estimated)"
+    return with_error(line.value, line.error, "µm")
 
 
 def _orders(curve: dict[str, Any]) -> tuple[list[_Line], list[_Line]]:
     """Return the largest lines of the spectrum above their errors, and the lines below."""
     if curve["period"] > 1:
         sizes, errors = _with_error(curve, "amplitude_um")
-        lines = zip(curve["order_name"], sizes, errors or [None] * len(sizes), strict=True)
-        ordered = sorted(lines, key=lambda line: -line[1])
-        return [line for line in ordered if line[1] > (line[2] or 0.0)][:_MAX_ORDERS], []
+        figures = zip(curve["order_name"], sizes, errors or [None] * len(sizes), strict=True)
+        lines = sorted((_Line(*figure) for figure in figures), key=lambda line: -line.value)
+        return [line for line in lines if line.value > (line.error or 0.0)][:_MAX_ORDERS], []
     sizes, errors = _with_error(curve, "harmonics_um")
-    named = [(f"harmonic {k}", size, errors[k - 1] if errors else None) for k, size in enumerate(sizes, 1)]
-    known = [line for line in named[:_MAX_ORDERS] if line[1] > (line[2] or 0.0)]
-    return known, [line for line in named[:_MAX_ORDERS] if line not in known]
+    names = (f"harmonic {order}" for order in range(1, _MAX_ORDERS + 1))
+    lines = list(map(_Line, names, sizes, errors or [None] * len(sizes)))
+    known = [line for line in lines if line.value > (line.error or 0.0)]
+    return known, [line for line in lines if line not in known]
 
 
 def _sparkline(values: list[float]) -> str:

@@ -29,8 +29,13 @@ _HASH = r"[0-9a-f]{64}"
 _JOB = r"[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}"
 _PACKED, _VARIANT, _ANY = r"[\w-]+", r"[\w.-]+", r"(?s).+"
 _VIEWS = {
-    **{"case": _PACKED, "live": _PACKED, **dict.fromkeys(("unit", "toml", "a", "b", "c"), _VARIANT)},
-    **{"tab": "[a-z]+", "name": _ANY, "at": r"\d(\.\d+)?", "motion": r"\d+", "see": _ANY, "on": "[abc]"},
+    **dict.fromkeys(("case", "live"), _PACKED),
+    **dict.fromkeys(("unit", "toml", "a", "b", "c"), _VARIANT),
+    **dict.fromkeys(("name", "see"), _ANY),
+    "tab": "[a-z]+",
+    "at": r"\d(\.\d+)?",
+    "motion": r"\d+",
+    "on": "[abc]",
 }
 """Pattern of each word of an address that says how the page looks at a result. `a`, `b` and `c` are the
 variants of a design that the page compares; `unit` is a file that the page has open.

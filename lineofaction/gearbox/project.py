@@ -29,10 +29,10 @@ Named = TypeVar("Named", InputFile, Path)
 
 
 def file_of(named: InputFile, subject: str) -> InputFile:
-    """Return a named file, or of a folder the only file that holds a subject of the study.
+    """Return a named file, or of a folder the only file that holds a `subject` of the study.
 
-    `subject`: of the latter the scene goes first. Of several files the one of that name (``scene.toml``) is
-    taken. Raises `BadInput`: the folder holds no such file, or several of other names.
+    For "case or scene" the scene goes first. Of several scenes the one named ``scene.toml`` is taken, of
+    several cases ``case.toml``. Raises `BadInput`: the folder holds no such file, or several of other names.
     """
     return only(files_of(named, subject), named.path, subject)
 
@@ -44,7 +44,9 @@ def files_of(named: InputFile, subject: str) -> list[InputFile]:
     """
     if not named.path.is_dir():
         return [named]
-    for kind in (kind for kind in _SIGNS if kind in subject):
+    for kind in _SIGNS:
+        if kind not in subject:
+            continue
         chosen = _chosen(dict(_tables(named.path)), kind)
         if len(chosen) == 1:
             return [InputFile(chosen[0], named.overrides, named.path)]
@@ -55,7 +57,7 @@ def files_of(named: InputFile, subject: str) -> list[InputFile]:
 
 
 def only(files: Sequence[Named], project: Path, kind: str) -> Named:
-    """Return the file, of a folder; raises `BadInput`: there are several."""
+    """Return the only file of a kind in a folder; raises `BadInput`: there are several."""
     if len(files) > 1:
         remedy = f"Name one: {_listed(files)}."
         raise BadInput.of(kind, str(project), f"a folder of one {kind}", remedy)
@@ -77,7 +79,7 @@ def _inputs_in(project: Path, study: Study) -> list[Path]:
 
 
 def usual_speeds(scene: SceneInput, project: Path | None, count: int) -> list[float]:
-    """Return so many speeds in rpm, evenly up to the highest of the first drive and the folder's load cases.
+    """Return `count` speeds in rpm, evenly up to the highest of the first drive and the folder's load cases.
 
     Raises `BadInput`: none of them has a speed, or load cases with a fault.
     """
@@ -99,8 +101,12 @@ def results_in(project: Path) -> list[Path]:
 
 
 def results_by_part(project: Path) -> dict[str, list[Path]]:
-    """Return the results in a folder by the case whose name they bear; others by an empty text."""
-    parts = _parts(dict(_tables(project)))
+    """Return the results in a folder by the case whose name they bear; others by an empty text.
+
+    The results of a single case do not bear its name.
+    """
+    cases = [path.stem for path in _chosen(dict(_tables(project)), "case")]
+    parts = cases if len(cases) > 1 else []
     by_part: dict[str, list[Path]] = {part: [] for part in ("", *parts)}
     for path in results_in(project):
         name = path.relative_to(project).with_suffix("").as_posix()
@@ -112,15 +118,16 @@ def results_by_part(project: Path) -> dict[str, list[Path]]:
 def tables_in(named: Path, cached: Callable[[Path], Path]) -> dict[str, Path | None]:
     """Return a named table, or of a folder the table of each case by name: its file, else a `cached` one.
 
-    None where there is neither. Raises `BadInput`: there is none at all.
+    A case without either has None. Raises `BadInput`: no case has a table.
     """
     if not named.is_dir():
         return {"": named}
-    cases = {case: named / f"{case.stem}{SUFFIX}" for case in _chosen(dict(_tables(named)), "case")}
-    paths = {
-        case.stem: table_path if table_path.is_file() else cached(case) for case, table_path in cases.items()
-    }
-    tables = {name: table if table.is_file() else None for name, table in paths.items()}
+    tables = {}
+    for case in _chosen(dict(_tables(named)), "case"):
+        table = named / f"{case.stem}{SUFFIX}"
+        if not table.is_file():
+            table = cached(case)
+        tables[case.stem] = table if table.is_file() else None
     if not any(tables.values()):
         remedy = f"Make them with: loa analyze {named}"
         raise BadInput.of("file", str(named), "a folder with an STE database in it", remedy)
@@ -128,7 +135,7 @@ def tables_in(named: Path, cached: Callable[[Path], Path]) -> dict[str, Path | N
 
 
 def run_in(named: Path) -> Path:
-    """Return a run as it is named, of a folder where its own lies."""
+    """Return the file of a run: the named file, or the file of the run in a named folder."""
     return named / RUN if named.is_dir() else named
 
 
@@ -138,12 +145,11 @@ def about(project: Path) -> Path | None:
     Raises `BadInput`: several of other names have one.
     """
     reports = [path for path, table in _tables(project) if "report" in table]
-    chosen = [path for name in ("report", "scene") for path in reports if path.stem == name] or reports
-    if len(chosen) > 1 and chosen == reports and not {"report", "scene"} & {path.stem for path in reports}:
-        raise BadInput.of(
-            "--about", str(project), "a folder of one [report]", f"Name one: {_listed(reports)}."
-        )
-    return chosen[0] if chosen else None
+    first = [path for name in ("report", "scene") for path in reports if path.stem == name]
+    if len(reports) > 1 and not first:
+        remedy = f"Name one: {_listed(reports)}."
+        raise BadInput.of("--about", str(project), "a folder of one [report]", remedy)
+    return next(iter(first or reports), None)
 
 
 @dataclass(frozen=True)
@@ -160,7 +166,7 @@ class ResultState:
 
 
 def status_of(project: Path) -> list[ResultState]:
-    """Return the state of tables, run and every study that the folder has a subject for, then of the rest.
+    """Return the state of every result that the folder has a subject for, then of its other results.
 
     Raises `BadInput`: the folder has neither a case nor a scene.
     """
@@ -171,16 +177,15 @@ def status_of(project: Path) -> list[ResultState]:
     newest = max(path.stat().st_mtime for path in tables)
     expected = _expected(tables)
     names = (path.relative_to(project).as_posix() for path in results_in(project))
-    states = {name: _state(project / name, newest) for name in dict.fromkeys([*expected, *names])}
-    return [
-        ResultState(name, verb, state, source)
-        for name, state in states.items()
-        for verb, source in [expected.get(name, ("analyze", None))]
-    ]
+    states = []
+    for name in dict.fromkeys([*expected, *names]):
+        verb, source = expected.get(name, ("analyze", None))
+        states.append(ResultState(name, verb, _state(project / name, newest), source))
+    return states
 
 
 def _expected(tables: Mapping[Path, Mapping[str, Any]]) -> dict[str, tuple[str, Path | None]]:
-    """Return the results of every verb that the files have a subject for: verb and subject by their names."""
+    """Return the verb and the subject of every result that the files have a subject for, by its name."""
     cases, scenes = (_chosen(tables, kind) for kind in ("case", "scene"))
     expected: dict[str, tuple[str, Path | None]] = {
         f"{case_path.stem}{SUFFIX}": ("analyze", case_path) for case_path in cases
@@ -188,7 +193,9 @@ def _expected(tables: Mapping[Path, Mapping[str, Any]]) -> dict[str, tuple[str, 
     if scenes:
         expected |= {RUN: ("simulate", scenes[0]), SOUND: ("listen", scenes[0])}
     file_verbs = {verb for verb, _ in expected.values()}
-    for study in (study for study in STUDIES.values() if study.name not in file_verbs):
+    for study in STUDIES.values():
+        if study.name in file_verbs:
+            continue
         if scenes and "scene" in study.takes.subject:
             expected[result_name(study)] = study.name, scenes[0]
         elif cases and "case" in study.takes.subject:
@@ -205,11 +212,10 @@ def _state(result: Path, newest: float) -> str:
 
 
 def result_name(study: Study, part: str = "") -> str:
-    """Return the file of a study's result in its project, relative to that; `part` as of its `InputFile`."""
+    """Return the file of a study's result relative to its project; `part` is that of its `InputFile`."""
     prefix = f"{part}_" if part else ""
-    return (
-        f"{prefix}{study.folder}/{study.folder}{SUFFIX}" if study.folder else f"{prefix}{study.name}{SUFFIX}"
-    )
+    file = f"{study.folder}/{study.folder}" if study.folder else study.name
+    return f"{prefix}{file}{SUFFIX}"
 
 
 def _chosen(tables: Mapping[Path, Mapping[str, Any]], kind: str) -> list[Path]:
@@ -218,14 +224,8 @@ def _chosen(tables: Mapping[Path, Mapping[str, Any]], kind: str) -> list[Path]:
     return [path for path in paths if path.stem == kind] or paths
 
 
-def _parts(tables: Mapping[Path, Mapping[str, Any]]) -> list[str]:
-    """Return the beginnings of names of results, one a case; empty for a single case."""
-    cases = [path.stem for path in _chosen(tables, "case")]
-    return cases if len(cases) > 1 else []
-
-
 def unread_in(project: Path) -> list[BadInput]:
-    """Return why files of a folder that may hold a table cannot be read: they are no files of the project."""
+    """Return the errors of files in a folder that may hold a table and cannot be read."""
     return [content for _, content in _contents(project) if isinstance(content, BadInput)]
 
 

@@ -30,27 +30,28 @@ def _broken_monotonicity() -> Sequence[Measured]:
     position, force = even_positions(32), np.linspace(500.0, 3000.0, 26)
     clean = COMPLIANCE * force * (1.0 + 0.2 * np.cos(2.0 * np.pi * position))[:, None]
     noise = np.random.default_rng(_SEED).uniform(-_AMPLITUDE, _AMPLITUDE, clean.shape)
-    table = table_of(position, force, clean + noise, np.zeros(32))
+    noisy = clean + noise
+    table = table_of(position, force, noisy, np.zeros(32))
     refusal = _refusal(table)
     repaired, report = table.monotone_repaired()
     ste = repaired.static_transmission_error[:, :, 0, 0]
-    errors = [float(np.sqrt(np.mean((values - clean) ** 2))) for values in (clean + noise, ste)]
+    noisy_error, error = (np.sqrt(np.mean((values - clean) ** 2)) for values in (noisy, ste))
     stored = repaired.metadata.receipt.get("monotone_repair", {})
     sample = repaired.force_at(position[:, None], np.linspace(0.0, 1.1 * ste.max(), 300))
     return (
         Measured(
             "load series that fall",
-            float(np.any(np.diff(clean + noise, axis=1) <= 0.0, axis=1).sum()),
+            np.any(np.diff(noisy, axis=1) <= 0.0, axis=1).sum(),
             minimum=10,
         ),
         Measured(
             "refused as it is, naming position and force",
-            float("position" in refusal and "force" in refusal),
+            "position" in refusal and "force" in refusal,
             minimum=1,
         ),
-        Measured("least growth of STE after repair, m", float(np.diff(ste, axis=1).min()), minimum=1e-15),
+        Measured("least growth of STE after repair, m", np.diff(ste, axis=1).min(), minimum=1e-15),
         Measured("largest change over the noise", report.largest_change / (2.0 * _AMPLITUDE), maximum=1.0),
-        Measured("error of the repaired over that of the noisy table", errors[1] / errors[0], maximum=1.0),
+        Measured("error of the repaired over that of the noisy table", error / noisy_error, maximum=1.0),
         Measured(
             "reported change over that of the receipt",
             report.largest_change / stored["largest_change"],
@@ -59,7 +60,7 @@ def _broken_monotonicity() -> Sequence[Measured]:
         ),
         Measured(
             "least change of force with approach, N",
-            float(np.diff(sample.force, axis=1).min()),
+            np.diff(sample.force, axis=1).min(),
             minimum=-1e-9,
         ),
     )

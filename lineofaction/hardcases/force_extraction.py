@@ -12,7 +12,7 @@ from fe_contact.errors import InputError
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
 from lineofaction.hardcases.contact.contact_case import even_positions, off
-from lineofaction.hardcases.scene import Measured, Scenes
+from lineofaction.hardcases.scene import Measured, Scenes, largest
 from lineofaction.hardcases.tables import COMPLIANCE, PLAIN_TABLE, along, square_wave, table_of
 
 SCENES = Scenes("table")
@@ -43,9 +43,7 @@ def _square_wave_ste() -> Sequence[Measured]:
     return (
         Measured("overshoot over the wave", overshoot, maximum=1e-12),
         *_inverse(table, x),
-        Measured(
-            "least change of force as teeth approach, N", float(np.diff(force, axis=1).min()), minimum=-1e-9
-        ),
+        Measured("least change of force as teeth approach, N", np.diff(force, axis=1).min(), minimum=-1e-9),
         _slope_error(table),
     )
 
@@ -69,15 +67,15 @@ def _two_loads() -> Sequence[Measured]:
         stored = between >= table.force[0]
         figures += [
             *(
-                Measured(f"{f.name}, {loads}", f.value, f.maximum, f.minimum)
+                Measured(f"{f.name}, {loads}", f.value, maximum=f.maximum, minimum=f.minimum)
                 for f in _inverse(table, position)
             ),
             Measured(
                 f"from the lowest load on, off the straight law, {loads}",
                 off(table.ste(table.position[:, None], between[stored]), straight[:, stored]),
-                1e-12,
+                maximum=1e-12,
             ),
-            Measured(f"least growth of STE with load, {loads}, m", float(growth.min()), minimum=1e-9),
+            Measured(f"least growth of STE with load, {loads}, m", growth.min(), minimum=1e-9),
         ]
     return figures
 
@@ -98,17 +96,11 @@ def _lift_off() -> Sequence[Measured]:
     below, at, above = (table.force_at(x, lift_off + step) for step in (-1e-12, 0.0, 1e-12))
     near = table.force_at(x, lift_off + 1e-9)
     return (
-        Measured(
-            "force at and below lift-off, N", float(max(below.force.max(), at.force.max())), maximum=0.0
-        ),
-        Measured(
-            "stiffness at and below lift-off, N/m", float(max(below.stiffness.max(), at.stiffness.max())), 0.0
-        ),
-        Measured("force 1 pm above it, N", float(above.force.max()), maximum=1e-6, minimum=0.0),
-        Measured(
-            "force 1 nm above it over the secant's", float(near.force.max() * COMPLIANCE / 1e-9), maximum=1.0
-        ),
-        Measured("least force 1 nm above it, N", float(near.force.min()), minimum=1e-12),
+        Measured("force at and below lift-off, N", max(below.force.max(), at.force.max()), maximum=0.0),
+        Measured("stiffness at and below lift-off, N/m", max(below.stiffness.max(), at.stiffness.max()), 0.0),
+        Measured("force 1 pm above it, N", above.force.max(), maximum=1e-6, minimum=0.0),
+        Measured("force 1 nm above it over the secant's", near.force.max() * COMPLIANCE / 1e-9, maximum=1.0),
+        Measured("least force 1 nm above it, N", near.force.min(), minimum=1e-12),
         *_inverse(table, x),
     )
 
@@ -135,12 +127,12 @@ def _queries_outside() -> Sequence[Measured]:
         _refused(table, *query) for query in ((np.nan, 1e-5), (0.0, np.nan), (np.inf, 1e-5), (0.0, np.inf))
     )
     return (
-        Measured("a million pitches away, relative change", float(far), maximum=1e-9),
-        Measured("12345 pitches back, relative change", float(back), maximum=1e-11),
+        Measured("a million pitches away, relative change", far, maximum=1e-9),
+        Measured("12345 pitches back, relative change", back, maximum=1e-11),
         Measured("beyond the top, off the straight continuation", off(beyond.force, straight), maximum=1e-9),
-        Measured("flags beyond the top", float(np.count_nonzero(beyond.validity)), minimum=float(x.size)),
-        Measured("flags inside", float(np.count_nonzero(inside.validity)), maximum=0.0),
-        Measured("of four queries that are no numbers, refused", float(refused), minimum=4.0),
+        Measured("flags beyond the top", (beyond.validity != 0).sum(), minimum=x.size),
+        Measured("flags inside", (inside.validity != 0).sum(), maximum=0.0),
+        Measured("of four queries that are no numbers, refused", refused, minimum=4.0),
         *_along_the_axis(table, x),
     )
 
@@ -162,12 +154,12 @@ def _along_the_axis(table: SteDatabase, x: FloatArray) -> tuple[Measured, ...]:
     return (
         Measured(
             "STE at each misalignment off the one stored for it",
-            max(off(values, np.full(x.size, f)) for values, f in zip(at, factor, strict=True)), 1e-12,
+            max(off(values, np.full(x.size, f)) for values, f in zip(at, factor, strict=True)), maximum=1e-12,
         ),
         Measured("force likewise", max(off(values, np.full(x.size, 2500.0)) for values in force), 1e-9),
-        Measured("STE between two misalignments over STE at the lower", float(between.min()), minimum=1.0),
-        Measured("over that at the higher one", float(between.max() / 1.5), maximum=1.0),
-        Measured("flags beyond the axis", float(np.count_nonzero(beyond.validity)), minimum=float(x.size)),
+        Measured("STE between two misalignments over STE at the lower", between.min(), minimum=1.0),
+        Measured("over that at the higher one", between.max() / 1.5, maximum=1.0),
+        Measured("flags beyond the axis", (beyond.validity != 0).sum(), minimum=x.size),
     )  # fmt: skip
 
 
@@ -187,12 +179,10 @@ def _nearly_parallel() -> Sequence[Measured]:
     x = np.linspace(0.0, 1.0, 4001)
     levels = table.ste(x[:, None], np.r_[0.0, force])
     return (
-        Measured(
-            "least distance of neighboring curves, m", float(np.diff(levels, axis=1).min()), minimum=1e-13
-        ),
+        Measured("least distance of neighboring curves, m", np.diff(levels, axis=1).min(), minimum=1e-13),
         Measured(
             "curves off their knots, m",
-            float(np.abs(table.ste(position[:, None], force) - ste).max()),
+            largest(table.ste(position[:, None], force) - ste),
             maximum=0.0,
         ),
         *_inverse(table, x),
@@ -209,7 +199,7 @@ def _inverse(table: SteDatabase, x: FloatArray) -> tuple[Measured, ...]:
     steepest = float(np.diff(table.force_table().level).max() / np.diff(table.force_table().deflection).min())
     rounding = 32.0 * np.spacing(np.abs(deflection)) * max(steepest, float(sample.stiffness.max()))
     difference = np.maximum(np.abs(sample.force - force) - rounding, 0.0) / table.force[-1]
-    return (Measured("force of the STE of a force, off by", float(difference.max()), maximum=1e-9),)
+    return (Measured("force of the STE of a force, off by", difference.max(), maximum=1e-9),)
 
 
 def _slope_error(table: SteDatabase) -> Measured:
@@ -221,7 +211,7 @@ def _slope_error(table: SteDatabase) -> Measured:
     below, above = (table.force_at(x, deflection + sign * step).force for sign in (-1.0, 1.0))
     stiffness = table.force_at(x, deflection).stiffness
     difference = np.abs((above - below) / (2.0 * step) - stiffness) / stiffness.max()
-    return Measured("stiffness off the difference of forces", float(difference.max()), maximum=1e-3)
+    return Measured("stiffness off the difference of forces", difference.max(), maximum=1e-3)
 
 
 def _refused(table: SteDatabase, position: float, deflection: float) -> bool:

@@ -8,6 +8,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
+import numpy as np
+from numpy.typing import NDArray
+
 from host import cpu_seconds
 
 TIME_LIMIT = 60.0
@@ -26,6 +29,9 @@ class Measured:
     maximum: float | None = None
     minimum: float | None = None
     """`maximum`, `minimum`: Bounds within which the figure passes, both included."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "value", float(self.value))  # counts, answers and numbers of numpy too
 
     @property
     def passed(self) -> bool:
@@ -143,3 +149,8 @@ class Outcome:
             "cpu_seconds": self.cpu_seconds,
             "failure": self.failure,
         }
+
+
+def largest(values: NDArray[np.float64]) -> float:
+    """Return the largest size of the values."""
+    return float(np.abs(values).max())

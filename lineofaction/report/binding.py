@@ -26,21 +26,24 @@ def bound(pages: Mapping[str, Page]) -> Page:
         return pages[""]
     if len(pages) == 1:
         return next(iter(pages.values()))
-    sections = one_picture(
-        [section for page in pages.values() for section in page.sections if is_picture(section)]
-    )
+    headlines: list[Headline] = []
+    pictures: list[Section] = []
     by_title: dict[tuple[Part, str, str], _Parted] = {}
     for name, page in pages.items():
+        headlines += [replace(part, name=_with_part(part.name, name)) for part in page.headlines]
         for section in page.sections:
+            if is_picture(section):
+                pictures.append(section)
+                continue
             part_name = name if section.part is Part.EFFECTS else ""  # their tables become one
-            if not is_picture(section):
-                by_title.setdefault((section.part, section.title, part_name), []).append((name, section))
-    merged = (*sections, *(_section(title, parted) for (_, title, _), parted in by_title.items()))
-    ordered = sorted(one_effects_section(merged), key=lambda section: section.part)
+            by_title.setdefault((section.part, section.title, part_name), []).append((name, section))
+    sections = [*one_picture(pictures)]
+    sections += [_section(title, parted) for (_, title, _), parted in by_title.items()]
+    ordered = sorted(one_effects_section(tuple(sections)), key=lambda section: section.part)
     return Page(
         f"Gear unit: {', '.join(parts)}",
         "; ".join(_named(name, page.lead) for name, page in pages.items() if page.lead),
-        tuple(_headline(name, headline) for name, page in pages.items() for headline in page.headlines),
+        tuple(headlines),
         tuple(ordered),
         tuple(dict.fromkeys(_named(name, text) for name, page in pages.items() for text in page.alarms)),
         records={name: record for page in pages.values() for name, record in page.records.items()},
@@ -53,10 +56,6 @@ def _named(part: str, text: str) -> str:
 
 def _with_part(title: str, part: str) -> str:
     return f"{title}, {part}" if part else title
-
-
-def _headline(part: str, headline: Headline) -> Headline:
-    return replace(headline, name=_with_part(headline.name, part))
 
 
 def _section(title: str, parted: _Parted) -> Section:
@@ -85,23 +84,20 @@ def _table(part: str, section: Section, table: Table) -> Table:
 def _figure(figures: Mapping[str, Figure]) -> Figure:
     """Join the figures of parts: panels side by side, common words of the titles, equal sentences once."""
     (first, figure), *others = figures.items()
-    titles = {name: figure.title for name, figure in figures.items()}
-    head = _head(list(titles.values()))
-    suffixes = {name: title.removeprefix(head).strip() for name, title in titles.items()}
-    panels = [
-        [_panel(name, panel, suffixes[name] if others else "") for panel in figure.content]
-        for name, figure in figures.items()
-    ]
+    head = _head([part.title for part in figures.values()])
+    panels = []
+    for name, part in figures.items():
+        suffix = part.title.removeprefix(head).strip() if others else ""
+        panels.append([_panel(name, panel, suffix) for panel in part.content])
     side_by_side = [panel for row in zip_longest(*panels) for panel in row if panel is not None]
+    tables = {name: part.table for name, part in figures.items() if part.table}
     return replace(
         figure,
         title=" ".join(_trimmed(head.split())) if others else _with_part(figure.title, first),
-        caption=_joined_text({name: figure.caption for name, figure in figures.items()}),
-        alternative=" ".join(_named(name, figure.alternative) for name, figure in figures.items()),
+        caption=_joined_text({name: part.caption for name, part in figures.items()}),
+        alternative=" ".join(_named(name, part.alternative) for name, part in figures.items()),
         content=tuple(side_by_side),
-        table=None
-        if figure.table is None
-        else _joined({name: f.table for name, f in figures.items() if f.table}),
+        table=None if figure.table is None else _joined(tables),
     )
 
 

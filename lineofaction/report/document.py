@@ -27,13 +27,7 @@ from lineofaction.report.drawing.attaching import attached
 from lineofaction.report.drawing.figure import Figure, Table, panel_rows
 from lineofaction.report.drawing.image import png, still
 from lineofaction.report.drawing.interactive import plotly_figure
-from lineofaction.report.drawing.marks import (
-    Marks,
-    marked_page_of_case,
-    marked_sections,
-    marks_of,
-    of_run,
-)
+from lineofaction.report.drawing.marks import Marks, marked_page_of_case, marked_sections, marks_of, of_run
 from lineofaction.report.drawing.page import Headline, Page, Section, html, sound_json
 from lineofaction.report.drawing.printing import pdf
 from lineofaction.report.drawing.tables import one_effects_section
@@ -60,7 +54,7 @@ def stored_study(attributes: Mapping[str, object]) -> Study | None:
     return next((study for study in STUDIES.values() if study.run.file.holds(attributes)), None)
 
 
-def _study_page(study: Study, file: Path, database: SteDatabase | None = None) -> Page:
+def _study_page(study: Study, file: Path, database: SteDatabase | None) -> Page:
     result = read_stored(study, file)
     page = page_with_database(study, result, database)
     complaint = file_attributes(file).get(COMPLAINT)
@@ -88,21 +82,22 @@ def page_with_database(study: Study, result: object, database: SteDatabase | Non
 
 @dataclass(frozen=True)
 class Inputs:
-    """The results of a report, at least one.
-
-    `pages` are those of studies, by the kind of their results; `warnings` are those of all files, in words;
-    `view` is what of the run is shown, `marks` what its scene complains of, `unit` the bodies that this is
-    drawn as; `records` are what the files say of their making, by name.
-    """
+    """The results of a report, at least one."""
 
     database: SteDatabase | None = None
     run: RunResult | None = None
     pages: Mapping[str, Page] = field(default_factory=dict)
+    """Pages of studies by the kind of their results."""
     warnings: tuple[str, ...] = ()
+    """Warnings of all files, in words."""
     view: RunView = field(default_factory=RunView)
+    """Signal of the run that is shown, and how."""
     marks: Marks | None = None
+    """Complaint of the run's scene."""
     unit: list[Json] | None = None
+    """Bodies as which the run's scene is drawn."""
     records: Mapping[str, Json] = field(default_factory=dict)
+    """Inputs and versions of each file, by its name."""
 
     @property
     def only_page(self) -> Page | None:
@@ -125,14 +120,13 @@ def read_inputs(files: Sequence[Path]) -> Inputs:
             remedy = "One page shows one file of each kind."
             raise BadInput.of("file", str(file), f"the only {kind}", remedy)
         by_kind[kind] = study, file
-    warnings = tuple(dict.fromkeys(one["message"] for file in files for one in stamped(file)))
+    warnings = tuple(dict.fromkeys(entry["message"] for file in files for entry in stamped(file)))
     read = {kind: _read(file, kind) for kind, (study, file) in by_kind.items() if study is None}
     database = read.get("database")
-    studies = sorted(
-        ((study, file) for study, file in by_kind.values() if study is not None),
-        key=lambda pair: list(STUDIES).index(pair[0].name),
-    )
-    pages = {study.kind: _study_page(study, file, database) for study, file in studies}
+    pages = {}
+    for study in STUDIES.values():
+        if study.kind in by_kind:
+            pages[study.kind] = _study_page(study, by_kind[study.kind][1], database)
     attributes = file_attributes(by_kind["run"][1]) if "run" in read else {}
     marks, unit = (json.loads(attributes.get(name, "null")) for name in (COMPLAINT, UNIT))
     records = {file.name: making_of(file) for file in files}
@@ -168,7 +162,8 @@ def _kind(file: Path) -> tuple[Study | None, str]:
     for kind, ((name, value), _) in _READERS.items():
         if attributes.get(name) == value:
             return None, kind
-    if (study := stored_study(attributes)) is not None:  # loads what computes studies
+    study = stored_study(attributes)  # loads what computes studies
+    if study is not None:
         return study, study.kind
     raise BadInput.of("file", str(file), _BOUND, "It is a netCDF file of another kind.")
 
@@ -234,7 +229,8 @@ def _page_of(read: Inputs) -> Page:
     if read.run is not None:
         parts.append(f"{read.run.time[-1]:.6g} s of motion at {read.run.sample_rate:.6g} samples per second")
     lead = "; ".join(parts)
-    if (marks := _complaint_of(read)) is not None:
+    marks = _complaint_of(read)
+    if marks is not None:
         lead = " ".join(filter(None, (lead and f"{lead}.", f"Complaint: {marks['words']}.")))
     return Page(_title(read), lead, headlines_of(read), tuple(sections), tuple(alarms))
 
@@ -285,9 +281,11 @@ def _title(read: Inputs) -> str:
         return pair_title(read.database.geometry)
     if not read.pages:
         return "Dynamics of geared shafts"
-    of = " or ".join(study.takes.subject for study in STUDIES.values() if study.kind in read.pages)
     titles = {page.title for page in read.pages.values()}
-    return titles.pop() if len(titles) == 1 else f"Studies of a {' and a '.join(sorted({*of.split(' or ')}))}"
+    if len(titles) == 1:
+        return titles.pop()
+    subjects = " or ".join(study.takes.subject for study in STUDIES.values() if study.kind in read.pages)
+    return f"Studies of a {' and a '.join(sorted(set(subjects.split(' or '))))}"
 
 
 def stored_figures(inputs: Json) -> Json:
@@ -302,7 +300,7 @@ def _figures(page: Page) -> list[Figure]:
 
 @contextmanager
 def of_the_store() -> Iterator[None]:
-    """Turn the refusal of a file into `DamagedFile`: no caller gave it, and none learns where it is."""
+    """Turn the refusal of a file into `DamagedFile`, which does not say where the file is."""
     try:
         yield
     except BadInput as error:
@@ -399,14 +397,11 @@ def write_page(
     if images is not None:
         images.mkdir(parents=True, exist_ok=True)
         for figure in figures:
+            in_one_column = all(len(row) == 1 for row in panel_rows(figure.content, _ACROSS))
             with atomic_file(images / f"{figure.key}.png") as draft:
-                draft.write_bytes(drawn[figure.key] if _in_one_column(figure) else png(figure))
+                draft.write_bytes(drawn[figure.key] if in_one_column else png(figure))
             written.append(images / f"{figure.key}.png")
     return written
-
-
-def _in_one_column(figure: Figure) -> bool:
-    return all(len(row) == 1 for row in panel_rows(figure.content, _ACROSS))
 
 
 def _printed(page: Page, text: str, output: Path) -> bytes:

@@ -46,7 +46,6 @@ from lineofaction.gearbox.units import DEGREE, MM, UM
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (
     Axis,
-    Dash,
     Figure,
     FloatArray,
     Line,
@@ -125,9 +124,11 @@ def _from_si(case: Json) -> ParallelAxes | None:
 
 
 def _fields(content: Json) -> Json:
-    parts = {
-        name: _parts(kind, content[name]) for name, kind in _PARTS.items() if content.get(name) is not None
-    }
+    """Return the fields of a gear in a request with its objects."""
+    parts = {}
+    for name, kind in _PARTS.items():
+        if content.get(name) is not None:
+            parts[name] = _parts(kind, content[name])
     return content | parts
 
 
@@ -153,17 +154,16 @@ def pair_lead(geometry: PairGeometry) -> str:
 
 def pair_remarks(pair: ParallelAxes) -> list[Json]:
     """Return the remarks as warnings: `check`, `message`."""
-    remedy = "the tool cuts into the involute near the root. Raise its profile shift."
-    remarks = [
-        ("undercut", f"pair.{name}: {remedy}")
-        for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel))
-        if isinstance(gear, Gear) and gear.form_point.undercut
-    ]
+    remarks = []
+    for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
+        if isinstance(gear, Gear) and gear.form_point.undercut:
+            remedy = "the tool cuts into the involute near the root. Raise its profile shift."
+            remarks.append({"check": "undercut", "message": f"pair.{name}: {remedy}"})
     if pair.normal_backlash <= 0.0:
         remedy = "no backlash. Give thickness_allowance_um, or a larger center distance."
-        remarks.append(("backlash", f"pair: {remedy}"))
-    remarks += [(finding.check, finding.message()) for finding in mesh_findings(pair)]
-    return [{"check": check, "message": message} for check, message in remarks]
+        remarks.append({"check": "backlash", "message": f"pair: {remedy}"})
+    remarks += [{"check": finding.check, "message": finding.message()} for finding in mesh_findings(pair)]
+    return remarks
 
 
 def pair_drawing(pair: ParallelAxes, tolerance_class: int | None = None) -> Figure:
@@ -172,18 +172,16 @@ def pair_drawing(pair: ParallelAxes, tolerance_class: int | None = None) -> Figu
     With a tolerance class, its F_alpha and F_beta of ISO 1328-1 are shaded about profiles and leads.
     """
     gears = {"pinion": pair.pinion, "wheel": pair.wheel}
-    as_made = {name: _made(gear) for name, gear in gears.items()}
-    profiles = [
-        _profile(name, pair, tolerance_class)
-        for name, gear in gears.items()
-        if gear.modification.varies_along_profile or as_made[name]
-    ]
-    leads = {
-        name: gear
-        for name, gear in gears.items()
-        if gear.modification.varies_along_face or any(flank.varies_along_face for flank in as_made[name])
-    }
-    panels = (_section(pair), *profiles, *([_lead(leads, tolerance_class)] if leads else ()))
+    panels = [_section(pair)]
+    leads = {}
+    for name, gear in gears.items():
+        made = _made(gear)
+        if gear.modification.varies_along_profile or made:
+            panels.append(_profile(name, pair, tolerance_class))
+        if gear.modification.varies_along_face or any(flank.varies_along_face for flank in made):
+            leads[name] = gear
+    if leads:
+        panels.append(_lead(leads, tolerance_class))
     caption = (
         f"Section at the pinion's mid-face; the pinion drives clockwise. The wheel's center is "
         f"{'below' if pair.internal else 'above'}. A to E: the path of contact of the usable flanks."
@@ -191,17 +189,16 @@ def pair_drawing(pair: ParallelAxes, tolerance_class: int | None = None) -> Figu
     if len(panels) > 1:
         caption += " Material removed along the line of action; 0 is the involute."
     if len(panels) > 1 and tolerance_class is not None:
-        caption += (
-            f" Shaded: F_alpha and F_beta of class {tolerance_class} of ISO 1328-1:2013, half to each side."
-        )
-    if any(as_made.values()):
+        tolerances = f"F_alpha and F_beta of class {tolerance_class} of ISO 1328-1:2013"
+        caption += f" Shaded: {tolerances}, half to each side."
+    if any(map(_made, gears.values())):
         caption += " Thin: the teeth as made, without their pitch deviations."
     return Figure(
         key="pair_drawing",
         title="The pair in mesh" if len(panels) == 1 else "The pair in mesh and its flank modifications",
         caption=caption,
         alternative=" ".join(_finding(name, gear) for name, gear in gears.items()),
-        content=panels,
+        content=tuple(panels),
     )
 
 
@@ -222,12 +219,16 @@ def _section(pair: ParallelAxes) -> Panel:
     points = outline["path_of_contact"]["points_mm"]
     path = np.array(sorted(points.values()))
     lines.append(Line("path of contact", path[:, 0], path[:, 1], palette.GREEN, width=2.4, markers=True))
-    # the name of D stands a row lower than the others, clear of its neighbors
-    notes = tuple(Note(x, y, name, -(name == "D"), left=name in "AB") for name, (x, y) in points.items())
+    notes = []
+    for name, (x, y) in points.items():
+        row = -1 if name == "D" else 0  # lower than the others, clear of its neighbors
+        notes.append(Note(x, y, name, row, left=name in "AB"))
     pitch_point = pair.operating_pitch_radii[0] / MM
-    x = Axis("mm", limits=(-_WIDTH * half, _WIDTH * half))
-    y = Axis("mm", limits=(pitch_point - half, pitch_point + half))
-    return Panel(x, y, tuple(lines), title="Transverse section", notes=notes, equal=True)
+    axes = (
+        Axis("mm", limits=(-_WIDTH * half, _WIDTH * half)),
+        Axis("mm", limits=(pitch_point - half, pitch_point + half)),
+    )
+    return Panel(*axes, tuple(lines), title="Transverse section", notes=tuple(notes), equal=True)
 
 
 def _gear_line(name: str, gear: Json, across: float) -> Line:
@@ -247,9 +248,12 @@ def _gear_line(name: str, gear: Json, across: float) -> Line:
 
 def _near(gear: Json, across: float) -> IntArray:
     """Return the numbers of the teeth within twice the drawn distance of the mesh, or of all teeth."""
-    count, reach = gear["teeth"], 2.0 * across / gear["radius_mm"]["root"]
+    count = gear["teeth"]
+    reach = 2.0 * across / gear["radius_mm"]["root"]  # rad, about
+    if reach >= 1.0:
+        return np.arange(count)
     reach_teeth = math.ceil(reach * count / (2.0 * math.pi)) + 1
-    return np.arange(count) if reach >= 1.0 else np.arange(-reach_teeth, reach_teeth + 1)
+    return np.arange(-reach_teeth, reach_teeth + 1)
 
 
 def _half(tolerance: Callable[[Toothing, int], float], gear: Toothing, tolerance_class: int | None) -> float:
@@ -261,31 +265,22 @@ def _profile(name: str, pair: ParallelAxes, tolerance_class: int | None) -> Pane
     """Draw the K-chart of a gear: removed material over roll angle; of a twisted flank at three places."""
     gear: Toothing = getattr(pair, name)
     roll, half = _usable(gear), 0.5 * gear.face_width
-    faces: tuple[tuple[str, float, Dash], ...] = (
-        ("mid-face", 0.0, "solid"),
-        ("datum face", -half, "dash"),
-        ("non-datum face", half, "dot"),
-    )
-    twisted = any(part.varies and part.along not in _AXES for part in gear.modification.parts)
     angle = roll / gear.base_radius / DEGREE
-    bands = (_half(profile_tolerance, gear, tolerance_class), 0.0, 0.0)
-    designed = (
-        Line(
-            f"{name}, {face_name}" if twisted else name,
-            angle,
-            _removed(gear, roll, face),
-            _SIDES[name],
-            dash,
-            band=band,
-        )
-        for (face_name, face, dash), band in zip(faces[: 3 if twisted else 1], bands, strict=False)
-    )
-    lines = (*designed, *_teeth_as_made(name, gear, angle, roll, np.zeros(_POINTS)))
+    twisted = any(part.varies and part.along not in _AXES for part in gear.modification.parts)
+    band = _half(profile_tolerance, gear, tolerance_class)
+    label = f"{name}, mid-face" if twisted else name
+    lines = [Line(label, angle, _removed(gear, roll, 0.0), _SIDES[name], band=band)]
+    if twisted:
+        datum, other = _removed(gear, roll, -half), _removed(gear, roll, half)
+        lines.append(Line(f"{name}, datum face", angle, datum, _SIDES[name], "dash"))
+        lines.append(Line(f"{name}, non-datum face", angle, other, _SIDES[name], "dot"))
+    lines += _teeth_as_made(name, gear, angle, roll, np.zeros(_POINTS))
     pitch_point = pair.path_of_contact.pitch_point
     at_pitch = pitch_point if name == "pinion" else float(pair.mating_roll_length(pitch_point))
     mark = Reference("C", at_pitch / gear.base_radius / DEGREE)
     title = f"Profile of the {name}, root to the {'left' if gear.sign > 0 else 'right'}"
-    return Panel(Axis(f"roll angle of the {name}, °"), Axis("removed, µm"), lines, (mark,), title=title)
+    axes = Axis(f"roll angle of the {name}, °"), Axis("removed, µm")
+    return Panel(*axes, tuple(lines), (mark,), title=title)
 
 
 def _usable(gear: Toothing) -> FloatArray:
@@ -309,7 +304,7 @@ def _lead(gears: dict[str, Toothing], tolerance_class: int | None) -> Panel:
 def _teeth_as_made(
     name: str, gear: Toothing, x: FloatArray, roll: FloatArray, face: FloatArray
 ) -> tuple[Line, ...]:
-    """Return the traces of all teeth that deviate over `x`, as one line with gaps; none: no line."""
+    """Return the traces of all teeth that deviate over `x` as one line with gaps; no line without any."""
     traces = [_removed(gear, roll, face) - flank.excess(gear, roll, face) / UM for flank in _made(gear)]
     if not traces:
         return ()
@@ -354,12 +349,8 @@ class Entry:
 
     def row(self, pair: ParallelAxes) -> tuple[str, ...]:
         """Return the line as words."""
-        return (
-            self.term,
-            self.symbol,
-            *(_text(value, self.unit) for value in self.values(pair)),
-            _SYMBOLS.get(self.unit, self.unit),
-        )
+        values = (_text(value, self.unit) for value in self.values(pair))
+        return (self.term, self.symbol, *values, _SYMBOLS.get(self.unit, self.unit))
 
 
 def _both(of: Callable[[Toothing], float]) -> Callable[[ParallelAxes], Sequence[float]]:
@@ -372,10 +363,12 @@ def _pair(of: Callable[[ParallelAxes], float]) -> Callable[[ParallelAxes], Seque
 
 def _start_diameters(pair: ParallelAxes) -> list[float]:
     """Return the diameters at which the active flanks begin, m."""
-    gears = (pair.pinion, pair.wheel)
     path = pair.active_path
-    rolls = zip(gears, (path.start, float(pair.mating_roll_length(path.end))), strict=True)
-    return [2.0 * math.hypot(gear.base_radius, roll) for gear, roll in rolls]
+    wheel_roll = float(pair.mating_roll_length(path.end))
+    return [
+        2.0 * math.hypot(pair.pinion.base_radius, path.start),
+        2.0 * math.hypot(pair.wheel.base_radius, wheel_roll),
+    ]
 
 
 GEARS = (
@@ -460,7 +453,8 @@ def data_sheet(pair: ParallelAxes) -> tuple[Table, Table, Table]:
 def _point_row(name: str, point: Json) -> tuple[str, ...]:
     numbers = [_text(length, "mm") for length in point["diameter_mm"]]
     numbers += [_text(angle, "deg") for angle in point["roll_angle_deg"]]
-    return (name, *numbers, *map(_ratio, (point["sliding_factor"], *point["specific_sliding"])))
+    ratios = (point["sliding_factor"], *point["specific_sliding"])
+    return (name, *numbers, *(f"{round(ratio, 3) + 0.0:.3f}" for ratio in ratios))  # + 0.0: no -0.0
 
 
 def data_sheet_section(pair: ParallelAxes, tolerance_class: int | None = None) -> Section:
@@ -474,11 +468,9 @@ def data_sheet_section(pair: ParallelAxes, tolerance_class: int | None = None) -
 def data_sheet_json(pair: ParallelAxes) -> Json:
     """Return the sheet as plain JSON: by gear, of the mesh, and by point of the path of contact."""
     gears = {entry.name: entry.values(pair) for entry in GEARS}
-    sides = {
-        side: {name: both[index] for name, both in gears.items()}
-        for index, side in enumerate(("pinion", "wheel"))
-    }
-    return sides | {
+    return {
+        "pinion": {name: both[0] for name, both in gears.items()},
+        "wheel": {name: both[1] for name, both in gears.items()},
         "mesh": {entry.name: entry.values(pair)[0] for entry in MESH},
         "path_of_contact": _path_points(pair),
     }
@@ -488,10 +480,6 @@ def _text(value: float, unit: str) -> str:
     """Write a value with the decimals of its unit; numbers of teeth are whole."""
     if not unit and value.is_integer():
         return f"{value:.0f}"
-    before = len(f"{abs(value):.0f}")
-    return f"{value:.{min(_DECIMALS[unit], max(MAX_DIGITS - before, 0))}f}"
-
-
-def _ratio(value: float) -> str:
-    """Return a ratio of speeds as text; rounding about zero is zero."""
-    return f"{round(value, 3) + 0.0:.3f}"
+    digits_before = len(f"{abs(value):.0f}")
+    decimals = min(_DECIMALS[unit], max(MAX_DIGITS - digits_before, 0))
+    return f"{value:.{decimals}f}"

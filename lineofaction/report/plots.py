@@ -35,7 +35,9 @@ def plot(result: Any, view: str = "", *, axes: Any = None, interactive: bool = F
     """
     figure = figure_of(result, view)
     if interactive:
-        return _plotly(figure)
+        from plotly import graph_objects  # noqa: PLC0415 (a second of imports)
+
+        return graph_objects.Figure(plotly_figure(figure))
     if figure.picture is not None:
         return _picture(figure, axes)
     if axes is None:
@@ -48,16 +50,15 @@ def plot(result: Any, view: str = "", *, axes: Any = None, interactive: bool = F
     return np.array(drawn_axes, dtype=object)
 
 
-def figure_of(result: Any, view: str = "", *, with_axes: bool = False) -> Figure:
+def figure_of(result: Any, view: str, *, with_axes: bool = False) -> Figure:
     """Return the figure of a view.
 
     Raises `BadInput`: there is none, or `with_axes` it is a picture.
     """
     figure = _named(figures_of(result), view)
     if with_axes and figure.picture is not None:
-        raise BadInput.of(
-            "view", view, "a figure with axes", "A picture has no numbers; name another figure."
-        )
+        remedy = "A picture has no numbers; name another figure."
+        raise BadInput.of("view", view, "a figure with axes", remedy)
     return figure
 
 
@@ -98,15 +99,9 @@ def _axes_of(axes: Any, panels: int) -> list[Axes]:
     return listed
 
 
-def _plotly(figure: Figure) -> Any:
-    from plotly import graph_objects  # noqa: PLC0415 (a second of imports)
-
-    return graph_objects.Figure(plotly_figure(figure))
-
-
 def _picture(figure: Figure, axes: Any) -> Any:
     """Show a figure that is a picture as an image."""
-    (ax,) = [plt.figure(layout="constrained").add_subplot()] if axes is None else _axes_of(axes, 1)
+    ax = plt.figure(layout="constrained").add_subplot() if axes is None else _axes_of(axes, 1)[0]
     ax.imshow(plt.imread(BytesIO(png(figure)), format="png"))
     ax.set_axis_off()
     ax.set_title(figure.title, loc="left", fontsize=10, fontweight="bold")

@@ -38,32 +38,29 @@ def about_of(file: Path) -> ReportInput:
 
 
 def titled(page: Page, about: ReportInput | None) -> Page:
-    """Return a page under its title block: date, program, hash of the results; None: by these alone.
+    """Return a page under its title block; without `about` the block has date, program and hash alone.
 
-    A requirement of no main result is an alarm. Without requirements the main result stands as a sentence.
+    A requirement that names no main result is an alarm. Without requirements the main result stands as a
+    sentence.
     """
     about = ReportInput() if about is None else about
-    fields = {name: getattr(about, name) for name in ("project", "number", "revision", "author")}
-    rows = {("drawing" if name == "number" else name): text for name, text in fields.items() if text}
-    rows |= {"author": about.author or _BLANK}
-    rows |= {
-        "date": date.today().isoformat(),
-        "made with": f"lineofaction {software_versions()['lineofaction']}",
-    }
+    fields = {"project": about.project, "drawing": about.number, "revision": about.revision}
+    rows = {name: text for name, text in fields.items() if text}
+    rows |= {"author": about.author or _BLANK, "date": date.today().isoformat()}
+    rows["made with"] = f"lineofaction {software_versions()['lineofaction']}"
     if page.records:
         rows["hash"] = hash_of(page.records)
     parsed = (Requirement.of(line) for line in about.requirements)
     requirements = [requirement for requirement in parsed if requirement is not None]
-    verdicts = tuple(line for required in requirements for line in _verdicts(required, page.headlines))
-    verdicts = verdicts or _main_result(page.headlines)
-    unmet = tuple(
-        f"Required, but no main result of this report: {required.text}"
-        for required in requirements
-        if not _meant(required, page.headlines)
-    )
+    verdicts, alarms = [], []
+    for required in requirements:
+        of_required = _verdicts(required, page.headlines)
+        verdicts += of_required
+        if not of_required:
+            alarms.append(f"Required, but no main result of this report: {required.text}")
     corner = " ".join(text for text in (about.number, about.revision) if text)
-    block = TitleBlock(tuple(rows.items()), verdicts, corner)
-    return replace(page, title=about.title or page.title, alarms=(*unmet, *page.alarms), block=block)
+    block = TitleBlock(tuple(rows.items()), tuple(verdicts) or _main_result(page.headlines), corner)
+    return replace(page, title=about.title or page.title, alarms=(*alarms, *page.alarms), block=block)
 
 
 def hash_of(records: Mapping[str, Any]) -> str:
@@ -75,7 +72,8 @@ def hash_of(records: Mapping[str, Any]) -> str:
 def _main_result(headlines: Sequence[Headline]) -> tuple[str, ...]:
     """Return the first main result with a number as a sentence, for a report without requirements."""
     for headline in headlines:
-        if (match := _VALUE.match(headline.value)) is not None:
+        match = _VALUE.match(headline.value)
+        if match is not None:
             _, _, band = _band(headline, float(match[1]))
             size = headline.value.removesuffix(match[2]).strip()
             result = f"{size}{band} {match[2]}".rstrip()
@@ -86,13 +84,13 @@ def _main_result(headlines: Sequence[Headline]) -> tuple[str, ...]:
 
 def _meant(required: Requirement, headlines: Sequence[Headline]) -> list[tuple[Headline, float]]:
     """Return the main results that a requirement names and that are in its unit, with their values."""
-    values = ((headline, _VALUE.match(headline.value)) for headline in headlines)
-    figure = required.figure.lower()
-    return [
-        (headline, float(value[1]))
-        for headline, value in values
-        if headline.name.lower().startswith(figure) and value and value[2] == required.unit
-    ]
+    results = []
+    for headline in headlines:
+        value = _VALUE.match(headline.value)
+        is_named = headline.name.lower().startswith(required.figure.lower())
+        if is_named and value and value[2] == required.unit:
+            results.append((headline, float(value[1])))
+    return results
 
 
 def _verdicts(required: Requirement, headlines: Sequence[Headline]) -> list[str]:
@@ -101,7 +99,9 @@ def _verdicts(required: Requirement, headlines: Sequence[Headline]) -> list[str]
     for headline, value in _meant(required, headlines):
         low, high, band = _band(headline, value)
         is_met = value <= required.limit if required.maximum else value >= required.limit
-        verdict = "Open within the error" if low < required.limit < high else "Met" if is_met else "Not met"
+        verdict = "Met" if is_met else "Not met"
+        if low < required.limit < high:
+            verdict = "Open within the error"
         if is_met and not band:
             verdict = "Open, no error is stated"
         limit = f"{'at most' if required.maximum else 'at least'} {required.limit:g} {required.unit}".rstrip()

@@ -91,11 +91,12 @@ def is_picture(section: Section) -> bool:
 
 def _alternative(bodies: Sequence[Body]) -> str:
     """Return a text with the numbers and names of shafts, gears and bearings."""
-    counts = [
-        (sum(body.kind in kinds for body in bodies), word)
-        for kinds, word in (((SHAFT,), "shaft"), ((PINION, WHEEL), "gear"), ((BEARING,), "bearing"))
-    ]
-    *more, last = [f"{count} {word}{'' if count == 1 else 's'}" for count, word in counts if count]
+    counts = []
+    for word, kinds in (("shaft", (SHAFT,)), ("gear", (PINION, WHEEL)), ("bearing", (BEARING,))):
+        count = sum(body.kind in kinds for body in bodies)
+        if count:
+            counts.append(f"{count} {word}{'' if count == 1 else 's'}")
+    *more, last = counts
     shafts = ", ".join(body.name for body in bodies if body.kind == SHAFT)
     gears = ", ".join(body.name for body in bodies if body.kind in (PINION, WHEEL))
     said = f"{', '.join(more)} and {last}" if more else last
@@ -160,9 +161,8 @@ def _write(sheet: Sheet, points: list[_Point], at: float, side: str) -> None:
         line = Line2D([end / width, column / width], [1.0 - middle / height, 1.0 - row / height])
         line.set(color=palette.INK, lw=0.6, marker="o", ms=2.4, markevery=[1])  # a dot at the part
         sheet.add_artist(line)
-        sheet.text(
-            at / width, 1.0 - middle / height, text, ha=side, va="center", fontsize=TYPE, color=palette.INK
-        )
+        name = sheet.text(at / width, 1.0 - middle / height, text, ha=side, va="center", fontsize=TYPE)
+        name.set_color(palette.INK)
 
 
 def _spread_rows(rows: Sequence[float]) -> list[float]:

@@ -16,7 +16,7 @@ PROVENANCE_FIELDS = ("from_cache", "seconds")
 def content_digest(content: object) -> str:
     """Return the SHA-256 of frozen data: dataclasses by their fields, arrays by type, shape and values.
 
-    Raises `TypeError`: it contains an object of another kind, which has no rule of equality here.
+    Raises `TypeError`: the content has an object of another kind, which has no rule of equality here.
     """
     digest = hashlib.sha256()
     for part in _parts(content):
@@ -36,13 +36,13 @@ def _parts(content: object) -> list[bytes]:
     if isinstance(content, Enum):
         return [type(content).__qualname__.encode(), content.name.encode()]
     if isinstance(content, tuple | list):
-        inside: list[object] = list(content)
+        entries: list[object] = list(content)
     elif isinstance(content, Mapping):
-        inside = list(content.items())
+        entries = list(content.items())
     elif is_dataclass(content):
         names = [field.name for field in fields(content) if field.name not in PROVENANCE_FIELDS]
-        inside = [(name, getattr(content, name)) for name in names]
+        entries = [(name, getattr(content, name)) for name in names]
     else:
         raise TypeError(f"the content of {type(content).__name__} is not known")
-    name = f"{type(content).__qualname__} {len(inside)}".encode()
-    return [name, *(part for entry in inside for part in _parts(entry))]
+    name = f"{type(content).__qualname__} {len(entries)}".encode()
+    return [name, *(part for entry in entries for part in _parts(entry))]

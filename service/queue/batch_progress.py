@@ -41,7 +41,7 @@ class Family:
         share = self.ended / max(self.number, 1)
         values = {"stage": "jobs", "stage_fraction": share, "message": f"{text}.", "fraction": self.fraction}
         if self.ended == self.number:
-            state = "dismissed" if dismissed else "failed" if failed else "successful"
+            state = next((state for state in ("dismissed", "failed") if self.states.get(state)), "successful")
             values |= {"state": state, "finished": now()}
         return values
 

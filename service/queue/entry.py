@@ -22,7 +22,7 @@ from service.project import COMMON, address_of
 from service.queue.batch_progress import batch_steps
 from service.queue.differences import NOT_COMPARED, differences_between, differences_column
 from service.queue.tables import BATCH, computations, jobs
-from service.queue.terms import ANYBODY, USUAL, Terms
+from service.queue.terms import KEYLESS_CALLER, USUAL, Terms
 from service.schemas.answers import Differences
 from service.store.database import now, writing
 from service.store.retries import retried
@@ -55,7 +55,12 @@ class Entry:
     """
 
     def __init__(
-        self, engine: Engine, queue_limit: int, project: str, caller: Holder = ANYBODY, terms: Terms = USUAL
+        self,
+        engine: Engine,
+        queue_limit: int,
+        project: str,
+        caller: Holder = KEYLESS_CALLER,
+        terms: Terms = USUAL,
     ) -> None:
         self._engine, self._queue_limit = engine, queue_limit
         self._project, self._caller, self._terms = project, caller, terms

@@ -18,7 +18,7 @@ from service.queue.entry import LIVE, BatchCase, Entry
 from service.queue.job import ENDED, EVERY_JOB, Job, JobFilter, job_of, jobs_of_all_projects
 from service.queue.pages import PageQuery
 from service.queue.tables import computations, jobs, of_batch
-from service.queue.terms import ANYBODY, USUAL, Label, Terms
+from service.queue.terms import KEYLESS_CALLER, USUAL, Label, Terms
 from service.queue.workload import states_of
 from service.store.database import BRIEF_MS, instant, now, reading, writing
 from service.store.results import USE_NOTED_EVERY_S, Mark
@@ -66,7 +66,7 @@ class Submissions:
         *,
         stored: bool,
         looked: str | None = None,
-        caller: Holder = ANYBODY,
+        caller: Holder = KEYLESS_CALLER,
         terms: Terms = USUAL,
         name: str | None = None,
     ) -> Job:
@@ -77,7 +77,7 @@ class Submissions:
         work = BatchCase(key, inputs, stored)
         return self.find(self.entry(caller, terms).job(process, work, looked or now(), name))
 
-    def entry(self, caller: Holder = ANYBODY, terms: Terms = USUAL) -> Entry:
+    def entry(self, caller: Holder = KEYLESS_CALLER, terms: Terms = USUAL) -> Entry:
         """Return the entry of jobs and batches of a caller."""
         return Entry(self._engine, self._queue_limit, self._project, caller, terms)
 

@@ -13,11 +13,12 @@ from typing import Any, Literal, Self
 from bounds import engineering
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import NETCDF
+from service.access.capacity import KEYLESS
 from service.access.holder import Holder
 from service.queue.differences import NOT_COMPARED, differences_column
 from service.schemas.answers import Differences
 
-ANYBODY = Holder(name="")
+KEYLESS_CALLER = Holder(name=KEYLESS)
 """The caller of a service without keys."""
 
 LOWER_COST = (

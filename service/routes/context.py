@@ -15,7 +15,7 @@ from service.live.turns import Asker
 from service.project import COMMON
 from service.queue.scheduler import Scheduler
 from service.queue.submissions import Submissions
-from service.queue.terms import ANYBODY
+from service.queue.terms import KEYLESS_CALLER
 from service.queue.watcher import Watcher
 from service.routes.open_databases import OpenDatabases
 from service.settings import Settings
@@ -128,7 +128,7 @@ def asker_of(request: Request, slider: str | None = None) -> Asker:
 
 def caller_of(request: Request) -> Holder:
     """Return who submits by a request."""
-    return key_of(request) or ANYBODY
+    return key_of(request) or KEYLESS_CALLER
 
 
 async def _caller(request: Request) -> Holder:

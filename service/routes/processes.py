@@ -24,12 +24,11 @@ from lineofaction.gearbox.problems import (
 )
 from lineofaction.gearbox.registry import NETCDF
 from lineofaction.gearbox.schemas.model import BoundaryModel
-from service.access.capacity import KEYLESS
 from service.access.holder import Holder, Scope
 from service.live.order import LiveOrder
 from service.live.turns import Asker
 from service.queue.differences import differences_between
-from service.queue.terms import ANYBODY, Label, Terms, check_priority, cost_limit, delivery, refuse_beyond
+from service.queue.terms import Label, Terms, check_priority, cost_limit, delivery, refuse_beyond
 from service.routes.callbacks import checked_uris, enter_calls
 from service.routes.context import Context, Ctx, From
 from service.routes.jobs import status_info
@@ -191,7 +190,7 @@ def _predicted(
         return {}
     cache = str(context.settings.data_directory / "compliance")
     order = LiveOrder(process.plan, {**inputs, "time_budget_s": None, "cache": cache})
-    asker = Asker(KEYLESS if caller is ANYBODY else caller.name, submits=True)
+    asker = Asker(caller.name, submits=True)
     stages: dict[str, float] = json.loads(context.live.ask(order, asker).result())["prediction"]["stages"]
     return stages
 

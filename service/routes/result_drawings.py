@@ -7,7 +7,7 @@ import base64
 import hashlib
 import json
 from collections.abc import Callable
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Header, Query, Request
 from starlette.concurrency import run_in_threadpool
@@ -96,15 +96,19 @@ async def result_figures(
     """Every plot as data and layout for plotly.js, with its words and numbers; or a page to print."""
     printed = negotiated(accept, (JSON, HTML)) == HTML
     stored = await run_in_threadpool(known_result, context, key)
-    inputs: dict[str, Any] = {"file": str(stored.path)}
-    tag, work = stored.sha256, FIGURES
-    if against is not None:
+    if against is None:
+        version, order = stored.sha256, LiveOrder(FIGURES, {"file": str(stored.path), "printed": printed})
+    else:
         other = await run_in_threadpool(known_result, context, against)
-        tag, work, inputs = tag + other.sha256, COMPARISON, {"files": [str(stored.path), str(other.path)]}
-    order = LiveOrder(work, {**inputs, "printed": printed})
-    form, kind, body_of = ("page", HTML, _page) if printed else ("figures", JSON, bytes)
-    response = await _cached_answer(request, context, f'"{tag}-{form}-{program_tag()}"', order, kind, body_of)
-    response.headers.update({"Vary": "Accept"} | (_INERT if printed else {}))
+        version = stored.sha256 + other.sha256
+        order = LiveOrder(COMPARISON, {"files": [str(stored.path), str(other.path)], "printed": printed})
+    tag = f'"{version}-{"page" if printed else "figures"}-{program_tag()}"'
+    if not printed:
+        response = await _cached_answer(request, context, tag, order, JSON)
+    else:
+        response = await _cached_answer(request, context, tag, order, HTML, _page)
+        response.headers.update(_INERT)
+    response.headers["Vary"] = "Accept"
     return response
 
 

@@ -11,10 +11,7 @@ from fastapi import APIRouter, Header, Path, Request
 from starlette.responses import FileResponse, JSONResponse, Response
 
 from lineofaction.gearbox.loading import on_demand
-from lineofaction.gearbox.problems import (
-    DamagedFile,
-    NotFound,
-)
+from lineofaction.gearbox.problems import DamagedFile, NotFound
 from lineofaction.gearbox.registry import NETCDF, RESULT_KINDS, RESULTS, SUFFIX
 from lineofaction.gearbox.schemas.model import HASH
 from service.access.holder import Scope
@@ -45,7 +42,8 @@ _FIGURES_OR_FILE = answer(
     content={JSON: {}, NETCDF: {"schema": FILE}},
 )
 _NETCDF_FILE = answer("The netCDF file", *OF_RESULT, "Content-Digest", content={NETCDF: {"schema": FILE}})
-_UNMODIFIED, UNMODIFIED_ANSWER = answer("Not modified", *OF_RESULT), answer("Not modified", *VERSION)
+_UNMODIFIED = answer("Not modified", *OF_RESULT)
+UNMODIFIED_ANSWER = answer("Not modified", *VERSION)
 case_of_file = on_demand("lineofaction.gearbox.result_files:case_of_file")
 figures_of = on_demand("lineofaction.gearbox.result_figures:figures_of")
 metadata_json = on_demand("lineofaction.gearbox.convert.answers:metadata_json")

@@ -122,16 +122,14 @@ _COST = {
     "positions": 64,
 }
 _ERROR = {
-    **{
-        "mesh": 0.004,
-        "slices": 0.0,
-        "positions": 0.002,
-        "numerical": 0.0045,
-        "plane": 0.001,
-        "method": 0.003,
-        "total": 0.0055,
-        "bias": None,
-    },
+    "mesh": 0.004,
+    "slices": 0.0,
+    "positions": 0.002,
+    "numerical": 0.0045,
+    "plane": 0.001,
+    "method": 0.003,
+    "total": 0.0055,
+    "bias": None,
     "mean_um": 0.06,
     "peak_to_peak_um": 0.02,
 }

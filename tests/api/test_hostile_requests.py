@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import gzip
 import json
+import re
 import tempfile
+import time
 import tracemalloc
 from collections.abc import Iterator
 from pathlib import Path
@@ -89,6 +91,34 @@ def test_a_body_of_many_unknown_fields_gets_some_faults(http: TestClient) -> Non
     case = CASE | {f"field{number}": 0 for number in range(20_000)}
     problem = assert_refused(http.post("/v1/cases/outline", json={"inputs": {"case": case}}), 422)
     assert len(problem["errors"]) == 50
+
+
+NAMES = {
+    "very long": ["a" * 1_000_000, "helix_angle_deg" * 50_000],
+    "with markup": ["<script>alert(1)</script>", "[bold red]", "</td>", "{{7*7}}", "%s", "x]", "x."],
+    "with control characters": ["\x1b[31m", "x\nerror: forged", "\u202e", "\0", "\u2028"],
+    "thousands": [f"helix_angle_deg_{number:064d}" for number in range(20_000)],
+}
+"""Names of fields that a gear does not have."""
+
+
+@pytest.mark.parametrize("kind", NAMES)
+def test_unknown_fields_with_hostile_names_are_refused_in_few_plain_words(
+    http: TestClient, kind: str
+) -> None:
+    pinion = CASE["pair"]["pinion"] | dict.fromkeys(NAMES[kind], 0)
+    case = CASE | {"pair": CASE["pair"] | {"pinion": pinion}}
+    body = json.dumps({"inputs": {"case": case}})
+    began = time.process_time()
+    answer = http.post("/v1/cases/outline", content=body, headers={"Content-Type": "application/json"})
+    problem = assert_refused(answer, 422)
+    assert time.process_time() - began < 3.0
+    assert 0 < len(problem["errors"]) == min(50, len(NAMES[kind])) and len(answer.content) < 64_000
+    for fault in problem["errors"]:
+        assert fault["field"].isprintable() and len(fault["field"]) < 1000
+        # the advice has names of our own alone
+        assert re.fullmatch(r"(Did you mean|Nearest of \d+ here:) [\w, /.?-]+", fault["suggestion"])
+    assert problem["detail"].isprintable()
 
 
 @pytest.mark.parametrize("process", ["analyze", "sensitivity"])

@@ -107,7 +107,9 @@ def test_an_own_pair_is_typed_analyzed_relieved_and_sent(seen: Visit, browser: B
     until(lambda: tone(page) == along[minimum])
     assert along[minimum] < along["0"] and minimum != "20", "the least lies within the slider"
     (cost,) = dragged(hand, "#live-torque_n_m", ["20"]).values()
-    expect(page.locator("#live-figures")).to_contain_text(re.compile(r"first harmonic.*[+−][\d.]+ dB"))
+    expect(page.locator("#live-figures")).to_contain_text(
+        re.compile(r"first harmonic.*[+−][\d.]+ ± [\d.]+ dB")
+    )
     assert cost > 0.0
     hand.on("#name").fill("own pair")
     hand.did("My own pair")
@@ -128,7 +130,7 @@ def test_an_own_pair_with_a_run_out_shows_a_revolution_and_its_sidebands(seen: V
     expect(page.locator("#plan")).to_contain_text("of one processor")
     hand.analyze()
     title = page.locator("[data-figure=live_ste] h3")
-    expect(title).to_have_text("Transmission error over 21 base pitches")
+    expect(title).to_have_text("Transmission error over 21 base pitches, at 80 N m")
     expect(page.locator("#results-design")).to_be_empty()
     hand.on(page.get_by_role("tab", name="Orders", exact=True)).click()
     orders = page.locator("[data-figure=live_harmonics] .plot")

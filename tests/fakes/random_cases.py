@@ -25,7 +25,7 @@ from fe_contact.geometry import (
 from fe_contact.material import Material
 from fe_contact.ste import SteDatabase
 from lineofaction.hardcases.contact.laws import LARGEST_RESIDUAL, MAX_ITERATIONS
-from lineofaction.hardcases.scene import HardScene, Measured, Outcome
+from lineofaction.hardcases.scene import HardScene, Measured, Outcome, largest
 
 _NODES = (2, 12)
 """Fewest nodes of an axis, and one more than the most."""
@@ -229,20 +229,18 @@ def assessed(pair: ParallelAxes, arguments: Mapping[str, Any]) -> Sequence[Measu
     predicted = float(receipt["prediction"]["cpu_seconds"])
     spent = float(receipt["cpu_seconds"])
     return (
-        Measured("failed points", float(table.n_failed), maximum=0.0),
-        Measured("points", float(table.status.size)),
-        Measured("largest residual", float(receipt["residuals_max"]), maximum=LARGEST_RESIDUAL),
-        Measured("most iterations", float(receipt["newton_iterations_max"]), maximum=MAX_ITERATIONS),
-        Measured("values that are no numbers", float(_none(table)), maximum=0.0),
+        Measured("failed points", table.n_failed, maximum=0.0),
+        Measured("points", table.status.size),
+        Measured("largest residual", receipt["residuals_max"], maximum=LARGEST_RESIDUAL),
+        Measured("most iterations", receipt["newton_iterations_max"], maximum=MAX_ITERATIONS),
+        Measured("values that are no numbers", _none(table), maximum=0.0),
         Measured("least growth of STE with load, relative", _growth(table), minimum=0.0),
-        Measured(
-            "load shares off one", float(np.abs(table.load_share.sum(axis=-1) - 1.0).max()), maximum=1e-9
-        ),
-        Measured("least load share", float(table.load_share.min()), minimum=-1e-12),
+        Measured("load shares off one", largest(table.load_share.sum(axis=-1) - 1.0), maximum=1e-9),
+        Measured("least load share", table.load_share.min(), minimum=-1e-12),
         Measured("force at lift-off, N", _force_at_lift_off(table), maximum=0.0),
         Measured("CPU time, s", spent, maximum=_SLACK * predicted + _START),
         Measured("predicted CPU time, s", predicted),
-        Measured("points whose contact outgrew its patch", float(receipt["patch_outgrown_points"])),
+        Measured("points whose contact outgrew its patch", receipt["patch_outgrown_points"]),
     )
 
 

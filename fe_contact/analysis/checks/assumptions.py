@@ -41,8 +41,8 @@ class Assumption:
     holds: bool | None
     """Whether the assumption holds; None where it could not be assessed."""
     change: float
-    """Largest change of mean or peak-to-peak that it can make, in parts of the size that the tolerance counts
-    by (`AllowedError.scale`), as far as that is known; NaN else.
+    """Largest change of mean or peak-to-peak that a wrong assumption makes, over the size that the tolerance
+    counts by (`AllowedError.scale`); NaN: not known.
     """
     reason: str
     """Finding of the check, in words."""
@@ -88,10 +88,10 @@ def _allowed(run: SolvedRun) -> AllowedError:
 
 
 def _tip_edges(run: SolvedRun, size: FloatArray) -> Iterator[Assumption]:
-    """Without corner contact: no tip edge comes to the mating flank before A and after E.
+    """Check, where corner contact is neglected, that no tip edge touches its mate before A and after E.
 
-    A contact that is left out can carry at most until the deflection has fallen to its gap: the change of STE
-    is at most how far the deflection exceeds the gap, over `size` (L, places) in m.
+    A contact that is left out carries at most until the deflection has fallen to its gap. So STE changes by
+    no more than the deflection exceeds the gap; the change is relative to `size` (L, places) in m.
     """
     if not run.edges_neglected:
         return
@@ -99,7 +99,9 @@ def _tip_edges(run: SolvedRun, size: FloatArray) -> Iterator[Assumption]:
     pairs = zip(run.places.places, run.edge_depths, strict=True)
     deepest = [np.maximum(depth, _at_handovers(point, run.plan.load)) for point, depth in pairs]
     depth = np.stack(deepest, axis=1)
-    change = float(np.max(depth / np.maximum(_allowed(run).scale(size), 1e-12 * np.abs(_means(run)))))
+    # a curve without ripple has the size 0, which rounding of its mean replaces
+    scale = np.maximum(_allowed(run).scale(size), 1e-12 * np.abs(_means(run)))
+    change = float(np.max(depth / scale))
     reason = "the gaps at the tip edges stay open"
     if depth.any():
         largest = engineering(1e6 * float(depth.max()), 2)
@@ -120,22 +122,22 @@ def _at_handovers(point: OperatingPoint, load: FloatArray) -> FloatArray:
 
 def _neglected(run: SolvedTable) -> Iterator[Assumption]:
     """Check the effects neglected for the tolerance: estimate and bound of their influence."""
-    request = run.checked.request
-    for name in request.neglected:
-        influence = estimate_influence(*run.checked.assessing(name), name)
+    allowed, means, ripples = _allowed(run), _means(run), _ripples(run)
+    for name in run.checked.request.neglected:
+        scene, model = run.checked.assessing(name)
+        influence = estimate_influence(scene, model, name)
         if influence is not None:
-            mean = np.abs(influence.mean)[:, None] / _allowed(run).scale(_means(run))
-            ripple = np.abs(influence.peak_to_peak)[:, None] / _allowed(run).scale(_ripples(run))
+            mean = np.abs(influence.mean)[:, None] / allowed.scale(means)
+            ripple = np.abs(influence.peak_to_peak)[:, None] / allowed.scale(ripples)
             estimate = float(np.max(np.maximum(mean, ripple)))
-            scene, _ = run.checked.assessing(name)
-            sizes = _means(run), _ripples(run)
-            bound = largest_part(scene.effect(name).extent(scene), *sizes, _allowed(run))
-            reason = f"estimated at {_allowed(run).part_text(estimate)} of what was computed"
+            bound = largest_part(scene.effect(name).extent(scene), means, ripples, allowed)
+            reason = f"estimated at {allowed.part_text(estimate)} of what was computed"
             if bound:
-                reason += f"; its gaps change at most {_allowed(run).part_text(bound)}"
+                reason += f"; its gaps change at most {allowed.part_text(bound)}"
             change = max(estimate, bound)
-            holds = change <= _allowed(run).relative
-            yield Assumption(name, "neglected effects are negligible", holds, change, reason)
+            yield Assumption(
+                name, "neglected effects are negligible", change <= allowed.relative, change, reason
+            )
 
 
 def _plane(run: SolvedRun) -> Iterator[Assumption]:
@@ -155,46 +157,47 @@ def _plane(run: SolvedRun) -> Iterator[Assumption]:
 
 
 def _coast_flanks(run: SolvedRun) -> Iterator[Assumption]:
-    """Between the coast flanks there is room: the contact analysis has the driving flanks alone."""
-    room = []
+    """Check that the coast flanks stay apart, since the contact analysis has the driving flanks alone."""
+    clearances = []
     for point, (_, solution) in zip(run.places.places, run.solved, strict=True):
         pair = point.contact.pair
         if pair.transverse_base_backlash <= MIN_BACKLASH:
             reason = "the teeth have no stated backlash: coast flanks were not assessed"
             yield Assumption("", "coast flanks stay apart", None, float("nan"), reason)
             return
-        room.append(pair.transverse_base_backlash + float(np.min(solution.no_load)) - _closing(point))
-    minimum = 1e6 * min(room)
-    reason = (
-        f"the least clearance is {minimum:.3g} µm" if minimum > 0 else f"the teeth jam by {-minimum:.3g} µm"
-    )
+        backlash = pair.transverse_base_backlash + float(np.min(solution.no_load))
+        clearances.append(backlash - _closing(point))
+    minimum = 1e6 * min(clearances)
+    reason = f"the least clearance is {minimum:.3g} µm"
+    if minimum <= 0:
+        reason = f"the teeth jam by {-minimum:.3g} µm"
     yield Assumption("", "coast flanks stay apart", minimum > 0, float("nan"), reason)
 
 
 def _printed_data(run: SolvedRun) -> Iterator[Assumption]:
-    """Nominal teeth that jam by no more than rounding of printed data have no backlash."""
+    """State that nominal teeth which jam by no more than rounding of printed data have no backlash."""
     pair = run.places.places[0].contact.pair
     if pair.rounding_jam > MIN_BACKLASH:
         rounding = backlash_rounding(pair.pinion, pair.wheel, pair.center_distance)
         reason = (
-            f"jam of {engineering(1e6 * pair.rounding_jam, 2)} µm "
-            "is rounding of the printed data, which makes up to "
-            f"{engineering(1e6 * rounding, 2)} µm; computed as zero backlash"
+            f"jam of {engineering(1e6 * pair.rounding_jam, 2)} µm is rounding of the printed data, which "
+            f"makes up to {engineering(1e6 * rounding, 2)} µm; computed as zero backlash"
         )
         yield Assumption("", "nominal teeth do not jam", True, float("nan"), reason)
 
 
 def _closing(point: OperatingPoint) -> float:
-    """Distance by which deviations and misalignment close the coast side beyond the driving side, m."""
-    pair, gaps = point.contact.pair, point.model.gaps
-    skew = sum(term.reach(pair) for term in gaps if isinstance(term, MisalignmentGap))
-    return skew + sum(term.largest for term in point.model.tooth_gaps)
+    """Return how far deviations and misalignment close the coast side beyond the driving side, m."""
+    tilts = [term for term in point.model.gaps if isinstance(term, MisalignmentGap)]
+    reach = sum(term.reach(point.contact.pair) for term in tilts)
+    return reach + sum(term.largest for term in point.model.tooth_gaps)
 
 
 def _crests(run: SolvedRun) -> Iterator[Assumption]:
-    """Waves leave flanks that touch in one place: their troughs are flatter than the mate is curved."""
+    """Check that flanks with waves touch in one place: troughs are flatter than the mate is curved."""
     point = run.places.places[0]
-    if point.model.tooth_gaps and (sharpest := sharpest_crest(point.contact.pair)):
+    sharpest = sharpest_crest(point.contact.pair) if point.model.tooth_gaps else 0.0
+    if sharpest:
         reason = f"waves and traces are at most {engineering(sharpest, 2)} times as curved as the flanks"
         holds = sharpest <= 1.0 - FLATTEST
         yield Assumption("", "flanks touch in one place", holds, float("nan"), reason)
@@ -209,24 +212,29 @@ def _load_patches(run: SolvedRun) -> Assumption:
 def _support_loads(run: SolvedTable) -> Assumption:
     """Check that the forces for dynamics are solved from lift-off to twice the largest load."""
     failed = sum(int(np.count_nonzero(point.solution.status)) for point in run.support)
-    reason = (
-        f"{failed} points have no solution" if failed else "all points beyond the requested loads are solved"
-    )
+    reason = "all points beyond the requested loads are solved"
+    if failed:
+        reason = f"{failed} points have no solution"
     return Assumption("", "forces solved from lift-off to overload", failed == 0, float("nan"), reason)
 
 
 def _means(run: SolvedRun) -> FloatArray:
-    """Mean STE (L, places), m, over the nodes that have a solution; infinite where none has."""
+    """Return the mean STE (L, places), m, over the nodes that have a solution; infinite where none has."""
     return _over_nodes(run, np.mean)
 
 
 def _ripples(run: SolvedRun) -> FloatArray:
-    """Peak-to-peak STE (L, places), m; as `_means`."""
+    """Return the peak-to-peak STE (L, places), m; as `_means`."""
     return _over_nodes(run, np.ptp)
 
 
 def _over_nodes(run: SolvedRun, figure: Callable[..., Any]) -> FloatArray:
     """Take a figure of every curve, its failed points left out: failures are reported by themselves."""
-    curves = [[column[np.isfinite(column)] for column in solution.deflection.T] for _, solution in run.solved]
-    figures = [[float(figure(curve)) if curve.size else np.inf for curve in columns] for columns in curves]
-    return np.array(figures).T
+    solutions = [solution for _, solution in run.solved]
+    figures = np.full((len(solutions), solutions[0].load.size), np.inf)
+    for place, solution in enumerate(solutions):
+        for load, curve in enumerate(solution.deflection.T):
+            known = curve[np.isfinite(curve)]
+            if known.size:
+                figures[place, load] = figure(known)
+    return figures.T

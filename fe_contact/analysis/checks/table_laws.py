@@ -33,9 +33,7 @@ TOUCH = 1e-9
 BALANCE = 1e-8
 """Allowed error of the balance of forces, relative to the load."""
 STRAIGHT = 1e-6
-"""Allowed relative error of a compliance or a pressure where the contact is linear: rounding in differences
-between loads.
-"""
+"""Allowed relative error of a compliance or pressure in linear contact: rounding in differences of loads."""
 ONE_TO_ONE = 1e-6
 """Least compliance over the tangent compliance at the higher load where base pitches follow from derivatives.
 
@@ -81,7 +79,7 @@ def check_laws(
     solved : sequence of (ContactProblem, ContactSolution)
         Problem of each in the first base pitch, and its solution.
     support : sequence of ContactSolution
-        At its support loads, if there are any.
+        Solution at its support loads, if there are any.
     """
     distances = table.center_distance_change.size
     worst: dict[tuple[str, str], LawCheck] = {}
@@ -98,13 +96,11 @@ def check_laws(
 def require_laws(laws: Sequence[LawCheck], partial: object, result: str = "table") -> None:
     """Raise `SolveError` naming every broken law, its place and both numbers, with the `partial` result.
 
-    `result`: what it is, a noun in the singular.
+    `result` names the kind of the result, a noun in the singular.
     """
-    broken = [law.text for law in laws if law.broken]
+    broken = "; ".join(law.text for law in laws if law.broken)
     if broken:
-        raise SolveError(
-            f"the {result} breaks a law of mechanics and is no result: {'; '.join(broken)}", partial
-        )
+        raise SolveError(f"the {result} breaks a law of mechanics and is no result: {broken}", partial)
 
 
 @dataclass(frozen=True)
@@ -161,34 +157,32 @@ class _AlignmentLaws:
 
     def _lifting(self) -> Iterator[LawCheck]:
         """Bound the curve without load and under load by the deviations of the teeth in mesh."""
-        low, high = (np.asarray(values) for values in (self._deviations.low, self._deviations.high))
+        low, high = np.asarray(self._deviations.low), np.asarray(self._deviations.high)
         alone = single_pair_deflection(self.point.contact.pair, self.problem, self.table.force)
         alone = np.tile(alone, (self._ste.shape[0] // len(alone), 1))  # in every base pitch
-        carried = np.isfinite(alone).all(axis=1)
-        above = np.where(carried, high, np.inf)
-        rigid = np.flatnonzero(carried)
-        if rigid.size:
-            value = self._no_load[rigid]
-            yield _RIGID.between(
-                value, low[rigid] - TOUCH, above[rigid] + TOUCH, lambda p: self._at(int(rigid[p]))
-            )
-            largest = np.where(self._good, self._ste, self._no_load[:, None]).max(axis=1)
-            alone = alone * (1.0 + self._softening(largest)[:, None])
-            # g + (g - d_0) + deflection of one pair alone; g largest deviation, d_0 the error without load
-            bound = (2.0 * high - self._no_load)[:, None] + alone + TOUCH
-            bound, ste = np.where(self._good, bound, 1.0)[rigid], np.where(self._good, self._ste, 0.0)[rigid]
-            floor = np.where(self._good, (low - TOUCH)[:, None], -1.0)[rigid]
-            yield _LOADED.between(ste, floor, bound, lambda p, f: self._at(int(rigid[p]), int(f)))
+        rows = np.flatnonzero(np.isfinite(alone).all(axis=1))  # positions at which one pair can carry
+        if not rows.size:
+            return
+        floor, ceiling = low - TOUCH, high + TOUCH
+        yield _RIGID.between(
+            self._no_load[rows], floor[rows], ceiling[rows], lambda p: self._at(int(rows[p]))
+        )
+        largest = np.where(self._good, self._ste, self._no_load[:, None]).max(axis=1)
+        alone = alone * (1.0 + self._softening(largest)[:, None])
+        # g + (g - d_0) + deflection of one pair alone; g largest deviation, d_0 the error without load
+        bound = (2.0 * high - self._no_load)[:, None] + alone + TOUCH
+        bound, ste = np.where(self._good, bound, 1.0)[rows], np.where(self._good, self._ste, 0.0)[rows]
+        floor = np.where(self._good, floor[:, None], -1.0)[rows]
+        yield _LOADED.between(ste, floor, bound, lambda p, f: self._at(int(rows[p]), int(f)))
 
     def _over_loads(self) -> Iterator[LawCheck]:
-        """Rise with load: chords between loads lie between the tangents at their ends."""
+        """Check the rise with load: chords between loads lie between the tangents at their ends."""
         t, m, d = self.table, self.m, self.d
         force = np.concatenate([t.force, t.support_force])
         order = np.argsort(force)
         ste = np.concatenate([self._ste, t.support_transmission_error[:, :, m, d]], axis=1)[:, order]
-        tangent = np.concatenate(
-            [t.tangent_compliance[:, :, m, d], t.support_tangent_compliance[:, :, m, d]], axis=1
-        )[:, order]
+        compliances = t.tangent_compliance[:, :, m, d], t.support_tangent_compliance[:, :, m, d]
+        tangent = np.concatenate(compliances, axis=1)[:, order]
         force = force[order]
         chord = np.diff(np.concatenate([self._no_load[:, None], ste], axis=1), axis=1)
         chord = chord / np.diff(np.concatenate([[0.0], force]))
@@ -228,11 +222,11 @@ class _AlignmentLaws:
         """Bound forces of the first base pitch and residuals of all that were solved."""
         solution, candidates = self.solutions[0], self.problem.candidates
         force, load = solution.force, solution.load
-        first = len(force)
-        good = self._good[:first]
+        count = len(force)
+        good = self._good[:count]
         minimum = np.minimum(force.min(axis=2), 0.0) / load
         yield _PUSHING.below(np.where(good, -minimum, 0.0), BALANCE, self._at)
-        moment = np.einsum("pfm,pm->pf", force, candidates.torque_share[:first]) / load - 1.0
+        moment = np.einsum("pfm,pm->pf", force, candidates.torque_share[:count]) / load - 1.0
         yield _BALANCE.below(np.where(good, np.abs(moment), 0.0), BALANCE, self._at)
         residual = np.nan_to_num(self.table.residuals[:, :, self.m, self.d, 0])
         yield _RESIDUAL.below(np.where(self._good, residual, 0.0), BALANCE, self._at)
@@ -270,11 +264,10 @@ class _AlignmentLaws:
         flattest = flattest_touch(candidates.touch) if model.sloped or model.tooth_gaps else 1.0
         shape = len(share) // count, count, *share.shape[1:]
         carried = share.reshape(shape)[..., pairs - self.table.pair[0]] * self.table.force[:, None]
-        with np.errstate(divide="ignore", invalid="ignore"):
+        radius = radii.max(axis=2)[:, None, :] / flattest
+        with np.errstate(divide="ignore", invalid="ignore"):  # a pair without candidates has no width
             line_load = carried / widths.sum(axis=2)[:, None, :]
-            pressure = peak_pressure(
-                line_load, radii.max(axis=2)[:, None, :] / flattest, self.problem.modulus
-            )
+            pressure = peak_pressure(line_load, radius, self.problem.modulus)
         minimum = (1.0 - STRAIGHT) * np.nan_to_num(pressure, posinf=0.0).max(axis=3)
         return np.asarray(minimum.reshape(share.shape[:2]))
 

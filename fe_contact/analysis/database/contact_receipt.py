@@ -20,15 +20,14 @@ FEW_ITERATIONS = 40
 def contact_receipt(
     solved: Solved, support: Solved, *, condition: bool = True, known: FloatArray | None = None
 ) -> Json:
-    """Return figures over all places of a table, at its own loads and at the support loads.
+    """Return figures over all operating points of a table, at its own loads and at the support loads.
 
-    Support loads that failed anywhere are not in the table, and are named here. Without `condition` the
-    condition number is None: it takes some per cent of the contact, unless it was `known` with the
-    solutions.
+    Support loads that failed anywhere are not in the table, and are named here. The condition number takes
+    some per cent of the contact, unless it is `known`; without `condition` it is None.
     """
     solutions = [solution for _, solution in solved]
     iterations = np.concatenate([solution.iterations.ravel() for solution in solutions])
-    unsolved = ~np.all([s.status == Status.CONVERGED for _, s in support], axis=(0, 1))
+    converged = np.all([solution.status == Status.CONVERGED for _, solution in support], axis=(0, 1))
     return {
         "newton_iterations_max": int(iterations.max()),
         "newton_iterations_mean": float(iterations.mean()),
@@ -37,23 +36,22 @@ def contact_receipt(
         "condition_number_max": _worst_condition(solved, known) if condition else None,
         "patch_outgrown_points": sum(int(solution.beyond.sum()) for solution in solutions),
         "failed_points": failed_points(solutions),
-        "support_loads_left_out": support[0][1].load[unsolved].tolist(),
+        "support_loads_left_out": support[0][1].load[~converged].tolist(),
     }
 
 
 def failed_points(solutions: Sequence[ContactSolution]) -> dict[str, int]:
     """Return how many points failed, by the name of their status; empty if none did."""
-    codes = Counter(int(code) for solution in solutions for code in solution.status.ravel() if code)
+    status = np.concatenate([solution.status.ravel() for solution in solutions])
+    codes = Counter(status[status != Status.CONVERGED].tolist())
     return {Status(code).name: count for code, count in sorted(codes.items())}
 
 
-def _worst_condition(solved: Solved, known: FloatArray | None = None) -> float | None:
-    """Return the largest condition number of the compliance between candidates; None if one is not definite.
-
-    Operating points of one center distance share their compliance, which is assessed once.
-    """
+def _worst_condition(solved: Solved, known: FloatArray | None) -> float | None:
+    """Return the largest condition number of the compliances; None if one is not definite."""
     if known is None:
-        shared = {id(problem.compliance): problem.compliance for problem, _ in solved}
-        known = np.array([condition_numbers(compliance).max() for compliance in shared.values()])
+        # operating points of one center distance share their compliance
+        distinct = {id(problem.compliance): problem.compliance for problem, _ in solved}
+        known = np.array([condition_numbers(compliance).max() for compliance in distinct.values()])
     worst = float(known.max())
     return worst if np.isfinite(worst) else None

@@ -1,8 +1,8 @@
 """The refinement of the next pass, decided by the errors that a pass has measured.
 
-A source of error is refined by what it comes from: the mesh by the next level, slices by more of them,
-positions by a closer search, the correction for a finite width by three dimensions. How far a step takes its
-source down is predicted; what comes of it is measured by the pass itself.
+Each source of error has its refinement: the mesh the next level, slices more slices, positions a closer
+search, the correction for a finite width three dimensions. The error after a step is predicted; the pass
+itself then measures it.
 """
 
 from __future__ import annotations
@@ -29,14 +29,10 @@ AIM = 0.9
 """Part of the tolerance that a pass is planned to use. The rest covers errors of the predictions."""
 
 DOUBT = 2.0
-"""Factor within which predictions are right. No pass begins where even the finest discretization misses the
-tolerance by more than it.
-"""
+"""Factor within which predictions are right: no pass begins where the finest mesh misses by more."""
 
 SMALL = 0.3
-"""Part of the tolerance below which an error source is refined only where it decides: a tenth of the sum of
-squares.
-"""
+"""Part of the tolerance below which a source is refined only where it decides: a tenth of the square sum."""
 
 MESH_STEP = {
     "plane": {"draft": 0.45, "medium": 0.6, "standard": 0.2},
@@ -45,23 +41,22 @@ MESH_STEP = {
 """Error of the next level over that of a level, from the pairs of docs/lab/index.md, "Constants"."""
 
 CLOSER = 0.25
-"""Error between positions that a step allows over that before it."""
+"""Error between positions that a step allows over the error allowed before the step."""
 
 _MESH, _SLICES, _SOLVER, _WIDTH, _POSITION, _ = range(len(AT_NODES))
 
 
 @dataclass(frozen=True)
 class Refinement:
-    """The next pass.
-
-    `source` takes most of the tolerance where most of it is used, `steps` say in words what is refined,
-    and `expected` is the part of the tolerance that the pass is predicted to use.
-    """
+    """The next pass."""
 
     decision: Decision
     source: str
+    """Largest source of error where most of the tolerance is used."""
     steps: tuple[str, ...]
+    """Refinements in words."""
     expected: float
+    """Part of the tolerance that the pass is predicted to use."""
 
     @property
     def text(self) -> str:
@@ -71,17 +66,16 @@ class Refinement:
 
 @dataclass(frozen=True)
 class _Resolution:
-    """Mesh, slices and search of positions, the errors predicted of them, and the steps that led there.
-
-    `shares` (6, ...) are parts of the tolerance by source, `level_left` mesh levels may yet be gone up.
-    """
+    """Mesh, slices and search of positions, their predicted errors, and the steps that led there."""
 
     decision: Decision
     level: str
     slices: int
     nodes: NodeRule
     shares: FloatArray
+    """Parts of the tolerance by source. Shape (6, ...)."""
     level_left: int
+    """Number of mesh levels that steps may still go up."""
     steps: tuple[str, ...] = ()
 
     @property
@@ -106,12 +100,10 @@ class _Resolution:
             usual = self.decision.usual_nodes.tolerance
             if self.nodes.tolerance * CLOSER < usual * CLOSEST:
                 return None
-            nodes = replace(
-                self.nodes, tolerance=CLOSER * self.nodes.tolerance, maximum=2 * self.nodes.maximum
-            )
+            before, after = self.nodes.tolerance, CLOSER * self.nodes.tolerance
+            nodes = replace(self.nodes, tolerance=after, maximum=2 * self.nodes.maximum)
             step = (
-                f"positions {engineering(100 * self.nodes.tolerance, 2)} "
-                f"-> {engineering(100 * nodes.tolerance, 2)} % of the ripple"
+                f"positions {engineering(100 * before, 2)} -> {engineering(100 * after, 2)} % of the ripple"
             )
             return replace(self._with(_POSITION, CLOSER, step), nodes=nodes)
         return None
@@ -135,7 +127,9 @@ class _Resolution:
         if self.slices >= FINER_SLICES[-1]:
             return None
         finer = self._next_level(across_face=True)
-        return finer and (finer if finer.slices > self.slices else finer._more_slices())
+        if finer is None or finer.slices > self.slices:
+            return finer
+        return finer._more_slices()
 
     def _slices_that_fit(self, slices: int, level: str) -> int:
         return face_discretization(self.decision.checked.request.pair, level, slices).slices
@@ -154,13 +148,12 @@ class _Resolution:
 
 
 def next_pass(choice: Decision, shares: FloatArray) -> Refinement | str:
-    """Choose what to refine, of the sources that dominate, to keep the tolerance; or say why no pass pays.
+    """Choose which of the dominant sources to refine to meet the tolerance, or return why no pass pays.
 
-    A pass goes up one mesh level at most, since the level between costs a third of the finer one. Where it
-    is known how runs scatter, no pass begins that is expected to miss the tolerance and to lower the errors
-    by less than it leaves of them.
-    `shares` (6 or more, ...) are the errors by source `AT_NODES` in parts of what is allowed, of every
-    quantity at every node, without those that no run lowers; more sources are not looked at.
+    A pass goes up one mesh level at most, since the level between costs a third of the finer one. Where the
+    scatter of runs is known, no pass begins that is expected to miss the tolerance and to lower the errors by
+    less than the rest. `shares` (6 or more, ...) are the errors by source `AT_NODES` in parts of the allowed
+    error, of every quantity at every node, without those that no run lowers; further sources are ignored.
     """
     plan = choice.plan
     initial = _Resolution(
@@ -168,20 +161,19 @@ def next_pass(choice: Decision, shares: FloatArray) -> Refinement | str:
         plan.level,
         plan.discretization.slices,
         plan.nodes,
-        np.nan_to_num(shares[: len(AT_NODES)]),
-        len(LEVELS),
+        shares=np.nan_to_num(shares[: len(AT_NODES)]),
+        level_left=len(LEVELS),
     )
     source = int(np.argmax(initial.sources))
-    finest = _settled(initial)
+    finest = _refined(initial)
     barrier = _barrier(initial, finest)
     if barrier is not None:
         if barrier == _WIDTH and (model := next_model(choice.checked)):
-            return _of_model(model, initial)
-        return _no_way(finest, barrier)
-    finer = _settled(replace(initial, level_left=1))
-    reason = (
-        f"{source_words(AT_NODES[source])} takes {engineering(initial.sources[source], 2)} of the tolerance"
-    )
+            return _model_refinement(model, initial)
+        return _refusal(finest, barrier)
+    finer = _refined(replace(initial, level_left=1))
+    share = engineering(initial.sources[source], 2)
+    reason = f"{source_words(AT_NODES[source])} takes {share} of the tolerance"
     refined = choice.refined(finer.level, finer.slices, finer.nodes, reason)
     if refined.mesh.option.error.scatter and finer.used > 1.0 and initial.used - finer.used < finer.used:
         return (
@@ -191,13 +183,14 @@ def next_pass(choice: Decision, shares: FloatArray) -> Refinement | str:
     return Refinement(refined, AT_NODES[source], finer.steps, finer.used)
 
 
-def _settled(resolution: _Resolution) -> _Resolution:
+def _refined(resolution: _Resolution) -> _Resolution:
     """Refine the largest errors until the tolerance is predicted to be met, or nothing is left to refine."""
     while resolution.used > AIM:
         used, sources = resolution.used, resolution.sources
-        decides = (used > 1.0) & (used**2 - sources**2 <= 1.0)
-        order = [k for k in np.argsort(-sources, kind="stable") if sources[k] > SMALL or decides[k]]
-        finer = next((step for source in order if (step := resolution.step(int(source)))), None)
+        decides = (used > 1.0) & (used**2 - sources**2 <= 1.0)  # without it the tolerance is met
+        order = [int(k) for k in np.argsort(-sources, kind="stable") if sources[k] > SMALL or decides[k]]
+        steps = (resolution.step(source) for source in order)
+        finer = next((step for step in steps if step), None)
         if finer is None:
             break
         resolution = finer
@@ -205,30 +198,33 @@ def _settled(resolution: _Resolution) -> _Resolution:
 
 
 def _barrier(initial: _Resolution, finest: _Resolution) -> int | None:
-    """Return the source that keeps even the finest resolution from the tolerance; None if it may be kept.
+    """Return the source by which even the finest resolution misses the tolerance; None if it may be met.
 
-    What is measured stands as it is; what is predicted may turn out less by a factor `DOUBT`.
+    Measured errors count as they are; predicted ones may turn out smaller by the factor `DOUBT`.
     """
-    changed = np.array(
-        [not np.array_equal(*both) for both in zip(initial.shares, finest.shares, strict=True)]
+    predicted = np.array(
+        [not np.array_equal(first, last) for first, last in zip(initial.shares, finest.shares, strict=True)]
     )
-    hoped = replace(finest, shares=finest.shares / _by_source(np.where(changed, DOUBT, 1.0), finest.shares))
-    return int(np.argmax(hoped.sources)) if hoped.used > 1.0 else None
+    doubt = _by_source(np.where(predicted, DOUBT, 1.0), finest.shares)
+    best = replace(finest, shares=finest.shares / doubt)
+    return int(np.argmax(best.sources)) if best.used > 1.0 else None
 
 
 def _by_source(values: FloatArray, shares: FloatArray) -> FloatArray:
+    """Return values (6,) by source in the shape (6, 1, ...), to multiply shares (6, ...)."""
     return values.reshape(-1, *[1] * (shares.ndim - 1))
 
 
-def _of_model(model: Decision, initial: _Resolution) -> Refinement:
-    """Return the pass of a more exact model; what lies between positions stays, the rest is expected."""
+def _model_refinement(model: Decision, initial: _Resolution) -> Refinement:
+    """Return the pass of a more exact model: the error between positions as measured, the rest expected."""
     step = f"model {initial.decision.checked.model_name} -> {model.checked.model_name}"
     tolerance = model.checked.request.options.allowed.relative
     expected = float(np.hypot(model.mesh.option.error.reducible / tolerance, initial.shares[_POSITION].max()))
     return Refinement(model, AT_NODES[_WIDTH], (step,), expected)
 
 
-def _no_way(finest: _Resolution, source: int) -> str:
+def _refusal(finest: _Resolution, source: int) -> str:
+    """Return why no refinement brings the error of a source within the tolerance."""
     plan = finest.decision.plan
     fixed = f"{plan.positions} positions were requested; leave positions out or request more"
     why = {

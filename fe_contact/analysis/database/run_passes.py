@@ -39,33 +39,33 @@ class Pass:
 
     def to_json(self) -> Json:
         """Return model, discretization, cost and refinement of the pass as plain JSON."""
-        mesh, made, table = self.decision.mesh, self.refinement, self.table
-        failed = {"failure": self.failure} if self.failure else {}
-        return failed | {
+        mesh, refinement, table = self.decision.mesh, self.refinement, self.table
+        failure = {"failure": self.failure} if self.failure else {}
+        return failure | {
             "model": self.decision.checked.model_name,
             "level": mesh.level,
             "slices": mesh.slices,
             "positions": None if table is None else int(table.position.size),
             "cpu_seconds": self.cost["cpu_seconds"],
             "used": None if table is None else table.metadata.receipt["tolerance"]["used"],
-            "refined": [] if made is None else list(made.steps),
+            "refined": [] if refinement is None else list(refinement.steps),
             "because": mesh.reason,
-            "expected_used": None if made is None else made.expected,
+            "expected_used": None if refinement is None else refinement.expected,
         }
 
 
 def table_of_passes(passes: Sequence[Pass], table: SteDatabase, reason: str) -> SteDatabase:
     """Return the table of one pass with the receipt of all, and the reason why there was no further one."""
-    receipt = table.metadata.receipt | _summed([done.cost for done in passes])
+    receipt = table.metadata.receipt | _summed([run.cost for run in passes])
     receipt["tolerance"] = receipt["tolerance"] | {"reason": reason}
     receipt["prediction"] = receipt["prediction"] | _predicted(passes)
-    receipt["passes"] = [done.to_json() | {"kept": done.table is table} for done in passes]
+    receipt["passes"] = [run.to_json() | {"kept": run.table is table} for run in passes]
     return replace(table, metadata=replace(table.metadata, receipt=receipt))
 
 
 def _predicted(passes: Sequence[Pass]) -> Json:
     """Add up the predictions of all passes before they began; memory is the largest."""
-    predictions = [done.table.metadata.receipt["prediction"] for done in passes if done.table is not None]
+    predictions = [run.table.metadata.receipt["prediction"] for run in passes if run.table is not None]
     stages = {
         name: sum(prediction["stages"][name] for prediction in predictions)
         for name in predictions[0]["stages"]
@@ -77,16 +77,17 @@ def _predicted(passes: Sequence[Pass]) -> Json:
 def _summed(costs: Sequence[Json]) -> Json:
     """Add up times by stage; memory is the largest."""
     kinds = ("cpu_seconds", "wall_seconds")
-    names = dict.fromkeys(name for cost in costs for name in cost["stages"])
-    times = {name: [cost["stages"][name] for cost in costs if name in cost["stages"]] for name in names}
-    stages = {
-        name: {kind: sum(time[kind] for time in times_of_stage) for kind in kinds}
-        for name, times_of_stage in times.items()
-    }
+    times: dict[str, list[Json]] = {}
+    for cost in costs:
+        for stage, time in cost["stages"].items():
+            times.setdefault(stage, []).append(time)
     total: Json = {kind: sum(cost[kind] for cost in costs) for kind in kinds}
-    total |= {"stages": stages, "peak_memory_bytes": max(cost["peak_memory_bytes"] for cost in costs)}
-    others = [cost["elsewhere"] for cost in costs if "elsewhere" in cost]
-    if others:  # the peak and the loss of workers are those of all passes so far
-        sums = {name: sum(remote[name] for remote in others) for name in ("tasks", "cpu_seconds")}
-        total["elsewhere"] = others[-1] | sums
+    total["stages"] = {
+        stage: {kind: sum(time[kind] for time in passes) for kind in kinds} for stage, passes in times.items()
+    }
+    total["peak_memory_bytes"] = max(cost["peak_memory_bytes"] for cost in costs)
+    remote = [cost["elsewhere"] for cost in costs if "elsewhere" in cost]
+    if remote:  # the peak and the loss of workers are those of all passes so far
+        sums = {name: sum(cost[name] for cost in remote) for name in ("tasks", "cpu_seconds")}
+        total["elsewhere"] = remote[-1] | sums
     return total

@@ -33,12 +33,12 @@ from fe_contact.types import FloatArray, Json
 def interval_errors(shape: tuple[int, ...], axes: Mapping[str, AxisError]) -> tuple[FloatArray, FloatArray]:
     """Lay out the interpolation errors of the axes of a table with nodes (F, M, D).
 
-    What was assessed at one alignment stands for all of them. An interval that was not assessed has NaN.
+    Errors assessed at one alignment stand for all alignments. An interval that was not assessed has NaN.
 
     Returns
     -------
     (ndarray, ndarray), shapes (3, F, M, D) and (3, 23, F, M, D)
-        Of points, and of mean, peak-to-peak and harmonics, in m at the lower node of every interval.
+        Errors of points, and of mean, peak-to-peak and harmonics, in m at the lower node of every interval.
     """
     errors = np.zeros((len(BETWEEN_NODES), 1 + QUANTITIES, *shape))
     for i, name in enumerate(BETWEEN_NODES):
@@ -70,9 +70,7 @@ class AssessedTable:
     band: FloatArray
     """Error of the transmission error at every point, m; NaN where not estimated. Shape (P, F, M, D)."""
     curve_error: FloatArray
-    """Error of mean, peak-to-peak and harmonics by source, m; NaN where not estimated. Shape (9, 23, F, M,
-    D).
-    """
+    """Error of mean, peak-to-peak and harmonics by source, m; NaN: not estimated. Shape (9, 23, F, M, D)."""
     load_arm_error: FloatArray
     """Error of mean, peak-to-peak and harmonics of the load arm by source, m. Shape (3, 23, F, M, D)."""
     interval_error: FloatArray
@@ -80,10 +78,9 @@ class AssessedTable:
     inserted: SupportLoads | None
     """Solutions at inserted loads. With these nodes the table has the stated errors between its loads."""
     by_source: Json
+    """Largest errors by source."""
     validation: Json
-    """`by_source`, `validation`: The largest errors by source; the errors measured between the nodes of each
-    axis.
-    """
+    """Errors measured between the nodes of each axis."""
     bias: PlaneBias | None
     """Bias of the plane by the finite width where the width is not corrected. No error contains it."""
     mesh_bias: FloatArray | None = None
@@ -105,8 +102,8 @@ class AssessedTable:
         """Return the errors with those of derivatives, if any base pitch of the table follows from them."""
         if derived is None or not derived.tables:
             return self
-        errors = [table.errors[:3] for table in derived.tables]
-        band, curves, arms = map(derived.places.gathered, map(list, zip(*errors, strict=True)))
+        by_kind = zip(*(table.errors[:3] for table in derived.tables), strict=True)
+        band, curves, arms = (derived.places.gathered(list(errors)) for errors in by_kind)
         return replace(
             self,
             band=self.band + band,
@@ -129,14 +126,14 @@ def assessed_table(solved_table: SolvedTable, coarse: OperatingPoints) -> tuple[
     Parameters
     ----------
     solved_table : SolvedTable
-        On the meshes of the run.
+        Table on the meshes of the run.
     coarse : OperatingPoints
-        Its places on the coarse meshes.
+        Operating points of the table on the coarse meshes.
 
     Returns
     -------
     AssessedTable, SolvedTable
-        The errors, and the table with the alignments that were inserted, which they are of.
+        The errors, and their table: with the alignments that were inserted.
     """
     table, plan, fine, nodes = solved_table.table, solved_table.plan, solved_table.places, solved_table.nodes
     discretization, solutions = plan.discretization, [solution for _, solution in solved_table.solved]
@@ -144,8 +141,8 @@ def assessed_table(solved_table: SolvedTable, coarse: OperatingPoints) -> tuple[
     sample = TableSample.of(nodes.position, fine.period, axes)
     nominal = sample.taken(table)
     plane = sample.solved(fine.in_plane_strain, fine) if discretization.corrected else nominal
-    slices = discretization.slices > 1
-    sliced = sample.solved(fine.in_slices(discretization.coarse_slices), fine) if slices else nominal
+    has_slices = discretization.slices > 1
+    sliced = sample.solved(fine.in_slices(discretization.coarse_slices), fine) if has_slices else nominal
     patched = sample.solved(fine.in_plane_strain.in_coarse_patches, fine)
     nested = Nested(sample, nominal, plane, patched, sample.solved(coarse, fine), sliced)
     positions = position_errors(nodes, fine, solutions, plan)
@@ -154,24 +151,24 @@ def assessed_table(solved_table: SolvedTable, coarse: OperatingPoints) -> tuple[
     sources, errors = estimate_errors(*measured), curve_errors(*measured)
     request = solved_table.checked.request
 
-    def goal_of(refined: SteDatabase) -> IntervalGoal:
+    def goal(refined: SteDatabase) -> IntervalGoal:
         at_nodes, bias = _at_inserted(errors, refined), table_bias(refined, fine, plan)
         return interval_goal(refined, at_nodes, request, bias)
 
-    refined = request.options.tolerance is not None and not request.nodes_alone
-    validation = validation_axes(solved_table, goal_of if refined else None)
+    has_goal = request.options.tolerance is not None and not request.nodes_alone
+    validation = validation_axes(solved_table, goal if has_goal else None)
     solved_table = validation.solved_table
     of_points, of_curves = interval_errors((plan.load.size, *solved_table.places.shape), validation.axes)
     assessed = AssessedTable(
-        _at_inserted(sources.total, solved_table.table),
-        np.concatenate([_at_inserted(errors, solved_table.table), of_curves]),
-        _at_inserted(load_arm_errors(fine, table, arms, plan), solved_table.table),
-        of_points,
-        validation.loads,
-        sources.to_json(),
-        {name: error.to_json() for name, error in validation.axes.items()},
-        table_bias(solved_table.table, fine, plan),
-        mesh_bias(ste, plan) if has_signed_errors(fine.nominal.pair, discretization) else None,
+        band=_at_inserted(sources.total, solved_table.table),
+        curve_error=np.concatenate([_at_inserted(errors, solved_table.table), of_curves]),
+        load_arm_error=_at_inserted(load_arm_errors(fine, table, arms, plan), solved_table.table),
+        interval_error=of_points,
+        inserted=validation.loads,
+        by_source=sources.to_json(),
+        validation={name: error.to_json() for name, error in validation.axes.items()},
+        bias=table_bias(solved_table.table, fine, plan),
+        mesh_bias=mesh_bias(ste, plan) if has_signed_errors(fine.nominal.pair, discretization) else None,
     )
     return assessed, solved_table
 
@@ -186,11 +183,17 @@ def _at_inserted(errors: FloatArray, table: SteDatabase) -> FloatArray:
 
 def unassessed_table(table: SteDatabase, points: OperatingPoints, plan: Plan) -> AssessedTable:
     """Return the errors of a table without estimates, with the errors known in closed form."""
-    bias = table_bias(table, points, plan)
-    unknown = np.full(table.error_estimate.shape, np.nan)
     errors = np.full((len(SOURCES), QUANTITIES, plan.load.size, *points.shape), np.nan)
-    of_points = errors[: len(BETWEEN_NODES), 0]
-    return AssessedTable(unknown, errors, errors[: len(OF_LOAD_ARM)], of_points, None, {}, {}, bias)
+    return AssessedTable(
+        band=np.full(table.error_estimate.shape, np.nan),
+        curve_error=errors,
+        load_arm_error=errors[: len(OF_LOAD_ARM)],
+        interval_error=errors[: len(BETWEEN_NODES), 0],
+        inserted=None,
+        by_source={},
+        validation={},
+        bias=table_bias(table, points, plan),
+    )
 
 
 def table_bias(table: SteDatabase, points: OperatingPoints, plan: Plan) -> PlaneBias | None:

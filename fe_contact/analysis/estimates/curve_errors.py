@@ -3,7 +3,7 @@
 Each quantity is computed on two discretizations, that of the run and a rougher one. The known order of
 convergence carries their change on to the error that is left, as for the bands of points (`error_estimate`).
 Errors common to all positions count in the mean alone, errors that bend the curve in peak-to-peak and
-harmonics. Between the nodes of an axis the changes at held-out points count.
+harmonics.
 """
 
 from __future__ import annotations
@@ -77,11 +77,7 @@ fine.
 
 
 def curve_errors(
-    points: OperatingPoints,
-    solved: Solved,
-    nested: Nested,
-    positions: PositionErrors,
-    plan: Plan,
+    points: OperatingPoints, solved: Solved, nested: Nested, positions: PositionErrors, plan: Plan
 ) -> FloatArray:
     """Return the errors at the nodes of the table, (6, 23, F, M, D) in m: sources `AT_NODES`.
 
@@ -90,6 +86,7 @@ def curve_errors(
     """
     discretization, sample, pair = plan.discretization, nested.sample, points.nominal.pair
     solutions = [solution for _, solution in solved]
+    over_face = isinstance(discretization, FaceDiscretization)
     signed = has_signed_errors(pair, discretization)
     left = np.full(QUANTITIES, discretization.remaining) if signed else _left_by_mesh(pair, plan)
     deflection, by_mesh, by_patches, by_slices, free_ends = _measured(points, nested, plan, left)
@@ -98,18 +95,15 @@ def curve_errors(
         by_mesh, by_patches = with_signed_errors(changes, nested, added, plan)
     if points.period > 1:
         deflection[OFF_MESH] = _off_mesh_by_load(points, solutions, sample)
+    between = positions.curves[:, :, None, None]
+    rough_flanks = points.gathered([quantity_errors(rough_flank_errors(*contact)) for contact in solved])
     by_source = {
         "discretisation": np.hypot(by_mesh, by_patches),
         "slices": by_slices,
         "contact_solver": _by_solver(points, solutions, sample),
         PLANE: free_ends,
-        "position": np.broadcast_to(
-            positions.curves[:, :, None, None], (*positions.curves.shape, *points.shape)
-        ),
-        METHOD: model_errors(
-            pair, plan.load, deflection, over_face=isinstance(discretization, FaceDiscretization)
-        )
-        + points.gathered([quantity_errors(rough_flank_errors(*contact)) for contact in solved]),
+        "position": np.broadcast_to(between, (*positions.curves.shape, *points.shape)),
+        METHOD: model_errors(pair, plan.load, deflection, over_face=over_face) + rough_flanks,
     }
     return np.stack([by_source[name] for name in AT_NODES])
 
@@ -117,14 +111,12 @@ def curve_errors(
 def load_arm_errors(points: OperatingPoints, table: SteDatabase, nested: Nested, plan: Plan) -> FloatArray:
     """Return the errors of the arm of the load at the nodes, (3, 23, F, M, D) in m: sources `OF_LOAD_ARM`.
 
-    As those of the transmission error (`curve_errors`), of a mesh with more left of the change
-    (`LEFT_OF_ARM`); between the positions half of them are held against all. `nested` are load arms.
+    They are found as those of the transmission error (`curve_errors`), except that meshes leave more of the
+    change (`LEFT_OF_ARM`), and that half of the positions are compared with all. `nested` are load arms.
     """
     left = _left_by_mesh(points.nominal.pair, plan)
     _, by_mesh, by_patches, by_slices, _ = _measured(points, nested, plan, left, BALANCE)
-    mean, ripple, harmonics = LEFT_OF_ARM
-    part = np.array([mean, ripple, *[harmonics] * (QUANTITIES - OFF_MESH)])
-    by_mesh = part[:, None, None, None] * by_mesh
+    by_mesh = _by_quantity(*LEFT_OF_ARM)[:, None, None, None] * by_mesh
     arms = table.load_arm.reshape(table.position.size, -1)
     by_positions = errors_by_halves(table.position, arms, table.period).curves
     by_source = {
@@ -136,11 +128,7 @@ def load_arm_errors(points: OperatingPoints, table: SteDatabase, nested: Nested,
 
 
 def _measured(
-    points: OperatingPoints,
-    nested: Nested,
-    plan: Plan,
-    left_by_mesh: FloatArray,
-    balance: float = 0.0,
+    points: OperatingPoints, nested: Nested, plan: Plan, left_by_mesh: FloatArray, balance: float = 0.0
 ) -> FloatArray:
     """Return quantities, and errors left by meshes, patches, slices and free ends, (5, 23, F, M, D) in m.
 
@@ -148,7 +136,8 @@ def _measured(
     mean over the mean size of the change about it.
     """
     discretization = plan.discretization
-    # on the curve: half the slices may multiply a small ripple, and no part of that is what many change
+    # Many slices are extrapolated on the curve, not on its quantities: half the slices may multiply a small
+    # ripple, and no part of that is what many slices change.
     many_slices = nested.table + discretization.remaining_slices * (nested.table - nested.sliced)
     parts = 1.0, left_by_mesh, plan.remaining_patches, 1.0, correction_error(points.nominal.pair)
     return _changes(
@@ -163,14 +152,14 @@ def _measured(
 
 def _changes(
     sample: TableSample,
-    these: Sequence[FloatArray],
-    those: Sequence[FloatArray],
+    curves: Sequence[FloatArray],
+    references: Sequence[FloatArray],
     parts: FloatArray,
     balance: float,
     helical: float,
 ) -> FloatArray:
     """Return parts (k, 23) of the changes of k sets of curves (T R, f, m, d), (k, 23, F, M, D) in m."""
-    first, second = np.stack(these, axis=1), np.stack(those, axis=1)
+    first, second = np.stack(curves, axis=1), np.stack(references, axis=1)
     rows = sample.knots.size
     change = quantity_changes(sample.knots, first.reshape(rows, -1), second.reshape(rows, -1), sample.period)
     if balance:
@@ -194,7 +183,7 @@ def _off_mesh_by_load(
 ) -> FloatArray:
     """Return the largest contribution of load to an order that is no mesh order, (F, M, D) in m.
 
-    What gears do without load, as the eccentricity of one, no model of teeth that bend has wrong.
+    Motion without load, as by the eccentricity of a gear, is free of the error of a model of bending teeth.
     """
     knots = (np.arange(points.period)[:, None] + sample.position).ravel()
 
@@ -206,36 +195,38 @@ def _off_mesh_by_load(
 
 
 def _by_solver(points: OperatingPoints, solutions: list[ContactSolution], sample: TableSample) -> FloatArray:
-    """Errors (23, F, M, D) that the residuals of the contact can make."""
+    """Return the errors (23, F, M, D) that the residuals of the contact can make."""
     knots = (np.arange(points.period)[:, None] + sample.position).ravel()
-    return points.gathered(
-        [
-            error_bound(knots, contact_error(solution), solution.deflection, points.period)
-            for solution in solutions
-        ]
-    )
+    bounds = [
+        error_bound(knots, contact_error(solution), solution.deflection, points.period)
+        for solution in solutions
+    ]
+    return points.gathered(bounds)
 
 
 def _helical(pair: ParallelAxes, plan: Plan) -> float:
-    """Return the part of the constants of helical pairs; none in the plane."""
+    """Return the weight of the constants of helical pairs against those of spur pairs; 0 in the plane."""
     return helical_share(pair) if isinstance(plan.discretization, FaceDiscretization) else 0.0
 
 
 def _left_by_mesh(pair: ParallelAxes, plan: Plan) -> FloatArray:
     """Return the error left over the change to the coarse mesh, (23,)."""
     discretization, helical = plan.discretization, _helical(pair, plan)
-    straight = "spur" if all(gear.web is None for gear in plan.bodies(pair)) else "thin"
     level = "draft" if plan.level in COARSER_THAN_STANDARD else "standard"
-    if isinstance(discretization, FaceDiscretization):
-        spur, wound = (np.array(LEFT_BY_MESH[kind][level]) for kind in (straight, "helical"))
-        mean, ripple, harmonics = (1.0 - helical) * spur + helical * discretization.remaining * wound
-    else:
-        mean, ripple, harmonics = LEFT_BY_MESH["plane"][level]
+    if not isinstance(discretization, FaceDiscretization):
+        return _by_quantity(*LEFT_BY_MESH["plane"][level])
+    kind = "spur" if all(gear.web is None for gear in plan.bodies(pair)) else "thin"
+    spur, wound = np.array(LEFT_BY_MESH[kind][level]), np.array(LEFT_BY_MESH["helical"][level])
+    return _by_quantity(*((1.0 - helical) * spur + helical * discretization.remaining * wound))
+
+
+def _by_quantity(mean: float, ripple: float, harmonics: float) -> FloatArray:
+    """Return values of mean, peak-to-peak and harmonics for each quantity, (23,)."""
     return np.array([mean, ripple, *[harmonics] * (QUANTITIES - OFF_MESH)])
 
 
 def _shared(change: FloatArray, helical: float) -> FloatArray:
-    """Let every harmonic of a helical pair change (23, ...) by its share of peak-to-peak at least."""
+    """Return changes (23, ...) of which every harmonic has at least its `HARMONIC_SHARE` of peak-to-peak."""
     number = np.arange(1, QUANTITIES - FIRST_HARMONIC + 1).reshape(-1, *[1] * (change.ndim - 1))
     minimum = helical * HARMONIC_SHARE * change[PEAK_TO_PEAK] / np.sqrt(number)
     return np.concatenate([change[:FIRST_HARMONIC], np.maximum(change[FIRST_HARMONIC:], minimum)])

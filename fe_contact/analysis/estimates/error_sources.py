@@ -33,15 +33,16 @@ class _ErrorSources:
     """Error of STE in m by source; arrays (P, F, M, D)."""
 
     discretization: FloatArray
+    """Error by finite elements and load patches."""
     slices: FloatArray
     interpolation: FloatArray
+    """Error between positions."""
     contact: FloatArray
+    """Error of the contact solution."""
     plane: FloatArray
+    """Error of a plane model for a finite width."""
     method: FloatArray
-    """`discretization`, `slices`, `interpolation`, `contact`, `plane`, `method`: Errors by finite elements,
-    slices of the face, interpolation between positions, contact solution, the plane for a finite width, and
-    the method against full contact.
-    """
+    """Error of the method against full contact."""
 
     @property
     def total(self) -> FloatArray:
@@ -72,41 +73,38 @@ def largest_known(errors: FloatArray) -> list[float | None]:
 
 
 def estimate_errors(
-    points: OperatingPoints,
-    solved: Solved,
-    nested: Nested,
-    positions: PositionErrors,
-    plan: Plan,
+    points: OperatingPoints, solved: Solved, nested: Nested, positions: PositionErrors, plan: Plan
 ) -> _ErrorSources:
-    """Combine the measured differences.
+    """Combine the measured differences to the errors of a table.
 
     Parameters
     ----------
     solved : list of (ContactProblem, ContactSolution)
         Problems and solutions of the table.
     positions : PositionErrors
-        The largest of the assessed operating points stand for every place.
+        Errors between positions: the largest of the assessed operating points, for all of them.
     """
     discretization, nominal = plan.discretization, points.nominal.pair
     solutions = [solution for _, solution in solved]
 
     def left(finer: FloatArray, coarser: FloatArray, part: float) -> FloatArray:
-        """Return a part of the differences of STE, at all points."""
+        """Return a part of the differences of STE, the error that is left, at all points."""
         return nested.sample.spread_points(part * np.nan_to_num(np.abs(finer - coarser)))
 
     face = isinstance(discretization, FaceDiscretization)
     lags = [np.nan_to_num(solution.deflection) for solution in solutions]
+    by_mesh = left(nested.patched, nested.coarse, discretization.remaining)
+    by_patches = left(nested.plane, nested.patched, plan.remaining_patches)
+    band = positions.band[:, :, None, None]
+    smooth = points.gathered([point_error(nominal, plan.load, lag, over_face=face) for lag in lags])
+    rough = points.gathered([rough_flank_errors(*contact) for contact in solved])
     return _ErrorSources(
-        discretization=left(nested.patched, nested.coarse, discretization.remaining)
-        + left(nested.plane, nested.patched, plan.remaining_patches),
+        discretization=by_mesh + by_patches,
         slices=left(nested.table, nested.sliced, discretization.remaining_slices),
-        interpolation=np.broadcast_to(
-            positions.band[:, :, None, None], (*positions.band.shape, *points.shape)
-        ),
+        interpolation=np.broadcast_to(band, (*positions.band.shape, *points.shape)),
         contact=points.gathered([contact_error(solution) for solution in solutions]),
         plane=left(nested.table, nested.plane, correction_error(nominal)),
-        method=points.gathered([point_error(nominal, plan.load, lag, over_face=face) for lag in lags])
-        + points.gathered([rough_flank_errors(*pair) for pair in solved]),
+        method=smooth + rough,
     )
 
 

@@ -1,8 +1,7 @@
 """Errors between even positions, measured by leaving half of them out, without a further solution.
 
-Curves through every second position are held against those through all. What the second half changed is
-carried on to what a third would; corners between the positions, which it may have passed by, are looked for
-by themselves.
+Curves through every second position are compared with those through all. From this change follows the error
+that all positions leave. Corners between the positions, which the change may miss, are estimated separately.
 """
 
 from __future__ import annotations
@@ -15,9 +14,7 @@ from fe_contact.ste.interpolation import Axis
 from fe_contact.types import FloatArray
 
 LEFT_BY_HALF = 0.75
-"""Error of all positions over the change by leaving half of them out: 1/3 for second order, and more for
-kinks, which may lie anywhere in an interval.
-"""
+"""Error of all positions over the change by half of them: 1/3 for second order, more for kinks."""
 
 PASSED_BY = 1.25
 """Missed peak-to-peak over the height of the corners at which the chords of neighboring intervals meet:
@@ -27,27 +24,26 @@ times as many positions on the same meshes.
 
 
 def errors_by_halves(knots: FloatArray, values: FloatArray, period: int) -> PositionErrors:
-    """Assess even positions by themselves.
+    """Estimate the errors between even positions from the solutions at these positions alone.
 
     Parameters
     ----------
     knots : ndarray, shape (K,)
-        Base pitches, equally spaced in [0, period).
+        Positions in base pitches, equally spaced in [0, period).
     values : ndarray, shape (K, F)
         STE in m; NaN where a solution failed.
     period : int
-        Base pitches.
+        Period of the curves in base pitches.
 
     Returns
     -------
     PositionErrors
-        Bands (K, F) from what each position's neighbors miss of it; of the curves (23, F) the larger change
-        of the two halves.
+        Bands (K, F) by how far the neighbors of a position miss it; errors of the curves (23, F) by the
+        larger change of the two halves.
     """
-    halves = slice(0, None, 2), slice(1, None, 2)
-    changes = (quantity_changes(knots[half], values[half], values, period, knots) for half in halves)
-    change = np.maximum(*changes)
-    curves = LEFT_BY_HALF * change
+    first = quantity_changes(knots[::2], values[::2], values, period, knots)
+    second = quantity_changes(knots[1::2], values[1::2], values, period, knots)
+    curves = LEFT_BY_HALF * np.maximum(first, second)
     curves[PEAK_TO_PEAK] = np.maximum(curves[PEAK_TO_PEAK], PASSED_BY * peak_excess(knots, values, period))
     predicted = NEXT_SPACING * predicted_failure(Axis(knots, float(period)), values)
     nearby = np.maximum(predicted, np.maximum(np.roll(predicted, 1, axis=0), np.roll(predicted, -1, axis=0)))

@@ -3,7 +3,7 @@
 Where reliefs end the contact inside the flanks, meshes and load patches change the compliance by the same
 part at every position: finer meshes soften it, narrower patches stiffen it. The error of the mean therefore
 has a known sign, and a *doubt*: the uncertainty of that signed error. The error of peak-to-peak has no known
-sign: the difference of two meshes along the curve tells its size alone.
+sign. The difference of two meshes along the curve tells its size alone.
 
 Changes between two meshes (or patches) are first extrapolated at second order: multiplied by the part of the
 change that would remain up to infinitely fine ones. The factors of this file correct that remainder; they
@@ -59,7 +59,7 @@ def has_signed_errors(pair: ParallelAxes, discretization: Discretization) -> boo
 
 
 def mean_left(nested: Nested, plan: Plan) -> tuple[FloatArray, FloatArray]:
-    """Return how much higher the mean lies on exact meshes, and the doubt of that, each (f, m, d) in m.
+    """Return how much higher the mean lies on exact meshes, and the doubt of this, each (f, m, d) in m.
 
     `nested` has the transmission error of the table at the points that were solved again.
     """
@@ -70,8 +70,9 @@ def mean_left(nested: Nested, plan: Plan) -> tuple[FloatArray, FloatArray]:
 
 def mesh_bias(nested: Nested, plan: Plan) -> FloatArray:
     """Return how much higher the mean lies on exact meshes, (F,) in m, at the worst alignment of a load."""
-    signed = nested.sample.spread(mean_left(nested, plan)[0])
-    by_load = signed.reshape(signed.shape[0], -1)
+    signed, _ = mean_left(nested, plan)
+    spread = nested.sample.spread(signed)
+    by_load = spread.reshape(spread.shape[0], -1)
     worst = np.abs(by_load).argmax(axis=1)
     return np.asarray(np.take_along_axis(by_load, worst[:, None], axis=1)[:, 0])
 
@@ -83,8 +84,8 @@ def mean_of_limit(
 
     `by_mesh` and `by_patches` are the remainders of second order of the mean, m.
     """
-    signed, doubt = left.mesh * by_mesh + left.patches * by_patches, left.doubt * np.abs(by_mesh)
-    return np.asarray(signed), np.asarray(doubt)
+    signed = left.mesh * by_mesh + left.patches * by_patches
+    return np.asarray(signed), np.asarray(left.doubt * np.abs(by_mesh))
 
 
 def ripple_of_limit(left: MeshRemainder, half: FloatArray, added: FloatArray) -> FloatArray:
@@ -102,8 +103,9 @@ def ripple_of_limit(left: MeshRemainder, half: FloatArray, added: FloatArray) ->
 def with_signed_errors(changes: FloatArray, nested: Nested, added: FloatArray, plan: Plan) -> FloatArray:
     """Return the errors by mesh and by patches (2, 23, F, M, D) in m, of the 23 quantities of a curve.
 
-    `changes` are their remainders of second order. The error of the mean by patches is in that by the mesh.
-    `added` (f, m, d) is the deflection that the load adds to the mean where the table was solved again, m.
+    `changes` are their remainders of second order. The error of the mean by the mesh contains its error by
+    patches. `added` (f, m, d) is the deflection, m, that the load adds to the mean where the table was solved
+    again.
     """
     left, remaining = remainder_of(plan), plan.discretization.remaining
     by_mesh, by_patches = changes.copy()

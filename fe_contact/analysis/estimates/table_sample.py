@@ -40,12 +40,8 @@ class TableSample:
     @classmethod
     def of(cls, position: FloatArray, period: int, axes: Axes) -> TableSample:
         """Return a sample of at least 32 positions and at most `LOADS` loads and `ALIGNMENTS` alignments."""
-        load, skew, change = axes
-        nodes = (
-            sample_of(load.size, LOADS),
-            sample_of(skew.size, ALIGNMENTS),
-            sample_of(change.size, ALIGNMENTS),
-        )
+        load, skew, change = (axis.size for axis in axes)
+        nodes = sample_of(load, LOADS), sample_of(skew, ALIGNMENTS), sample_of(change, ALIGNMENTS)
         return cls(position, period, axes, sampled_positions(position.size), nodes)
 
     @property
@@ -93,12 +89,15 @@ class TableSample:
         `known` are the operating points of the table. `starts` has forces near the solution for each of the
         `places`; only a table of one pitch has any.
         """
-        pitches, load = np.arange(self.period), self.axes[0][self.nodes[0]]
         chosen = [points.places[k] for k in self.places]
-        positions = [self.position[self.rows]] * len(chosen)
-        candidates = self._candidates(chosen[0], [known.places[k] for k in self.places])
         curves = deflected_operating_points(
-            chosen, positions, load, pitches, points.workers, candidates, starts
+            chosen,
+            position=[self.position[self.rows]] * len(chosen),
+            load=self.axes[0][self.nodes[0]],
+            pitches=np.arange(self.period),
+            workers=points.workers,
+            known=self._candidates(chosen[0], [known.places[k] for k in self.places]),
+            starts=starts,
         )
         return self.shaped([np.moveaxis(curve, -1, 0) for curve in curves])
 
@@ -112,11 +111,10 @@ class TableSample:
     def _candidates(self, point: OperatingPoint, known: Sequence[OperatingPoint]) -> list[Candidates] | None:
         """Return the contact candidates of the table's points, which do not depend on the bodies.
 
-        They are None where `point` has other slices or load patches than `known`: its candidates differ.
+        None where `point` has other slices or load patches than `known`, and so other candidates.
         """
-        plans = point.contact.plan, known[0].contact.plan
-        first, second = ((plan.discretization.slices, plan.patch) for plan in plans)
-        if first != second:
+        plan, known_plan = point.contact.plan, known[0].contact.plan
+        if plan.discretization.slices != known_plan.discretization.slices or plan.patch != known_plan.patch:
             return None
         return [point.contact.candidates(point.model, self.position).rows(self.rows) for point in known]
 

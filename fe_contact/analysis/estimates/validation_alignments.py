@@ -29,19 +29,14 @@ from fe_contact.analysis.tables import SolvedTable
 from fe_contact.contact import Start
 from fe_contact.sampled import LOADS, sample_of, sampled_positions, spread
 from fe_contact.ste import SteDatabase
-from fe_contact.ste.curve_quantities import (
-    FIRST_HARMONIC,
-    MEAN,
-    OFF_MESH,
-    PEAK_TO_PEAK,
-    quantity_changes,
-)
+from fe_contact.ste.curve_quantities import FIRST_HARMONIC, MEAN, OFF_MESH, PEAK_TO_PEAK, quantity_changes
 from fe_contact.ste.fields import CENTER_DISTANCE, GRID, MISALIGNMENT
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
-MIDDLE, QUARTERS = (0.5,), (0.25, 0.5, 0.75)
-"""Probes of an interval. Between three nodes or more the error of a cubic may vanish in the middle. With a
-goal, the quarters are solved once the middle meets it.
+MIDDLE = (0.5,)
+QUARTERS = (0.25, 0.5, 0.75)
+"""`MIDDLE`, `QUARTERS`: Probes of an interval. Between three nodes or more the error of a cubic may vanish in
+the middle. With a goal, the quarters are solved once the middle meets it.
 """
 MAX_HALVINGS = 5
 """Halvings of an interval of requested alignments: 20 um become intervals of 0.6 um."""
@@ -58,9 +53,7 @@ class AlignmentErrors:
     error: FloatArray
     """Largest difference of interpolant and solution in the interval after each node, m. Shape (I, F)."""
     change: FloatArray
-    """Change of mean, peak-to-peak and harmonics by the difference at the held-out alignment, m. Shape (23,
-    I, F).
-    """
+    """Change of mean, peak-to-peak and harmonics at the held-out alignment, m. Shape (23, I, F)."""
     limit: str
     """Reason why intervals that miss the goal got no further node; empty where all meet it."""
 
@@ -82,19 +75,16 @@ class ValidationAlignments:
     def errors(self, made: SolvedTable) -> AlignmentErrors:
         """Measure the error of every interval of a table; with a goal insert nodes until it is met."""
         truths: dict[float, FloatArray] = {}
-        limit = ""
-        for remaining in range(MAX_HALVINGS, -1, -1):
-            middles = self._middles_beyond(made, truths)
-            if not middles.size:
-                break
-            if remaining == 0:
+        limit, halvings = "", 0
+        while (middles := self._middles_beyond(made, truths)).size:
+            if halvings == MAX_HALVINGS:
                 limit = halvings_reached(MAX_HALVINGS)
                 break
             refined = with_inserted_nodes(made, self.axis, middles)
             if refined is None:
                 limit = "a point between them has no solution"
                 break
-            made = refined
+            made, halvings = refined, halvings + 1
         self._solve(made, self._missing(made, truths, self._last_probes), truths)
         error, change = self._spread(made, *self._errors(made, truths))
         return AlignmentErrors(made, error, change, limit)
@@ -142,12 +132,8 @@ class ValidationAlignments:
         nodes = getattr(made.table, self.axis)
         known = np.array([*truths, *nodes])
         marked = np.ones(nodes.size - 1, bool) if intervals is None else intervals
-        alignments = [
-            low + probe * (high - low)
-            for (low, high), is_marked in zip(pairwise(nodes.tolist()), marked, strict=True)
-            if is_marked
-            for probe in probes
-        ]
+        low, width = nodes[:-1][marked, None], np.diff(nodes)[marked, None]
+        alignments = (low + np.array(probes) * width).ravel().tolist()
         near = ROUNDING * np.diff(nodes).min()
         return np.array([value for value in alignments if not np.any(np.abs(known - value) <= near)])
 
@@ -161,17 +147,17 @@ class ValidationAlignments:
         points = alignment_points(made, {self.axis: alignments, self._other: other})
         starts = None
         position = made.nodes.position
-        if self.axis == MISALIGNMENT:  # all of one center distance, of which the table has the compliance
+        if self.axis == MISALIGNMENT:  # of one center distance, whose compliance the table has
             first = points.places[0]
             take_compliance(made, first)
             first.contact.keep_rows(first.model, position, rows)
             starts = [self._start(made, rows, loads, value) for value in alignments.tolist()]
-        positions = [position[rows]] * alignments.size
-        load = table.force[loads]
+        positions, load = [position[rows]] * alignments.size, table.force[loads]
         solved = deflected_operating_points(
             points.places, positions, load, None, points.workers, starts=starts
         )
-        truths.update(zip(alignments.tolist(), (curves[..., 0] for curves in solved), strict=True))
+        for alignment, curves in zip(alignments.tolist(), solved, strict=True):
+            truths[alignment] = curves[..., 0]  # the transmission error
 
     def _start(self, made: SolvedTable, rows: IntArray, loads: IntArray, misalignment: float) -> Start:
         """Return forces to start from at a misalignment, interpolated between its neighbor nodes."""
@@ -181,9 +167,10 @@ class ValidationAlignments:
         part = (misalignment - nodes[above - 1]) / (nodes[above] - nodes[above - 1])
         nearest = int(np.argmin(np.abs(changes)))
         # solutions stand by misalignment, then by center distance
-        lower, upper = (made.solved[m * changes.size + nearest] for m in (above - 1, above))
-        first, second = (solution.force[np.ix_(rows, loads)] for _, solution in (lower, upper))
-        return Start(lower[0].candidates, first + part * (second - first))
+        problem, lower = made.solved[(above - 1) * changes.size + nearest]
+        _, upper = made.solved[above * changes.size + nearest]
+        first, second = lower.force[np.ix_(rows, loads)], upper.force[np.ix_(rows, loads)]
+        return Start(problem.candidates, first + part * (second - first))
 
     def _errors(self, made: SolvedTable, truths: Mapping[float, FloatArray]) -> tuple[FloatArray, FloatArray]:
         """Return the largest differences (I, l) in intervals, and changes of the quantities (23, I, l), m.
@@ -198,8 +185,8 @@ class ValidationAlignments:
         curves = table.ste(position[:, None, None], table.force[loads], *alignment)  # (R, probes, l)
         truth = np.stack([truths[value] for value in probes.tolist()], axis=1)
         error = AWAY * np.abs(curves - truth).max(axis=0)
-        flat = curves.reshape(len(curves), -1), truth.reshape(len(truth), -1)
-        change = AWAY * quantity_changes(position, *flat, 1).reshape(-1, *truth.shape[1:])
+        columns = curves.reshape(len(curves), -1), truth.reshape(len(truth), -1)
+        change = AWAY * quantity_changes(position, *columns, 1).reshape(-1, *truth.shape[1:])
         # one pitch has no orders beside the mesh: they count as the harmonic that changes most
         change[OFF_MESH] = change[FIRST_HARMONIC:].max(axis=0)
         nodes = getattr(table, self.axis)
@@ -213,7 +200,8 @@ class ValidationAlignments:
         self, made: SolvedTable, error: FloatArray, change: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
         """Interpolate errors (I, l) and changes (23, I, l) to all loads of a table, (I, F) and (23, I, F)."""
-        force, (_, loads) = made.table.force, self._sample(made)
+        _, loads = self._sample(made)
+        force = made.table.force
         return spread(force, loads, error, 1), spread(force, loads, change, 2)
 
     @property
@@ -232,10 +220,7 @@ class ValidationAlignments:
 
 
 def first_pitch(table: SteDatabase) -> SteDatabase:
-    """Return a table of a longer period as one of its first base pitch.
-
-    Interpolation at the positions of this pitch needs no other pitch.
-    """
+    """Return a table of a longer period as one of its first base pitch, to interpolate at its positions."""
     if table.period == 1:
         return table
     rows = int(np.searchsorted(table.position, 1.0))

@@ -1,7 +1,7 @@
 """Interpolation error between the loads of a table, and the loads that bring it down.
 
-A held-out load is solved at some positions of one or two alignments of the table. Where the table misses one
-by more than a goal allows, the middle one of the interval becomes a node, and both halves are measured again.
+Held-out loads are solved at some positions of one or two alignments of the table. Where the table misses one
+of an interval by more than a goal allows, the middle one becomes a node, and both halves are measured again.
 """
 
 from __future__ import annotations
@@ -32,10 +32,10 @@ from fe_contact.ste.curve_quantities import (
 from fe_contact.ste.support_loads import SupportLoads, with_support_loads
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
-LOAD_PROBES, MIDDLE = np.arange(1, WIDE_PROBES + 1) / (WIDE_PROBES + 1), np.array([0.5])
-"""Positions of the held-out loads in every interval, on a logarithmic scale: a kink may round the curve
-anywhere in it. With more than four intervals only the middles are solved, since the intervals are short.
-"""
+LOAD_PROBES = np.arange(1, WIDE_PROBES + 1) / (WIDE_PROBES + 1)
+"""Places of the held-out loads in an interval, on a logarithmic scale: a kink may lie anywhere in it."""
+MIDDLE = np.array([0.5])
+"""The same of tables with more than four intervals, which are short."""
 AWAY = 1.4
 """Error anywhere in an interval over the largest at its held-out loads and the positions of the table: a kink
 lies at another position for every load. Set on drawn tables (docs/decisions/0012)."""
@@ -51,9 +51,7 @@ class LoadErrors:
     error: FloatArray
     """Largest difference of interpolant and solution in the interval after each load, m. Shape (F - 1,)."""
     change: FloatArray
-    """Change of mean, peak-to-peak and harmonics by the difference at the held-out load, m. Shape (23, F -
-    1).
-    """
+    """Change of mean, peak-to-peak and harmonics at the held-out load, m. Shape (23, F - 1)."""
     inserted: SupportLoads | None
     """Solutions at further loads, with which the table has these errors, in all its base pitches."""
     limit: str
@@ -76,17 +74,19 @@ class ValidationLoads:
     def errors(self, goal: IntervalGoal | None = None) -> LoadErrors:
         """Measure the error of every interval; with a goal insert loads until it is met or halved enough."""
         force = self.table.force.tolist()
-        probes, support, table = self._solved(self._missing(force, np.empty(0))), None, self.table
-        limit = ""
-        for left in range(MAX_HALVINGS, -1, -1):
-            further = self._middles(table, probes, goal)
-            if not further:
+        probes = self._solved(self._missing(force, np.empty(0)))
+        table, support, limit = self.table, None, ""
+        halvings = 0
+        while middles := self._middles(table, probes, goal):
+            if halvings == MAX_HALVINGS:
+                limit = halvings_reached(MAX_HALVINGS)
                 break
-            more = self._everywhere(np.array(further)) if left else None
-            if more is None:
-                limit = "a load between them has no solution" if left else halvings_reached(MAX_HALVINGS)
+            further = self._everywhere(np.array(middles))
+            if further is None:
+                limit = "a load between them has no solution"
                 break
-            support = more if support is None else _joined(support, more)
+            halvings += 1
+            support = further if support is None else _joined(support, further)
             table = with_support_loads(self.table, self._first_pitch(support))
             missing = self._missing(_ends(table), probes.force)
             probes = _joined(probes, self._solved(missing)) if missing.size else probes
@@ -104,16 +104,17 @@ class ValidationLoads:
         if goal is None:
             return []
         allowed, middles = goal.shares("force"), []
-        share = self._shares(probes, self._errors(table, probes)[1], goal)
+        _, change = self._errors(table, probes)
+        share = self._shares(probes, change, goal)
         for low, high in pairwise(_ends(table)):
-            inside = _inside(probes.force, low, high)
-            if not np.all(share[inside] <= allowed[np.searchsorted(table.force, low, side="right") - 1]):
+            requested = np.searchsorted(table.force, low, side="right") - 1  # the interval around this one
+            if not np.all(share[_inside(probes.force, low, high)] <= allowed[requested]):
                 middle = int(np.argmin(np.abs(np.log(probes.force / np.sqrt(low * high)))))
                 middles.append(float(probes.force[middle]))
         return middles
 
     def _everywhere(self, load: FloatArray) -> SupportLoads | None:
-        """Solve loads at all places and positions; None: one has no solution at some place."""
+        """Solve loads at all operating points and positions; None: one load has no solution somewhere."""
         points, position = self.places, self.table.position
         (contacts,), _ = solve_operating_points(points, position, (load,), conditioned=False, edges=False)
         solved = table_support(points, contacts)
@@ -128,8 +129,7 @@ class ValidationLoads:
 
     def _first_pitch(self, loads: SupportLoads) -> SupportLoads:
         count = self.table.position.size
-        arrays = loads.deflection[:count], loads.tangent[:count]
-        return SupportLoads(loads.force, *arrays, loads.pairs[:count])
+        return SupportLoads(loads.force, loads.deflection[:count], loads.tangent[:count], loads.pairs[:count])
 
     def _missing(self, ends: list[float], known: FloatArray) -> FloatArray:
         """Return the held-out loads of intervals that are not known yet."""
@@ -139,14 +139,14 @@ class ValidationLoads:
         return np.array([x for x in np.concatenate(probed) if not np.isclose(x, loads, rtol=1e-9).any()])
 
     def _errors(self, table: SteDatabase, probes: SupportLoads) -> tuple[FloatArray, FloatArray]:
-        """Largest difference (L,) of a table, and changes of the quantities (23, L), m."""
-        position, skews = self._at_rows.position, self._at_rows.misalignment
-        where = position[:, None, None], probes.force[:, None], skews
-        curves = table.ste(*where, float(self._at_rows.center_distance_change[0]))
+        """Return the largest difference (L,) of a table, and changes of the quantities (23, L), m."""
+        position, misalignment = self._at_rows.position, self._at_rows.misalignment
+        change = float(self._at_rows.center_distance_change[0])
+        curves = table.ste(position[:, None, None], probes.force[:, None], misalignment, change)
         truth = probes.deflection[..., 0]
         error = np.abs(curves - truth).max(axis=0)
-        flat = curves.reshape(len(curves), -1), truth.reshape(len(truth), -1)
-        changes = quantity_changes(position, flat[0], flat[1], 1).reshape(-1, *truth.shape[1:])
+        columns = curves.reshape(len(curves), -1), truth.reshape(len(truth), -1)
+        changes = quantity_changes(position, *columns, 1).reshape(-1, *truth.shape[1:])
         # one pitch has no orders beside the mesh: they count as the harmonic that changes most
         changes[OFF_MESH] = changes[FIRST_HARMONIC:].max(axis=0)
         # a kink passes the extremes of the curve at a load between those that are held out
@@ -180,13 +180,13 @@ class ValidationLoads:
     def _at_rows(self) -> SteDatabase:
         """The table at the rows and alignments that are solved."""
         skews, change = self._alignments
-        chosen = {"position": self.rows, "misalignment": skews, "center_distance_change": np.array([change])}
+        nodes = {"position": self.rows, "misalignment": skews, "center_distance_change": np.array([change])}
         arrays = {}
         for name, dimensions in self.table.stored.items():
-            array = getattr(self.table, name)
+            arrays[name] = getattr(self.table, name)
             for axis, dimension in enumerate(dimensions):
-                array = np.take(array, chosen[dimension], axis=axis) if dimension in chosen else array
-            arrays[name] = array
+                if dimension in nodes:
+                    arrays[name] = np.take(arrays[name], nodes[dimension], axis=axis)
         return replace(self.table, **arrays)
 
     def _solved(self, load: FloatArray) -> SupportLoads:

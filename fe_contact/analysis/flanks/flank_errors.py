@@ -1,6 +1,6 @@
 """Errors of the largest line loads, K_Hbeta and the largest pressure, by rougher discretizations.
 
-The model's part is set against full contact that resolves the free ends
+The error of the model itself was measured against full contact that resolves the free ends
 (benchmarks/full_contact_line_load.py).
 """
 
@@ -33,12 +33,12 @@ FREE_ENDS = {
     "pressure": 0.015,
     "edge_line_load": 0.03,
 }
-"""Part of the figures that the model leaves open: of three spur and three helical pairs at 14 alignments
-the line load clear of edges is off by -2.1 to +1.5 %, of which the references leave 1.4 % open, the pressure
-by -0.8 to +1.8 %, the load at an edge over a slice by -1.9 to +0.2 %."""
+"""Relative errors of the model over the face. On three spur and three helical pairs at 14 alignments the line
+load clear of edges is off by -2.1 to +1.5 %, where the references themselves are uncertain by 1.4 %; the
+pressure is off by -0.8 to +1.8 %, the load at an edge over a slice by -1.9 to +0.2 %."""
 IN_THE_PLANE = {"line_load": 2e-3, "pressure": 5e-3, "edge_line_load": 5e-3}
-"""Relative errors that a plane model leaves open; it has no ends of the face. Largest pressures of full
-contact on plain, relieved and crowned flanks are within 0.5 % of it, loads at a tip edge within 0.2 %.
+"""Relative errors of a plane model, which has no ends of the face. On plain, relieved and crowned flanks the
+largest pressure is within 0.5 % of full contact, the load at a tip edge within 0.2 %.
 """
 
 
@@ -50,7 +50,7 @@ def with_errors(
     Parameters
     ----------
     flanks : LoadDistribution
-        Of the solved operating point.
+        Flank results of the solved operating point.
     cache : Path, optional
         Directory of flank compliances: the coarse meshes are taken from it, or computed.
     """
@@ -75,7 +75,7 @@ def _kink_length(flanks: LoadDistribution, problem: ContactProblem) -> float:
     pressure = float(flanks.pressure[position, pair, stretch])
     contact = position, pair * flanks.face_position.size + stretch
     line_load = float(flanks.force[position, pair, stretch] / problem.candidates.width[contact])
-    half = 2.0 * line_load / (math.pi * pressure)
+    half = 2.0 * line_load / (math.pi * pressure)  # half width of Hertz's strip
     about = problem.candidates.gap_at(contact)
     kinked = bool(np.any((about.jump > 0.0) & (np.abs(about.offset) < half)))
     return 2.0 * half if kinked else 0.0
@@ -97,14 +97,14 @@ def _changes(
     """Yield the relative changes of the figures by rougher discretizations."""
     for half in halves(flanks.position):
         yield _change(flanks, flanks.at(half))
-    for both in rougher_solutions(solved, cache):
-        yield _change(*(load_distribution(s.pair, s.problem, s.solution) for s in both))
+    for solutions in rougher_solutions(solved, cache):
+        yield _change(*(load_distribution(s.pair, s.problem, s.solution) for s in solutions))
 
 
 def _change(finer: LoadDistribution, rougher: LoadDistribution) -> FloatArray:
-    """Return the changes of the figures, not finite where one is 0: all contacts are at edges, or none is."""
-    values, others = _figures(finer), _figures(rougher)
-    ratio = np.divide(others, values, out=np.full(values.size, np.inf), where=values > 0.0)
+    """Return the relative changes of the figures; infinite for a figure that is 0, without such contacts."""
+    values = _figures(finer)
+    ratio = np.divide(_figures(rougher), values, out=np.full(values.size, np.inf), where=values > 0.0)
     return np.asarray(ratio - 1.0)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -18,17 +18,15 @@ from fe_contact.ste.netcdf import FileFormat, digest, json_attribute
 from fe_contact.types import Json
 from model_studies.netcdf_content import NetcdfContent, Variable
 
-if TYPE_CHECKING:
-    from fe_contact.analysis.flanks.load_distribution import LoadDistribution
-
 FORMAT = "lineofaction flank results"
 SCHEMA_VERSION = 2
 _GRID = ("position", "pair", "face_position")
 _GEARS: tuple[Literal["pinion"], Literal["wheel"]] = ("pinion", "wheel")
-_SCALARS, _DOCUMENTS = ("slice_width", "base_helix_angle"), ("scene", "metadata")
+_SCALARS = ("slice_width", "base_helix_angle")
+_DOCUMENTS = ("scene", "metadata")
 _NO_ERRORS = FlankErrors(reason="the file is older than errors of flanks")
 
-# dimensions, units and long name of what is read back
+# dimensions, units and long name of the arrays that are read back
 STORED: dict[str, tuple[tuple[str, ...], str, str]] = {
     "position": (("position",), "1", "phase of the driving gear in transverse base pitches, 0 = pitch point"),
     "pair": (("pair",), "1", "index of the tooth pair, +1 is ahead"),
@@ -45,7 +43,7 @@ STORED: dict[str, tuple[tuple[str, ...], str, str]] = {
 _EDGE: dict[str, tuple[tuple[str, ...], str, str]] = {
     "at_edge": (_GRID, "1", "1 where the strip reaches an edge of either flank")
 }
-"""Absent from older files."""
+"""Arrays that older files lack."""
 FILES = FileFormat(
     FORMAT, "flank results", SCHEMA_VERSION, tuple(STORED), (*_SCALARS, *_DOCUMENTS), tuple(_EDGE)
 )
@@ -55,17 +53,22 @@ def content(results: LoadDistribution) -> NetcdfContent:
     """Return the content of a file: flank results with line load, centroid, factors and contact patterns."""
     arrays = _arrays(results)
     variables = {
-        name: Variable(dimensions, arrays[name], {"units": units, "long_name": text})
-        for name, (dimensions, units, text) in (STORED | _EDGE).items()
+        name: _variable(dimensions, arrays[name], units, long_name)
+        for name, (dimensions, units, long_name) in (STORED | _EDGE).items()
     }
     for gear in _GEARS:
         pattern = contact_pattern(results, gear)
-        along = f"pattern_roll_length_{gear}"
-        text = {"units": "m", "long_name": f"roll length on the {gear}, middles of cells"}
-        variables[along] = Variable((along,), pattern.roll_length, text)
-        text = {"units": "Pa", "long_name": f"largest pressure on the {gear}'s flank over the positions"}
-        variables[f"contact_pattern_{gear}"] = Variable((along, "face_position"), pattern.pressure, text)
+        axis = f"pattern_roll_length_{gear}"
+        text = f"roll length on the {gear}, middles of cells"
+        variables[axis] = _variable((axis,), pattern.roll_length, "m", text)
+        text = f"largest pressure on the {gear}'s flank over the positions"
+        cells = (axis, "face_position")
+        variables[f"contact_pattern_{gear}"] = _variable(cells, pattern.pressure, "Pa", text)
     return NetcdfContent(variables | _derived(results), _attributes(results, arrays))
+
+
+def _variable(dimensions: tuple[str, ...], values: Any, units: str, long_name: str) -> Variable:
+    return Variable(dimensions, values, {"units": units, "long_name": long_name})
 
 
 def read(path: Path) -> dict[str, Any]:
@@ -74,19 +77,18 @@ def read(path: Path) -> dict[str, Any]:
     Raises `DatabaseError`: the file is missing, no netCDF-4, of another kind, of a newer schema, or damaged.
     """
     content, attributes = FILES.read(path)
-    scene, metadata = (json_attribute(path, attributes, name) for name in _DOCUMENTS)
     return content | {
         "on_path": content["on_path"].astype(bool),
         "at_edge": content["at_edge"].astype(bool) if "at_edge" in content else False,
-        "scene": FlankScene.from_json(scene),
-        "metadata": Metadata(**metadata),
+        "scene": FlankScene.from_json(json_attribute(path, attributes, "scene")),
+        "metadata": Metadata(**json_attribute(path, attributes, "metadata")),
         "errors": _errors(path, attributes),
         **{name: float(attributes[name]) for name in _SCALARS},
     }
 
 
 def _errors(path: Path, attributes: Json) -> FlankErrors:
-    """Return the errors of a file; `DatabaseError`: they are something else."""
+    """Return the errors of a file. Raises `DatabaseError`: they have other fields than `FlankErrors`."""
     if "errors" not in attributes:
         return _NO_ERRORS
     try:
@@ -96,7 +98,7 @@ def _errors(path: Path, attributes: Json) -> FlankErrors:
 
 
 def _arrays(results: LoadDistribution) -> dict[str, Any]:
-    """Return the arrays of a file that are read back, in its order; netCDF has no booleans."""
+    """Return the arrays of a file that are read back, in its order; integers, as netCDF has no booleans."""
     arrays = {name: getattr(results, name) for name in STORED}
     edge = np.broadcast_to(results.at_edge, results.force.shape)
     return arrays | {"on_path": results.on_path.astype(np.int8), "at_edge": edge.astype(np.int8)}
@@ -104,16 +106,13 @@ def _arrays(results: LoadDistribution) -> dict[str, Any]:
 
 def _derived(results: LoadDistribution) -> dict[str, Variable]:
     """Return derived arrays of a file, for readers without this library."""
-    along = ("position",)
-    centroid = {"units": "m", "long_name": "along the face"}
-    per_width = {"units": "N m-1", "long_name": "force of all pairs per face width"}
+    position, face = ("position",), ("position", "face_position")
+    text = "force of all pairs per face width"
     return {
-        "line_load": Variable(
-            _GRID, results.line_load, {"units": "N m-1", "long_name": "force per contact line"}
-        ),
-        "face_load": Variable(("position", "face_position"), results.face_load, per_width),
-        "load_centroid": Variable(along, results.load_centroid, centroid),
-        "face_load_factor": Variable(along, results.face_load_factor, {"units": "1", "long_name": "K_Hbeta"}),
+        "line_load": _variable(_GRID, results.line_load, "N m-1", "force per contact line"),
+        "face_load": _variable(face, results.face_load, "N m-1", text),
+        "load_centroid": _variable(position, results.load_centroid, "m", "along the face"),
+        "face_load_factor": _variable(position, results.face_load_factor, "1", "K_Hbeta"),
     }
 
 

@@ -27,7 +27,7 @@ from fe_contact.ste.curve_quantities import MEAN, PEAK_TO_PEAK, QUANTITIES
 from fe_contact.types import FloatArray
 
 OVER_MEDIAN = 2.0
-"""Factor on the median error of a level: nine runs of ten state less."""
+"""Expected error over the median error of a level: nine runs of ten have less."""
 
 BY_MESH = AT_NODES.index("discretisation")
 
@@ -61,34 +61,30 @@ def condensed_errors(
     if contacts.coarse is None:
         errors[BY_MESH], band = _expected(table, plan, contacts.fine)
         sources = replace(sources, discretization=np.broadcast_to(band, sources.contact.shape))
-    bias = table_bias(table, points, plan)
-    of_arm = load_arm_errors(points, table, arms, plan)
-    _, between = interval_errors(errors.shape[2:], {})
-    every = np.concatenate([errors, between])
-    nowhere = np.empty((0,) * 4)  # no point between nodes is assessed
+    _, between_nodes = interval_errors(errors.shape[2:], {})  # not assessed: NaN
     return AssessedTable(
         band=sources.total,
-        curve_error=every,
-        load_arm_error=of_arm,
-        interval_error=nowhere,
+        curve_error=np.concatenate([errors, between_nodes]),
+        load_arm_error=load_arm_errors(points, table, arms, plan),
+        interval_error=np.empty((0,) * 4),  # no point between nodes is assessed
         inserted=None,
         by_source=sources.to_json(),
         validation={},
-        bias=bias,
+        bias=table_bias(table, points, plan),
     )
 
 
 def _expected(table: SteDatabase, plan: Plan, contact: PairContact) -> tuple[FloatArray, FloatArray]:
     """Return the known errors of the level of the meshes, (23, F, 1, 1), and its band (1, F, 1, 1), m.
 
-    The error of a harmonic is that of peak-to-peak. At no load the transmission error of a misaligned pair is
-    negative, and so its mean may be small or negative; the error then is a part of what the load adds.
+    A harmonic has the error of peak-to-peak. Without load the transmission error of a misaligned pair is
+    negative, so that its mean under load may be small: then the error is a part of the deflection by load.
     """
     ste = np.nan_to_num(table.static_transmission_error)
     added = (ste - np.nan_to_num(table.no_load_transmission_error)[:, None]).mean(axis=0)
     mean = np.maximum(ste.mean(axis=0), added)
+    mean_error, ripple_error = usual_mesh_error(contact.pair, plan)
     errors = np.empty((QUANTITIES, *mean.shape))
-    of_mean, of_ripple = usual_mesh_error(contact.pair, plan)
-    errors[:] = OVER_MEDIAN * of_ripple * mean
-    errors[MEAN] = OVER_MEDIAN * of_mean * mean
+    errors[:] = OVER_MEDIAN * ripple_error * mean
+    errors[MEAN] = OVER_MEDIAN * mean_error * mean
     return errors, errors[MEAN][None] + 0.5 * errors[PEAK_TO_PEAK][None]

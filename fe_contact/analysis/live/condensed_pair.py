@@ -1,8 +1,8 @@
 """A pair whose bodies are condensed: other flanks, loads and alignments are a matter of contact alone.
 
 The compliance of a gear depends on its macro geometry, not on its flank modifications, the load, the
-alignment or the center distance. With it in memory a new curve costs the gaps and the contact, no finite
-elements; and its errors about as much again.
+alignment or the center distance. With the compliance in memory a new curve needs no finite elements, only
+gaps and contact. Its errors cost about as much again.
 """
 
 from __future__ import annotations
@@ -45,16 +45,18 @@ PLANE_POSITIONS, FACE_POSITIONS = 192, 64
 """Equally spaced positions of a base pitch, in the plane and over the face. The compliance at them is
 assembled once for all flanks. In the plane handovers are steep, and positions cost little.
 """
-MAX_ROWS, FEWEST_POSITIONS = 4096, 16
-"""Limits where teeth differ and the positions repeat in every base pitch: the most positions of the whole
-period, and the fewest of a base pitch.
-"""
+MAX_ROWS = 4096
+"""Most positions of a period of several base pitches, where teeth differ."""
+FEWEST_POSITIONS = 16
+"""Least number of positions of a base pitch of such a period."""
 CACHED_DISTANCES = 2
 """Changes of the center distance at which the compliance stays assembled."""
 
 
 @dataclass
 class _Latest:
+    """The latest preview, from whose forces the next one starts."""
+
     preview: SolvedOperatingPoint | None = None
 
 
@@ -98,21 +100,23 @@ class CondensedPair:
         pair : GearPair or InternalGearPair
             The same macro geometry with any flank modification.
         torques : ndarray, shape (F,)
-            On the driving gear in N m, increasing, > 0.
+            Torques on the driving gear in N m, increasing, > 0.
         misalignment : float
             Growth of the gap over the common face width in the plane of action, m.
         center_distance_change : float
-            In m. The compliance between the teeth is assembled anew at another one, and the last few kept.
+            Deviation from the nominal center distance, m. Each one has its own compliance between the teeth,
+            of which the last few stay in memory.
 
         Returns
         -------
         SteDatabase
-            At equally spaced positions; corner contact is on unless the table's case switched it off. It has
-            no support loads, so no forces for dynamics, and between its loads no errors. The receipt has the
-            errors by source, CPU time by stage, what was taken for granted, and the number of points at
-            which a contact strip outgrew its load patch.
+            Table at equally spaced positions; corner contact is on unless the table's case switched it off.
+            It has no support loads, so no forces for dynamics, and between its loads no errors. The receipt
+            has the errors by source, CPU time by stage, assumptions, and the number of points at which a
+            contact strip outgrew its load patch.
         """
-        return self.solve_table(pair, torques, misalignment, center_distance_change)[0]
+        table, _ = self.solve_table(pair, torques, misalignment, center_distance_change)
+        return table
 
     def solve_table(
         self,
@@ -123,10 +127,9 @@ class CondensedPair:
         *,
         preview: bool = False,
     ) -> tuple[SteDatabase, SolvedOperatingPoint]:
-        """Return the table, as `table` does, and the contact solution that it is of.
+        """Return the table, as `table` does, and its contact solution.
 
-        A `preview` is the same solution at every other position, found from the preview before it; its errors
-        are not estimated.
+        A `preview` has every other position and no errors; its solution starts from the preview before it.
         """
         clock = StageClock()
         checked = self._request_at(pair, torques, misalignment, center_distance_change)
@@ -144,7 +147,7 @@ class CondensedPair:
                 sample = replace(sample, position=nodes.position, rows=np.arange(rows.size))
         with clock.stage("contact"):
             contacts.touch(model, sample)
-            # what stays is solved from the beginning: it does not depend on what came before
+            # only previews start from another solution: results do not depend on earlier questions
             solved = _solved(checked, plan, points, nodes, self._latest.preview if preview else None)
             if preview:
                 self._latest.preview = solved
@@ -153,8 +156,10 @@ class CondensedPair:
             laws = check_laws(table, points.places, [(contact.problem, contact.solution)])
             require_laws(laws, table)
         with clock.stage("error estimate"):
-            unassessed = unassessed_table(table, points, plan) if preview else None
-            assessed = unassessed or condensed_errors(table, solved, contacts, sample)
+            if preview:
+                assessed = unassessed_table(table, points, plan)
+            else:
+                assessed = condensed_errors(table, solved, contacts, sample)
         checks = (*check_cheaply(solved), *edge_assumptions(solved), *neglected_assumptions(self.neglected))
         receipt = condensed_receipt(solved, assessed, checks, clock)
         origin = "expected" if contacts.coarse is None else "measured"
@@ -185,13 +190,13 @@ class CondensedPair:
         misalignment: float = 0.0,
         center_distance_change: float = 0.0,
     ) -> tuple[SolvedOperatingPoint, ...]:
-        """Solve the contact in half the slices and on the coarse meshes, whichever there are.
+        """Solve the contact in half the slices and on the coarse meshes, as far as these exist.
 
-        What this changes of a result on the flanks is a measure of its error. Parameters and errors are those
-        of `table`.
+        The changes of a result on the flanks measure its error. Parameters and errors are those of `table`.
         """
-        operating_point = pair, torques, misalignment, center_distance_change
-        checked, contacts, points, nodes, plan = self.contact_problem(*operating_point)
+        checked, contacts, points, nodes, plan = self.contact_problem(
+            pair, torques, misalignment, center_distance_change
+        )
         return tuple(
             _solved(checked, plan, points.on(rougher), nodes)
             for rougher in (contacts.sliced, contacts.coarse)
@@ -217,22 +222,20 @@ class CondensedPair:
             bound = "with the gears and the center distance of the table; only flank modifications may differ"
             raise InputError("pair", "another", bound, "Analyze the other pair first.")
         axes = TableAxes(torques=torques, misalignments=[misalignment], center_distance_changes=[change])
-        self._refuse_beyond_patches(pair, torques, axes.load(pair))
-        return self._checked(pair, axes)
-
-    def _refuse_beyond_patches(self, pair: ParallelAxes, torques: FloatArray, load: FloatArray) -> None:
+        load = axes.load(pair)
         if load[-1] > self.largest_load * (1.0 + 1e-9):
             limit = float(pair.torque(np.array([self.largest_load]))[0])
-            bound = at_most(limit, note=f": {LARGEST_SUPPORT:g} times the highest load of the table")
+            highest = at_most(limit, note=f": {LARGEST_SUPPORT:g} times the highest load of the table")
             remedy = "Analyze the case with a higher load."
-            raise InputError(f"torques[{load.size - 1}]", float(torques[-1]), bound, remedy)
+            raise InputError(f"torques[{load.size - 1}]", float(torques[-1]), highest, remedy)
+        return self._checked(pair, axes)
 
     def _checked(self, pair: ParallelAxes, axes: TableAxes) -> Checked:
-        """Compose the model of other flanks on the bodies there are."""
+        """Compose the model of other flanks on the condensed bodies."""
         request = self.checked.request
         name = request.named("corner_contact")
         choice = request.options.effects.get(name, "auto")
-        # always on: what a tip edge does is then in every curve, and one compliance serves them all
+        # on for every curve: whether tip edges touch depends on the flanks, and one compliance serves all
         corners = "on" if choice == "auto" else choice
         effects = {**request.options.effects, name: corners}
         return checked_request(
@@ -255,14 +258,15 @@ class CondensedPair:
         return unmeasured_nodes(count, load.size), replace(self.contact.plan, load=load, positions=count)
 
     def _placed(self, checked: Checked) -> tuple[CondensedContacts, OperatingPoints]:
-        """Return the contacts of the flanks at the requested distance, and the operating point they make."""
+        """Return the contacts of the flanks at the requested distance, and their operating point."""
         request = checked.request
         contacts = self._at(float(request.center_distance_change[0]))
         distance = contacts.fine.pair.center_distance
         nominal = distance == request.pair.center_distance
         pair = request.pair if nominal else request.pair.at_center_distance(distance)
         bodies = contacts.with_flanks(pair)
-        scene = replace(request.scene, center_distance_change=np.zeros(1))  # the contacts stand there
+        # the contacts are at the requested distance: the scene has no further change
+        scene = replace(request.scene, center_distance_change=np.zeros(1))
         return bodies, operating_points(scene, request.choices, bodies.fine)
 
     def _at(self, change: float) -> CondensedContacts:
@@ -286,7 +290,7 @@ def _solved(
     nodes: PositionNodes,
     last: SolvedOperatingPoint | None = None,
 ) -> SolvedOperatingPoint:
-    """Solve the one place of a question at all positions of a period, started from the `last` one."""
+    """Solve the one operating point at all positions of a period, started from the `last` solution."""
     start, rows = None, nodes.position.size * points.period
     if last is not None and last.solution.status.shape == (rows, plan.load.size):
         rise = (plan.load / last.solution.load)[:, None]
@@ -299,7 +303,8 @@ def _refuse_more_teeth(contact: PairContact, change: float) -> None:
     """Refuse a distance at which more teeth may touch than the compliance in the plane has."""
     if contact.plane is None:
         return
-    teeth, needed = int(contact.plane[0].teeth.size), condensed_teeth(contact.pair)
+    flank, _ = contact.plane
+    teeth, needed = int(flank.teeth.size), condensed_teeth(contact.pair)
     if needed > teeth:
         bound = f"a change at which at most {teeth} teeth can touch: so many are condensed, {needed} can"
         remedy = "Add it to the axis of the case and analyze the case."
@@ -307,9 +312,9 @@ def _refuse_more_teeth(contact: PairContact, change: float) -> None:
 
 
 def _plain(pair: Any) -> list[object]:
-    """Return the pair without the modification of its flanks."""
+    """Return types and fields of a pair and its gears, without the modification of their flanks."""
     gears = pair.pinion, pair.wheel
-    sizes = [getattr(pair, part.name) for part in fields(pair) if part.name not in ("pinion", "wheel")]
-    for gear in gears:
-        sizes += [getattr(gear, part.name) for part in fields(gear) if part.name != "modification"]
-    return [type(pair), *map(type, gears), *sizes]
+    content: list[object] = [type(pair), *map(type, gears)]
+    for part, left_out in ((pair, ("pinion", "wheel")), *((gear, ("modification",)) for gear in gears)):
+        content += [getattr(part, field.name) for field in fields(part) if field.name not in left_out]
+    return content

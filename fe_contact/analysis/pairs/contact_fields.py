@@ -26,8 +26,8 @@ def contact_fields(
 ) -> dict[str, NDArray[Any]]:
     """Return the arrays (P, F, ...) of one operating point by their names in the database.
 
-    The last axis of `OF_PAIRS` are the N pairs of its candidates (m of them). `pressed`: the
-    `contact_pressure` of its forces, if it is known.
+    The last axis of `OF_PAIRS` are the N pairs of its m candidates. `pressed` is the `contact_pressure` of
+    its forces, if it is known.
     """
     candidates = problem.candidates
     good = solution.status == Status.CONVERGED
@@ -59,9 +59,7 @@ def largest_by_pair(candidates: Candidates, values: FloatArray) -> FloatArray:
     return np.asarray(values.reshape(*values.shape[:2], pairs, -1).max(axis=3))
 
 
-def support_fields(
-    _pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution
-) -> dict[str, NDArray[Any]]:
+def support_fields(problem: ContactProblem, solution: ContactSolution) -> dict[str, NDArray[Any]]:
     """Return the arrays (P, S) of one operating point at the support loads, by name."""
     carrying = carrying_pairs(solution.force, problem.candidates)
     return dict(zip(OF_SUPPORT, (solution.deflection, solution.tangent, carrying), strict=True))
@@ -70,4 +68,5 @@ def support_fields(
 def carrying_pairs(force: FloatArray, candidates: Candidates) -> IntArray:
     """Count the pairs (P, F) of which any candidate carries load, by their forces (P, F, m) in N."""
     of_pair = candidates.pair[:, None] == np.unique(candidates.pair)
-    return np.asarray((((force > 0.0).astype(float) @ of_pair) > 0.0).sum(axis=2))
+    loaded_candidates = (force > 0.0).astype(float) @ of_pair
+    return np.asarray((loaded_candidates > 0.0).sum(axis=2))

@@ -1,8 +1,8 @@
 """Contact at many operating points, line by line: in this process or by workers, to the same bits.
 
 A line is one center distance at some misalignments: they share the compliance between the candidates, which
-costs most. It is cut between positions (see `ContactBlock`), by what its blocks are predicted to cost: by
-the case alone, not by who works.
+costs most. It is cut between positions into blocks (`ContactBlock`) of a predicted cost. The cuts depend on
+the case alone, not on the number of workers.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import partial
-from itertools import groupby
+from itertools import chain, groupby
 from typing import Any, TypeVar
 
 import numpy as np
@@ -39,19 +39,19 @@ from model_studies.workers import InProcess, Workers
 TASK_SECONDS = 0.1
 """Predicted CPU seconds of a block: five times the cost of its distribution by Dask."""
 
-R = TypeVar("R")
+R = TypeVar("R")  # result of a block, or of an operating point
 
 
 @dataclass(frozen=True)
 class _Line:
-    """Places of one compliance: their contact, and all positions as one block without its bodies."""
+    """Operating points of one compliance: their contact, and all positions as one block without bodies."""
 
     contact: PairContact
     block: ContactBlock
 
     @property
     def pitches(self) -> int:
-        """Base pitches that every position is put into."""
+        """Number of base pitches in which every position is solved."""
         return 1 if self.block.pitches is None else self.block.pitches.size
 
     @property
@@ -62,9 +62,9 @@ class _Line:
         return work.of(1, len(block.models) * self.pitches * sum(load.size for load in block.loads))
 
     def blocks(self) -> Iterator[ContactBlock]:
-        """Cut it."""
+        """Yield the blocks of the line, of about `TASK_SECONDS` each."""
         block, count = self.block, self.block.candidates.position.size
-        chunks = together(count)
+        chunks = together(count)  # positions whose compliance is assembled in one go
         parts = min(math.ceil(count * self.seconds_a_position / TASK_SECONDS), len(chunks))
         for numbers in np.array_split(np.arange(len(chunks)), max(parts, 1)):
             rows = np.concatenate([chunks[k] for k in numbers])
@@ -91,11 +91,11 @@ def _solved_lines(lines: Sequence[_Line], workers: Workers, report: Report = unr
 
 
 def _deflections(lines: Sequence[_Line], workers: Workers) -> list[list[FloatArray]]:
-    """Solve lines of one set of loads; of each line the curves (T P, L, 2) in m of every model."""
-    return [
-        [_rows([block[k] for block in blocks], line.pitches) for k in range(len(line.block.models))]
-        for line, blocks in zip(lines, _by_line(lines, workers, deflect_block), strict=True)
-    ]
+    """Solve lines of one set of loads; return of each line the curves (T P, L, 2) in m of every model."""
+    curves = []
+    for line, blocks in zip(lines, _by_line(lines, workers, deflect_block), strict=True):
+        curves.append([_rows(list(parts), line.pitches) for parts in zip(*blocks, strict=True)])
+    return curves
 
 
 def _by_line(
@@ -103,23 +103,23 @@ def _by_line(
 ) -> Iterator[list[R]]:
     """Yield the results of the blocks of every line; lines of the same bodies go out together."""
     for _, group in groupby(lines, key=lambda line: id(line.contact.bodies)):
-        together = list(group)
-        cut = [list(line.blocks()) for line in together]
-        results = workers.run(
-            function, together[0].contact.bodies, [block for blocks in cut for block in blocks]
-        )
-        for blocks in cut:
+        alike = list(group)
+        blocks_by_line = [list(line.blocks()) for line in alike]
+        results = workers.run(function, alike[0].contact.bodies, list(chain.from_iterable(blocks_by_line)))
+        for blocks in blocks_by_line:
             yield [next(results) for _ in blocks]
 
 
 def _joined(line: _Line, blocks: list[SolvedBlock]) -> SolvedBlock:
     """Put the blocks of a line together; all models share one compliance."""
+    # the same problem for all sets of loads: (blocks, models), and by model
     problems = [[contacts[0].problem for contacts in block.contacts] for block in blocks]
+    by_model = list(zip(*problems, strict=True))
     compliance = np.concatenate([parts[0].compliance for parts in problems])
-    tilts = [np.concatenate([problem.tilt for problem in parts]) for parts in zip(*problems, strict=True)]
+    tilts = [np.concatenate([problem.tilt for problem in parts]) for parts in by_model]
     tilt = max(tilts, key=np.size)  # that of flanks that slope, if any does
     contacts = []
-    for k, parts in enumerate(zip(*problems, strict=True)):
+    for k, parts in enumerate(by_model):
         candidates = _joined_candidates([part.candidates for part in parts])
         share = np.concatenate([np.broadcast_to(p.share_1, p.compliance.shape[:2]) for p in parts])
         problem = replace(parts[0], candidates=candidates, compliance=compliance, tilt=tilt, share_1=share)
@@ -178,13 +178,14 @@ def _joined_arrays(parts: list[Arrays], pitches: int, same: tuple[str, ...] = ()
 
 
 def _rows(parts: list[NDArray[Any]], pitches: int) -> NDArray[Any]:
-    """Put rows together that go through the positions of a block pitch by pitch."""
+    """Join the rows of blocks, each of which goes through its positions pitch by pitch."""
     by_pitch = [part.reshape(pitches, len(part) // pitches, *part.shape[1:]) for part in parts]
     joined = np.concatenate(by_pitch, axis=1)
     return joined.reshape(len(joined) * joined.shape[1], *joined.shape[2:])
 
 
 Lines = dict[tuple[object, ...], tuple[_Line, list[int]]]
+"""Lines and the numbers of their operating points, by what the points of a line share."""
 
 
 def solve_operating_points(
@@ -196,12 +197,12 @@ def solve_operating_points(
     edges: bool,
     report: Report = unreported,
 ) -> tuple[list[list[SolvedContact]], FloatArray | None]:
-    """Solve all places at the positions of all base pitches.
+    """Solve all operating points at the positions of all base pitches.
 
     Parameters
     ----------
     position : ndarray, shape (P,)
-        In [0, 1).
+        Positions in [0, 1).
     loads : tuple of ndarray
         Sets of normal forces in N: those of a table, support loads.
     conditioned : bool
@@ -213,8 +214,8 @@ def solve_operating_points(
 
     Returns
     -------
-    list of list of KeptContact
-        For each set of loads, of every place.
+    list of list of SolvedContact
+        Contacts of every operating point, for each set of loads.
     ndarray or None
         Condition numbers of all compliances, if workers found them.
     """
@@ -222,36 +223,32 @@ def solve_operating_points(
     everywhere = [position] * count
     lines = _sent_lines(points.workers, points.places, everywhere, loads, pitches)
     if not lines:
-        local_sets = [
-            solved_in_parts(
-                point,
-                position,
-                loads,
-                pitches,
-                edges=edges,
-                report=partial(_total_fraction, report, k, count),
-            )
-            for k, point in enumerate(points.places)
-        ]
+        local_sets = []
+        for k, point in enumerate(points.places):
+            part = partial(_total_fraction, report, k, count)
+            local_sets.append(solved_in_parts(point, position, loads, pitches, edges=edges, report=part))
         return [list(group) for group in zip(*local_sets, strict=True)], None
     sent = [
         replace(line, block=replace(line.block, conditioned=conditioned, edges=edges))
         for line, _ in lines.values()
     ]
     solved_lines = _solved_lines(sent, points.workers, report)
-    by_point = {
-        k: group
-        for (_, members), line in zip(lines.values(), solved_lines, strict=True)
-        for k, group in zip(members, line.contacts, strict=True)
-    }
-    ordered = [by_point[k] for k in sorted(by_point)]
+    contacts = _by_point(lines, [line.contacts for line in solved_lines])
     known = [line.condition for line in solved_lines if line.condition is not None]
-    return [list(group) for group in zip(*ordered, strict=True)], np.concatenate(known) if known else None
+    return [list(group) for group in zip(*contacts, strict=True)], np.concatenate(known) if known else None
 
 
 def _total_fraction(report: Report, done: int, count: int, fraction: float) -> None:
-    """Report the fraction of one of so many parts."""
+    """Report the fraction of `count` parts, of which `done` are solved and the next one to a `fraction`."""
     report((done + fraction) / count)
+
+
+def _by_point(lines: Lines, results: Sequence[Sequence[R]]) -> list[R]:
+    """Return the results of the points of every line in the order of all points."""
+    by_point: dict[int, R] = {}
+    for (_, numbers), results_of_line in zip(lines.values(), results, strict=True):
+        by_point |= zip(numbers, results_of_line, strict=True)
+    return [by_point[k] for k in sorted(by_point)]
 
 
 def deflected_operating_points(
@@ -263,38 +260,30 @@ def deflected_operating_points(
     known: Sequence[Candidates] | None = None,
     starts: Sequence[Start] | None = None,
 ) -> list[FloatArray]:
-    """Return transmission error and load arm (T P, L, 2) in m of places.
+    """Return transmission error and load arm (T P, L, 2) in m of operating points.
 
     Parameters
     ----------
     position : sequence of ndarray, shape (P,)
-        Of each place, in [0, 1).
+        Positions at each point, in [0, 1).
     load : ndarray, shape (L,)
         Normal forces, N.
     pitches : ndarray of int, shape (T,), or None
-        Base pitches; None: as `OperatingPoint.solve` takes it. Of places by derivatives they are all.
+        Base pitches; None: as `OperatingPoint.solve` takes it. Points by derivatives need all of them.
     known : sequence of Candidates, optional
-        Of plain involutes at the positions, for each place.
+        Candidates of plain involutes at the positions, for each point.
     starts : sequence of Start, optional
-        Forces near the solution at each place; without `pitches`.
+        Forces near the solution at each point; without `pitches`.
     """
     derived = pitches is not None and any(point.derived is not None for point in points)
     lines = {} if derived else _sent_lines(workers, points, position, (load,), pitches, known)
     if not lines:
-        solved = _deflected_locally(points, position, load, pitches, known, starts)
-        return list(solved)
+        return list(_deflected_locally(points, position, load, pitches, known, starts))
     if starts is not None:
-        lines = {
-            key: (_started(line, [starts[k] for k in numbers]), numbers)
-            for key, (line, numbers) in lines.items()
-        }
-    deflected = _deflections([line for line, _ in lines.values()], workers)
-    by_point = {
-        k: curve
-        for (_, members), curves in zip(lines.values(), deflected, strict=True)
-        for k, curve in zip(members, curves, strict=True)
-    }
-    return [by_point[k] for k in range(len(points))]
+        for key, (line, numbers) in lines.items():
+            forces = tuple(starts[k].on(line.block.candidates) for k in numbers)
+            lines[key] = replace(line, block=replace(line.block, starts=forces)), numbers
+    return _by_point(lines, _deflections([line for line, _ in lines.values()], workers))
 
 
 def _deflected_locally(
@@ -305,7 +294,7 @@ def _deflected_locally(
     known: Sequence[Candidates] | None,
     starts: Sequence[Start] | None,
 ) -> Iterator[FloatArray]:
-    """Yield the curves of places, solved in this process; parameters of `deflected_operating_points`."""
+    """Yield the curves of points, solved in this process; parameters of `deflected_operating_points`."""
     for k, point in enumerate(points):
         if known is not None:
             point.contact.assemble(point.model, known[k])
@@ -313,11 +302,6 @@ def _deflected_locally(
             yield point.derived.on(point, position[k], load)
         else:
             yield curves_of_point(point, position[k], load, pitches, None if starts is None else starts[k])
-
-
-def _started(line: _Line, starts: Sequence[Start]) -> _Line:
-    forces = tuple(start.on(line.block.candidates) for start in starts)
-    return replace(line, block=replace(line.block, starts=forces))
 
 
 def _sent_lines(
@@ -330,20 +314,22 @@ def _sent_lines(
 ) -> Lines:
     """Return lines of operating points that share a compliance, each with the numbers of its points.
 
-    Empty where there is nobody else to solve them, or less than one task of work.
+    There are none without workers, or where the work is less than one task.
     """
     if isinstance(workers, InProcess):
         return {}
     members: dict[tuple[object, ...], list[int]] = {}
     for k, point in enumerate(points):
-        members.setdefault((id(point.contact), *point.contact.key(point.model, position[k])), []).append(k)
+        key = (id(point.contact), *point.contact.key(point.model, position[k]))
+        members.setdefault(key, []).append(k)
     lines = {}
     for key, numbers in members.items():
-        contact, first = points[numbers[0]].contact, points[numbers[0]].model
-        candidates = contact.candidates(first, position[numbers[0]]) if known is None else known[numbers[0]]
+        first = numbers[0]
+        contact, model = points[first].contact, points[first].model
+        candidates = contact.candidates(model, position[first]) if known is None else known[first]
         models = tuple(points[k].model for k in numbers)
-        problem = contact.cached_problem(first, position[numbers[0]])
-        turned = pitches if first.period > 1 else None
+        problem = contact.cached_problem(model, position[first])
+        turned = pitches if model.period > 1 else None
         block = ContactBlock(contact.pair, contact.plan, candidates, models, turned, loads, assembled=problem)
         lines[key] = (_Line(contact, block), numbers)
     seconds = sum(line.seconds_a_position * line.block.candidates.position.size for line, _ in lines.values())

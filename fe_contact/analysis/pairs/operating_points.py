@@ -22,7 +22,7 @@ class Derived(Protocol):
     def on(self, point: OperatingPoint, position: FloatArray, load: FloatArray) -> FloatArray:
         """Return transmission error and load arm (T P, L, 2) in m at positions (P,) and loads (L,).
 
-        Of a point with other bodies, slices or patches than those of the table, too.
+        The `point` may have other bodies, slices or patches than those of the table.
         """
 
 
@@ -68,12 +68,12 @@ class OperatingPoints:
 
     @property
     def period(self) -> int:
-        """Whole base pitches after which every place repeats."""
+        """Whole base pitches after which every operating point repeats."""
         return self.places[0].model.period
 
     @property
     def assessed(self) -> tuple[OperatingPoint, ...]:
-        """First, middle and last place: by them the positions of the table are chosen."""
+        """First, middle and last operating point: by them the positions of the table are chosen."""
         return tuple(self.places[i] for i in self.assessed_indices)
 
     @property
@@ -84,12 +84,12 @@ class OperatingPoints:
 
     @property
     def in_plane_strain(self) -> OperatingPoints:
-        """The same places without the correction for the finite width."""
+        """The same operating points without the correction for the finite width."""
         return self._with_contacts(lambda contact: contact.in_plane_strain)
 
     @property
     def in_coarse_patches(self) -> OperatingPoints:
-        """The same places under the load patches of the coarse meshes."""
+        """The same operating points under the load patches of the coarse meshes."""
         return self._with_contacts(lambda contact: contact.in_coarse_patches)
 
     def on_bodies(self, nominal: PairContact) -> OperatingPoints:
@@ -112,7 +112,7 @@ class OperatingPoints:
         return replace(self, places=points)
 
     def gathered(self, values: list[NDArray[Any]]) -> NDArray[Any]:
-        """Stack arrays (P, L, ...) of all places into (P, L, M, D, ...)."""
+        """Stack arrays (P, L, ...) of all operating points into (P, L, M, D, ...)."""
         stacked = np.stack(values, axis=2)
         return stacked.reshape(*stacked.shape[:2], *self.shape, *stacked.shape[3:])
 
@@ -123,18 +123,18 @@ def operating_points(
     nominal: PairContact,
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> OperatingPoints:
-    """Lay out the places of a scene.
+    """Return the operating points of a scene.
 
     Parameters
     ----------
     scene : ContactScene
-        With its axes.
+        Scene with the axes of a table.
     choices : mapping
         Effect name to "on", "off" or "auto".
     nominal : PairContact
         The pair at its nominal center distance.
     workers : Workers
-        Who solves them.
+        Workers that solve the operating points.
     """
     _, ledger = compose(scene, choices)
     on = acting(ledger)
@@ -142,9 +142,11 @@ def operating_points(
     points = []
     for misalignment in scene.misalignment:
         for contact in contacts:
-            axes = np.array([misalignment]), np.zeros(1)
             local_scene = replace(
-                scene, pair=contact.pair, misalignment=axes[0], center_distance_change=axes[1]
+                scene,
+                pair=contact.pair,  # at its center distance
+                misalignment=np.array([misalignment]),
+                center_distance_change=np.zeros(1),
             )
             points.append(OperatingPoint(contact, contributed(local_scene, on)))
     return OperatingPoints((scene.misalignment.size, len(contacts)), tuple(points), nominal, workers)

@@ -94,7 +94,10 @@ def solved_in_parts(
         stored_rows = 0 if parts else first.candidates.position.size  # forces of the first base pitch alone
         part = []
         for number, solution in enumerate(solutions):
-            stored = (support_fields if number else contact_fields)(point.contact.pair, problem, solution)
+            if number:  # support loads
+                stored = support_fields(problem, solution)
+            else:
+                stored = contact_fields(point.contact.pair, problem, solution)
             forces = replace(solution, force=solution.force[:stored_rows].copy())
             part.append(SolvedContact(first, forces, stored, depth))
         parts.append(part)

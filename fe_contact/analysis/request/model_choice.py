@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import NamedTuple
 
 from bounds import engineering
 from fe_contact.analysis.request.expected_curves import expected_curves
@@ -29,9 +30,20 @@ WIDTH_SHARE = 0.8
 """Part of the tolerance that the estimated change by the finite width may reach: estimates for
 peak-to-peak are 0.8 of the measured change in the median (docs/lab/index.md)."""
 
-
 TRIED_WORK = 0.1
-"""Work over that of the expected mesh up to which another one is tried first."""
+"""Largest work of a mesh that is tried first, over the work of the mesh that is expected to be needed."""
+
+
+class _Choice(NamedTuple):
+    """A request with a model, and the mesh chosen for it."""
+
+    checked: Checked
+    mesh: MeshChoice
+
+    @property
+    def decision(self) -> Decision:
+        """The choice with its plan."""
+        return Decision(*self, self.checked.plan(self.mesh.level, self.mesh.slices))
 
 
 @dataclass(frozen=True)
@@ -45,9 +57,7 @@ class Decision:
     wished: Decision | None = None
     """Decision that the tolerance needs, where the time does not allow it."""
     behind: Decision | None = None
-    """Decision that is expected to follow, where a mesh that is expected to miss the tolerance is tried
-    first.
-    """
+    """Decision that is expected to follow, where a mesh that may miss the tolerance is tried first."""
 
     @property
     def passes(self) -> tuple[Decision, ...]:
@@ -58,9 +68,9 @@ class Decision:
         """Return the same model and mesh in another number of slices; itself in the plane."""
         if not isinstance(self.plan.discretization, FaceDiscretization):
             return self
-        made = self.plan.discretization.in_slices(count)
-        mesh = replace(self.mesh, option=replace(self.mesh.option, slices=made.slices))
-        return replace(self, mesh=mesh, plan=replace(self.plan, discretization=made))
+        discretization = self.plan.discretization.in_slices(count)
+        mesh = replace(self.mesh, option=replace(self.mesh.option, slices=discretization.slices))
+        return replace(self, mesh=mesh, plan=replace(self.plan, discretization=discretization))
 
     @property
     def usual_nodes(self) -> NodeRule:
@@ -71,9 +81,8 @@ class Decision:
         """Return the same model on another mesh, in other slices, with its positions placed by `nodes`."""
         plan = replace(self.checked.plan(level, slices), nodes=nodes)
         request, model = self.checked.request, self.checked.model
-        error = expected_error(
-            request.pair, plan, expected_curves(self.checked), model_chosen=request.model_chosen
-        )
+        curves = expected_curves(self.checked)
+        error = expected_error(request.pair, plan, curves, model_chosen=request.model_chosen)
         work = effort(request.pair, plan, model, request.alignments)
         option = MeshOption(level, plan.discretization.slices, error, work)
         return replace(self, mesh=MeshChoice(option, True, reason), plan=plan)
@@ -97,44 +106,50 @@ def decide(
     cache : Path, optional
         Directory of compliances and of what is known of the host: a time depends on them.
     keep_model : bool
-        Choose mesh and slices only: what is requested is more than the transmission error.
+        Choose mesh and slices only: the request is for more than the transmission error.
     tried : bool
-        The run measures its errors and is refined where they are too large: what is expected to miss the
-        tolerance is tried first only where it costs next to nothing (`TRIED_WORK`). The expected cost of all
-        passes never falls as the tolerance becomes tighter.
+        The run measures its errors and is refined where they are too large. So a mesh that is expected to
+        miss the tolerance is tried first where it costs next to nothing (`TRIED_WORK`). The expected cost of
+        all passes never falls as the tolerance becomes tighter.
     """
     options = checked.request.options
     if options.tolerance is not None and options.time_budget is not None:
         return _within_time(checked, cache, keep_model=keep_model, tried=tried)
     models = [checked] if keep_model else alternative_requests(checked)
-    curves = expected_curves(checked) if _wishes(checked) or checked.model.across_face else None
+    curves = expected_curves(checked) if _has_goal(checked) or checked.model.across_face else None
     chosen = _best(_meshes(models, curves, cache))
-    if tried and options.tolerance is not None and (first := _trial(models, chosen[1], curves)):
-        return replace(_planned(first[0], _said_tried(*chosen, first[1])), behind=_planned(*chosen))
-    return _planned(*chosen)
+    trial = _trial(models, chosen.mesh, curves) if tried and options.tolerance is not None else None
+    if trial is None:
+        return chosen.decision
+    model, option = trial
+    dearer = f"{chosen.checked.model_name}, {chosen.mesh.option.name}"
+    reason = f"expected error {option.error.text}, tried first: at most a tenth of the work of {dearer}"
+    first = _Choice(model, MeshChoice(option, chosen.mesh.met, reason))
+    return replace(first.decision, behind=chosen.decision)
 
 
 def _trial(
     models: Sequence[Checked], chosen: MeshChoice, curves: ExpectedCurves | None
 ) -> tuple[Checked, MeshOption] | None:
-    """Return the most exact mesh whose cost is negligible against the chosen one, or None.
+    """Return the most exact mesh whose cost is negligible against the chosen one, with its model, or None.
 
-    Costs are compared without the positions that a tolerance asks for, so that what is tried beside a dearer
-    mesh costs no less. The uncorrected plane is left out: a tighter tolerance would not try it.
+    Costs are compared at the usual positions, without those that a tolerance asks for: so a mesh that is
+    tried before a dearer one costs no less. The uncorrected plane is left out, since a tighter tolerance
+    would not try it.
     """
-    usual = [(model, _options(model, curves, usual=True)) for model in models[-2:]]
-    works = [option.effort for _, options in usual for option in options if option.name == chosen.option.name]
+    usual = [_options(model, curves, usual=True) for model in models[-2:]]
+    works = [option.effort for options in usual for option in options if option.name == chosen.option.name]
     cheap = [
         (model, option)
-        for model, options in usual
-        for option, known in zip(_options(model, curves), options, strict=True)
-        if known.effort <= TRIED_WORK * max(works)
+        for model, usual_options in zip(models[-2:], usual, strict=True)
+        for option, usual_option in zip(_options(model, curves), usual_options, strict=True)
+        if usual_option.effort <= TRIED_WORK * max(works)
     ]
     return min(cheap, key=lambda trial: trial[1].error.reducible, default=None)
 
 
 def _options(checked: Checked, curves: ExpectedCurves | None, *, usual: bool = False) -> list[MeshOption]:
-    """Return all meshes of a model; with the `usual` positions if so wished."""
+    """Return all meshes of a model, at the positions for its tolerance or at the `usual` ones."""
     request, options = checked.request, checked.request.options
     options = replace(options, tolerance=None) if usual else options
     arguments = request.pair, request.load, options, checked.model, request.alignments
@@ -147,10 +162,11 @@ def _within_time(checked: Checked, cache: Path | None, *, keep_model: bool, trie
     budget = options.time_budget or 0.0
 
     def chosen(relaxed: AnalysisOptions) -> Decision:
+        """Decide by one of the two goals, and return the decision for the options with both."""
         request = replace(checked.request, options=relaxed)
-        made = decide(replace(checked, request=request), cache, keep_model=keep_model, tried=tried)
-        request = replace(made.checked.request, options=options)
-        return replace(made, checked=replace(made.checked, request=request))
+        decision = decide(replace(checked, request=request), cache, keep_model=keep_model, tried=tried)
+        request = replace(decision.checked.request, options=options)
+        return replace(decision, checked=replace(decision.checked, request=request))
 
     wished = chosen(replace(options, time_budget=None))
     seconds = wished.predicted(cache).cpu_seconds
@@ -158,7 +174,7 @@ def _within_time(checked: Checked, cache: Path | None, *, keep_model: bool, trie
         return wished
     fits = chosen(replace(options, tolerance=None))
     option = fits.mesh.option
-    # its error is that beside the tolerance, as the plan states it: a part of what its floor counts by
+    # with the tolerance among its options, its error is stated relative to the scale of the tolerance
     fits = fits.refined(option.level, option.slices, fits.plan.nodes, fits.mesh.reason)
     needs = f"{wished.mesh.option.name} is predicted to take {engineering(seconds, 2)} CPU s of {budget:.3g}"
     error = f"expected error {fits.mesh.option.error.text}"
@@ -166,24 +182,17 @@ def _within_time(checked: Checked, cache: Path | None, *, keep_model: bool, trie
     return replace(fits, mesh=mesh, wished=wished)
 
 
-def _meshes(
-    models: Sequence[Checked], curves: ExpectedCurves | None, cache: Path | None
-) -> list[tuple[Checked, MeshChoice]]:
-    meshes: list[tuple[Checked, MeshChoice]] = []
+def _meshes(models: Sequence[Checked], curves: ExpectedCurves | None, cache: Path | None) -> list[_Choice]:
+    """Return the mesh of each model; not of three dimensions where the coarsest one in the plane will do."""
+    choices: list[_Choice] = []
     for model in models:
-        # what the coarsest mesh in the plane meets, three dimensions meet no cheaper
-        if not (model.model.across_face and any(mesh.met and mesh.level == LEVELS[0] for _, mesh in meshes)):
-            meshes.append((model, _mesh(model, curves, cache)))
-    return meshes
+        coarsest_will_do = any(mesh.met and mesh.level == LEVELS[0] for _, mesh in choices)
+        if not (model.model.across_face and coarsest_will_do):
+            choices.append(_Choice(model, _mesh(model, curves, cache)))
+    return choices
 
 
-def _said_tried(checked: Checked, chosen: MeshChoice, first: MeshOption) -> MeshChoice:
-    dearer = f"{checked.model_name}, {chosen.option.name}"
-    reason = f"expected error {first.error.text}, tried first: at most a tenth of the work of {dearer}"
-    return MeshChoice(first, chosen.met, reason)
-
-
-def _wishes(checked: Checked) -> bool:
+def _has_goal(checked: Checked) -> bool:
     options = checked.request.options
     return options.tolerance is not None or options.time_budget is not None
 
@@ -193,7 +202,7 @@ def alternative_requests(checked: Checked) -> list[Checked]:
     request = checked.request
     face, width = request.model_effects
     overridden = set(request.model_effects) & {*request.neglected, *request.turned_on}
-    if not _wishes(checked) or request.model_chosen or overridden or checked.model.across_face:
+    if not _has_goal(checked) or request.model_chosen or overridden or checked.model.across_face:
         return [checked]
     plain = replace(request, neglected={**request.neglected, width: "left out"})
     solid = replace(request, turned_on={**request.turned_on, face: "taken"})
@@ -204,29 +213,28 @@ def alternative_requests(checked: Checked) -> list[Checked]:
 def next_model(checked: Checked) -> Decision | None:
     """Return the request in the next more exact model that is expected to meet its tolerance.
 
-    None where there is none, or where the caller chose the model or one of the effects that tell it.
+    None where there is none, or where the caller chose the model or one of the effects that decide about it.
     """
-    request, tell = checked.request, checked.request.model_effects
+    request, model_effects = checked.request, checked.request.model_effects
     if checked.model.across_face or request.model_chosen:
         return None
-    neglected = {name: reason for name, reason in request.neglected.items() if name not in tell}
-    reasons = {name: reason for name, reason in request.turned_on.items() if name not in tell}
-    face, width = tell
-    effects = (width, face) if width in request.neglected else (face,)
-    models = [
-        _rechecked(replace(request, neglected=neglected, turned_on={**reasons, name: "taken"}))
-        for name in effects
-    ]
+    neglected = {name: text for name, text in request.neglected.items() if name not in model_effects}
+    turned_on = {name: text for name, text in request.turned_on.items() if name not in model_effects}
+    face, width = model_effects
     curves = expected_curves(checked)
-    meshes = [(model, _mesh(model, curves, None)) for model in models]
-    return next((_planned(*_said(choice)) for choice in meshes if choice[1].met), None)
+    for name in (width, face) if width in request.neglected else (face,):
+        model = _rechecked(replace(request, neglected=neglected, turned_on={**turned_on, name: "taken"}))
+        choice = _Choice(model, _mesh(model, curves, None))
+        if choice.mesh.met:
+            return _with_reasons(choice).decision
+    return None
 
 
 def _width_is_small(checked: Checked) -> bool:
-    """Whether the finite width is estimated to stay within the tolerance on this very case.
+    """Whether the influence of the finite width on this very case is estimated to be within the tolerance.
 
-    A ripple that a modification has made small changes by more than the mean: the expected error of plane
-    strain, which is that of usual cases, does not see that.
+    Where a modification has made the ripple small, it changes by more than the mean. The expected error of
+    plane strain, which is that of usual cases, does not contain this.
     """
     tolerance = checked.request.options.tolerance
     if tolerance is None:
@@ -246,37 +254,28 @@ def _mesh(checked: Checked, curves: ExpectedCurves | None, cache: Path | None) -
     return chosen_mesh(*arguments, cache, curves, model_chosen=request.model_chosen)
 
 
-def _best(choices: Sequence[tuple[Checked, MeshChoice]]) -> tuple[Checked, MeshChoice]:
+def _best(choices: Sequence[_Choice]) -> _Choice:
     """Return the cheapest that meets a tolerance, the most exact that meets a time, else the most exact."""
     if len(choices) == 1:
         return choices[0]
-    good = [choice for choice in choices if choice[1].met]
-    by_time = choices[0][0].request.options.time_budget is not None
+    good = [choice for choice in choices if choice.mesh.met]
+    by_time = choices[0].checked.request.options.time_budget is not None
     if good and not by_time:
-        return _said(min(good, key=lambda choice: choice[1].option.effort))
-    return _said(min(good or choices, key=lambda choice: choice[1].option.error.reducible))
+        return _with_reasons(min(good, key=lambda choice: choice.mesh.option.effort))
+    return _with_reasons(min(good or choices, key=lambda choice: choice.mesh.option.error.reducible))
 
 
-def _said(choice: tuple[Checked, MeshChoice]) -> tuple[Checked, MeshChoice]:
-    """Write into the ledger why an effect is off that the scene calls for, or the other way round."""
-    checked, mesh = choice
-    request, error = checked.request, mesh.option.error
-    sizes = [engineering(100.0 * part, 2) for part in (error.total, error.plane, error.method)]
-    parts = "{} %, of which the plane {} % and the method {} %".format(*sizes)
-    neglected, turned_on = (
-        {name: _reason(name in request.model_effects, text, parts) for name, text in overrides.items()}
-        for overrides in (request.neglected, request.turned_on)
-    )
+def _with_reasons(choice: _Choice) -> _Choice:
+    """Return a choice whose ledger states why an effect of the model is neglected, or turned on."""
+    request, error = choice.checked.request, choice.mesh.option.error
+    total, plane, method = (engineering(100.0 * e, 2) for e in (error.total, error.plane, error.method))
+    text = f"expected error {total} %, of which the plane {plane} % and the method {method} %"
+    neglected, turned_on = dict(request.neglected), dict(request.turned_on)
+    for reasons in (neglected, turned_on):
+        for name in request.model_effects:
+            # the choice itself has switched the effect, not the caller
+            if reasons.get(name) in ("taken", "left out"):
+                reasons[name] = f"{reasons[name]} for the requested accuracy: {text}"
     if (neglected, turned_on) == (dict(request.neglected), dict(request.turned_on)):
         return choice
-    return _rechecked(replace(request, neglected=neglected, turned_on=turned_on)), mesh
-
-
-def _reason(tells: bool, text: str, parts: str) -> str:
-    """Return why an effect that decides about the model was switched; reasons of other effects stay."""
-    decided_here = tells and text in ("taken", "left out")
-    return f"{text} for the requested accuracy: expected error {parts}" if decided_here else text
-
-
-def _planned(checked: Checked, mesh: MeshChoice) -> Decision:
-    return Decision(checked, mesh, checked.plan(mesh.level, mesh.slices))
+    return choice._replace(checked=_rechecked(replace(request, neglected=neglected, turned_on=turned_on)))

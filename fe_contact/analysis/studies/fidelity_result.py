@@ -27,16 +27,14 @@ class FidelityResult(model_studies.FidelityResult):
     Attributes
     ----------
     cpu_seconds : float
-        Of the whole run, its error estimate included.
+        CPU seconds of the whole run, its error estimate included.
     """
 
     FIGURES = FIGURES
 
     mean: FloatArray = field(metadata=in_unit("m", "curve"))
     peak_to_peak: FloatArray = field(metadata=in_unit("m", "curve"))
-    """`mean`, `peak_to_peak`: Mean and peak-to-peak STE of each curve (loads, then alignments), m. Shape (C,)
-    each.
-    """
+    """`mean`, `peak_to_peak`: Figures of the STE of each curve (loads, then alignments), m. Shape (C,)."""
     stated_error: float
     """Relative error of mean and peak-to-peak that the table of the fidelity states, the largest over the
     curves. It contains the error of the positions, which is the same for all fidelities.
@@ -55,13 +53,14 @@ class FidelityResult(model_studies.FidelityResult):
 
 def fidelity_errors(result: FidelityResult, reference: FidelityResult) -> Errors:
     """Return the relative differences, the worst over the curves."""
-    pairs = (result.mean, reference.mean), (result.peak_to_peak, reference.peak_to_peak)
-    worst = (float(np.max(np.abs(coarse / finest - 1.0))) for coarse, finest in pairs)
-    return dict(zip(FIGURES, worst, strict=True))
+    return {
+        "mean_error": float(np.max(np.abs(result.mean / reference.mean - 1.0))),
+        "peak_to_peak_error": float(np.max(np.abs(result.peak_to_peak / reference.peak_to_peak - 1.0))),
+    }
 
 
 def remaining_errors(coarser: Sequence[tuple[Fidelity, Errors]], finest: Fidelity) -> Errors:
-    """Return the part of the difference to the next coarser mesh that the finest one leaves: second order."""
+    """Return the errors of the finest mesh, from the difference of the next coarser one at second order."""
     if not coarser:
         return dict.fromkeys(FIGURES, NAN)
     fidelity, errors = coarser[-1]
@@ -70,22 +69,22 @@ def remaining_errors(coarser: Sequence[tuple[Fidelity, Errors]], finest: Fidelit
 
 
 def fidelity_result(outcome: Outcome[Fidelity, SteDatabase]) -> FidelityResult:
-    """Read a table; time and memory are those of its receipt, which has those of child processes too."""
+    """Return the result of a fidelity's table; the time and memory of its receipt include child processes."""
     fidelity, table = outcome.fidelity, outcome.result
     axes = (table.force, table.misalignment, table.center_distance_change)
     curves = [
         table.curve(force=float(force), misalignment=float(skew), center_distance_change=float(change))
         for force, skew, change in product(*axes)
     ]
-    figures = [(curve.mean, curve.peak_to_peak) for curve in curves]
+    figures = [figure for curve in curves for figure in (curve.mean, curve.peak_to_peak)]
     receipt = table.metadata.receipt
     return FidelityResult(
         name=fidelity.name,
         title=fidelity.title,
         cpu_seconds=float(receipt["cpu_seconds"]),
-        mean=np.array([mean.value for mean, _ in figures]),
-        peak_to_peak=np.array([swing.value for _, swing in figures]),
-        stated_error=max(abs(figure.error / figure.value) for pair in figures for figure in pair),
+        mean=np.array([curve.mean.value for curve in curves]),
+        peak_to_peak=np.array([curve.peak_to_peak.value for curve in curves]),
+        stated_error=max(abs(figure.error / figure.value) for figure in figures),
         stages={name: stage["cpu_seconds"] for name, stage in receipt["stages"].items()},
         peak_memory_bytes=int(receipt["peak_memory_bytes"]),
     )

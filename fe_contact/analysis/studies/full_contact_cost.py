@@ -1,9 +1,9 @@
 """Cost of full finite-element contact for the same work: a peer on the plot of error against time.
 
-Our own measurement of the 20/20 spur pair (normal module 4 mm, face 25 mm, 10 to 400 N m) in plane strain, on
-meshes that resolve the contact strip, with two independent codes that agree to 0.06 % on the line of action
-and to 0.02 % in corner contact: CalculiX 2.20 with surface-to-surface penalty contact, and a mortar code
-without penalty. One core; errors against the finest level. Three dimensions would cost far more.
+The cost is our own measurement of the 20/20 spur pair (normal module 4 mm, face 25 mm, 10 to 400 N m) in
+plane strain on one core, on meshes that resolve the contact strip. Two independent codes agree to 0.06 % on
+the line of action and to 0.02 % in corner contact: CalculiX 2.20 with surface-to-surface penalty contact, and
+a mortar code without penalty. Errors are against the finest level. Three dimensions would cost far more.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class FullContactLevel:
     relative_error: float
 
     def seconds(self, solves: int) -> float:
-        """CPU seconds of a table of so many positions x loads."""
+        """Return the CPU seconds of a table of `solves` positions times loads."""
         return self.seconds_per_solve * solves
 
     def to_json(self, solves: int) -> Json:

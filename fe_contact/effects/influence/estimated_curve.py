@@ -29,27 +29,24 @@ from fe_contact.types import FloatArray, IntArray
 
 PLANE_POSITIONS, FACE_POSITIONS = 64, 32
 
-
 FACE_SLICES = 11
-
 
 MAX_PITCHES = 32
 """Number of base pitches that an estimate solves where teeth differ."""
 
-
 _PATCH, _EDGE = 0.15, 0.0125
 """Half-width of the load patches and their length at an edge, modules."""
 
-
-_MAX_STEPS, _EVEN = 512, 3
-"""Number of steps tried by `spread_pitches`, and orders of each gear's rotation that it looks at."""
-
+_MAX_STEPS = 512
+"""Number of steps that `spread_pitches` tries."""
+_EVEN = 3
+"""Number of orders of each gear's rotation that `spread_pitches` makes even."""
 
 UNEVEN_PITCHES = 4
 """Number of further base pitches that an estimate solves: those of the teeth that deviate most."""
 
-
 Both = tuple[FloatArray, FloatArray]
+"""Values of the pinion and of the wheel."""
 
 
 @dataclass(frozen=True)
@@ -62,12 +59,13 @@ class EstimatedCurve:
 
 @dataclass(frozen=True)
 class Springs:
-    """Slice models of one pair; data that its states share are assembled once."""
+    """Slice models of one pair, whose candidates and compliances are assembled once for all models."""
 
     pair: ParallelAxes
     _known: dict[tuple[object, ...], ContactProblem] = field(default_factory=dict, repr=False)
     _plain: dict[tuple[bool, bool], Candidates] = field(default_factory=dict, repr=False)
     _last: dict[tuple[object, ...], Start] = field(default_factory=dict, repr=False)
+    """Last solution for the same gaps, from which the next one starts."""
 
     def curve(self, model: ContactModel, load: FloatArray) -> EstimatedCurve:
         """Solve the contact of springs at normal forces (L,) in N, increasing.
@@ -77,14 +75,13 @@ class Springs:
         """
         problem, count = self.problem(model), _positions(model)
         if model.tooth_gaps:
-            pitches = np.union1d(
-                spread_pitches([term.period for term in model.tooth_gaps]), _uneven_pitches(self.pair, model)
-            )
+            spread = spread_pitches([term.period for term in model.tooth_gaps])
+            pitches = np.union1d(spread, _uneven_pitches(self.pair, model))
             problem = in_pitches(self.pair, problem, model, np.repeat(pitches, count))
         key = repr(model.gaps), problem.candidates.position.size, load.size
         solution = solve_contact(problem, load, self._last.get(key))
         self._last[key] = Start(problem.candidates, solution.force)
-        curve = solution.deflection  # (P, L), m; started from the last one with the same gaps
+        curve = solution.deflection  # (P, L), m
         return EstimatedCurve(np.nanmean(curve, axis=0), np.nanmax(curve, axis=0) - np.nanmin(curve, axis=0))
 
     def problem(self, model: ContactModel) -> ContactProblem:
@@ -117,20 +114,21 @@ class Springs:
 def spread_pitches(periods: Sequence[int]) -> IntArray:
     """Return at most `MAX_PITCHES` base pitches, at equal steps, of gears that repeat after `periods`.
 
-    The step is the one that spreads the angles of both gears, and against each other, most evenly: the
-    largest mean of the orders up to `_EVEN` of both gears, and of their sums and differences, is least.
+    The step spreads the angles of both gears, and their differences, most evenly. An order of a gear, or a
+    sum or difference of orders, leaves a mean over the pitches; the largest of these means is least. Orders
+    go up to `_EVEN`.
     """
     common_period = math.lcm(*periods)
     if common_period <= MAX_PITCHES:
         return np.arange(common_period)
-    rates = np.zeros(1)
+    rates = np.zeros(1)  # turns per base pitch of the orders and their combinations
     for period in {*periods} - {1}:
         rates = np.add.outer(rates, np.arange(-_EVEN, _EVEN + 1) / period).ravel()
     rates = rates[np.abs(rates) > 1e-12]
     step, index = np.arange(1, min(common_period, _MAX_STEPS)), np.arange(MAX_PITCHES)
     angle = 2.0 * np.pi * step[:, None, None] * rates[:, None] * index
-    steadiness = np.abs(np.exp(1j * angle).mean(axis=-1)).max(axis=1)
-    return np.sort(index * step[int(steadiness.argmin())] % common_period)
+    largest_mean = np.abs(np.exp(1j * angle).mean(axis=-1)).max(axis=1)
+    return np.sort(index * step[int(largest_mean.argmin())] % common_period)
 
 
 def _uneven_pitches(pair: ParallelAxes, model: ContactModel) -> IntArray:

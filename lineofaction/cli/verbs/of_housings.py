@@ -53,4 +53,4 @@ def _housing(
 ) -> None:
     """Make the solid of a STEP file the housing of a scene: bearing seats from its bores, and its foot."""
     placed = {"origin_mm": origin_mm, "x_axis": x_axis, "z_axis": z_axis}
-    housing.run_housing(scene, step, (material, stands_on), placed, output, as_json=json)
+    housing.run_housing(scene, step, material, stands_on, placed, output, as_json=json)

@@ -150,7 +150,8 @@ def _figures(curve: Curve) -> Json:
     }
     if curve.over_face is not None:
         mean, ripple = curve.over_face.mean, curve.over_face.peak_to_peak
-        figures["mean_over_face_um"], figures["mean_over_face_error_um"] = mean.value / UM, mean.error / UM
+        figures["mean_over_face_um"] = mean.value / UM
+        figures["mean_over_face_error_um"] = mean.error / UM
         figures["peak_to_peak_over_face_um"] = ripple.value / UM
         figures["peak_to_peak_over_face_error_um"] = ripple.error / UM
     errors = [item.error for item in (curve.mean, curve.peak_to_peak, *curve.harmonics)]
@@ -165,7 +166,8 @@ def headline_json(table: SteDatabase) -> Json:
     """
     force = float(table.force[table.force.size // 2])
     curve = table.curve(force=force, at=_RIPPLE, allow_failed=True)
-    ripple, tone = (curve.ste - curve.mean.value) / UM, curve.harmonics[0]
+    ripple = (curve.ste - curve.mean.value) / UM
+    tone = curve.harmonics[0]
     errors = [estimate.error / UM for estimate in (curve.peak_to_peak, tone)]
     ripple_error, tone_error = (error if np.isfinite(error) else None for error in errors)
     return {
@@ -237,15 +239,16 @@ def _tooth_loads_by_load(database: SteDatabase) -> list[Json]:
 
 
 def source_rows(receipt: Json, load: int) -> list[tuple[str, float, float, float]]:
-    """Return the errors at a load by source: its words, then those of mean, peak-to-peak, first harmonic, m.
+    """Return a row for each source of error at the load of an index: the source, then its errors in m.
 
-    `load` is the index of the load; sources whose errors are rounding are left out.
+    The errors are those of the mean, the peak-to-peak and the first harmonic. Rounding has no row.
     """
     rows = []
     for name, parts in receipt.get("curve_error", {}).items():
         mean, ripple, harmonic = (float(parts[quantity][load]) for quantity in BY_SOURCE)
-        rows.append((source_words(name), mean, ripple, harmonic))
-    return [row for row in rows if max(row[1:]) > _ROUNDING]
+        if max(mean, ripple, harmonic) > _ROUNDING:
+            rows.append((source_words(name), mean, ripple, harmonic))
+    return rows
 
 
 def draft_line(table: SteDatabase, refining: str) -> str:

@@ -48,14 +48,15 @@ _CASE = {figure.name: f"pair.{figure.field}" for figure in (*SHARED, *figures(Ge
     "on_violation": "accuracy.on_violation",
 }
 _OF_TABLE = {"drives": ImposedRotation, "integration": Integration, "temperatures": Temperatures}
-"""Dataclasses that declare fields whose names mean something else in other tables, by their table."""
-_SUFFIXES_IN_TEXT = ("_n_per_mm3", "_gpa", "_deg", "_rpm")
+"""Dataclasses by table, whose fields have names that mean something else in other tables."""
 
 
 def _with_parts(parts: Mapping[str, Declared]) -> Iterator[type]:
-    for kind in (entry.part for entry in parts.values() if entry.part is not None and figures(entry.part)):
-        yield kind
-        yield from _with_parts(parts_of(kind))
+    """Yield the dataclasses of parts, and of their parts."""
+    for entry in parts.values():
+        if entry.part is not None and figures(entry.part):
+            yield entry.part
+            yield from _with_parts(parts_of(entry.part))
 
 
 _ANYWHERE = (
@@ -74,6 +75,7 @@ def _fields_of(*kinds: type) -> dict[str, str]:
     return {figure.name: figure.field for kind in kinds for figure in figures(kind)}
 
 
+# Boundary's name of a field by the library's, the last part of a path such as `pinion.tip_relief`.
 _LAST = _fields_of(*_ANYWHERE) | {
     # gear
     "pitch_deviation": "pitch_deviation_um",
@@ -138,11 +140,8 @@ def scene_field(name: str) -> str:
         return f"{parts[0]}.{fields[head]}"
     if len(parts) == 1 and head == "duration":
         return "run.duration_s"
-    if (
-        len(parts) == 2
-        and head in ("stiffness", "damping", "mass")
-        and parts[0].startswith(("bushings", "planet_bearings", "housings", "couplings"))
-    ):
+    has_matrices = parts[0].startswith(("bushings", "planet_bearings", "housings", "couplings"))
+    if len(parts) == 2 and has_matrices and head in ("stiffness", "damping", "mass"):
         parts[-1] = f"{head}_matrix"
     elif head == "preload":
         parts[-1] = "preload_force_n"

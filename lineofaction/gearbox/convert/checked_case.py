@@ -27,11 +27,7 @@ Requested = TypeVar("Requested")
 
 @dataclass(frozen=True)
 class CheckedCase:
-    """A case on its way to the contact solver: converted once and checked once, each when first needed.
-
-    A process makes one of the validated model and hands it on. A worker is another process: it reads the
-    stored inputs once, and makes its own.
-    """
+    """A case on its way to the contact solver: converted once and checked once, each when first needed."""
 
     case: Case
     _requests: dict[Any, tuple[Any, Any]] = field(default_factory=dict, init=False, repr=False, compare=False)
@@ -91,7 +87,8 @@ class CheckedCase:
         known = self._requests.get(make)
         if known is None or known[0] != inputs:
             with boundary_errors():
-                known = self._requests[make] = inputs, make(self, inputs)
+                known = inputs, make(self, inputs)
+            self._requests[make] = known
         made: Requested = known[1]
         return made
 
@@ -113,7 +110,7 @@ class CheckedCases:
         return self._of(case_json(case), lambda: case)
 
     def of_json(self, inputs: Json) -> CheckedCase:
-        """Return a normalized case; one that is not kept is validated."""
+        """Return a normalized case, which is validated unless an equal one is stored."""
         return self._of(inputs, lambda: Case.model_validate_json(json.dumps(inputs)))
 
     def _of(self, inputs: Json, case: Callable[[], Case]) -> CheckedCase:
@@ -137,15 +134,13 @@ def check_case(case: Case) -> ParallelAxes:
 def check_plain_case(case: Case) -> ParallelAxes:
     """Return the pair of a case of loads alone, as `check_case` does, without modules that compute.
 
-    A case with default accuracy and effects, one alignment and equal teeth is refused for its loads, or for
-    a disc that is too thin; whether one may be is decided here.
+    Such a case has default accuracy and effects, one alignment and equal teeth. It is refused for its loads,
+    or for a disc that is too thin: only thin discs take the full check.
     """
     pair = gear_pair(case)
-    if any(
-        gear.face_width * THICK < abs(gear.root_radius - gear.seat_radius)
-        for gear in (pair.pinion, pair.wheel)
-    ):
-        return check_case(case)
+    for gear in (pair.pinion, pair.wheel):
+        if gear.face_width * THICK < abs(gear.root_radius - gear.seat_radius):
+            return check_case(case)
     with boundary_errors():
         axes = table_axes(case)
         load = axes.load(pair)

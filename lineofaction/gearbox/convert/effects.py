@@ -52,12 +52,12 @@ def _row(entry: Entry) -> list[str]:
     influence = entry.get("influence") or {}
     changes = [influence.get(name) for name in ("relative_mean", "relative_peak_to_peak")]
     seconds = entry["cost_cpu_seconds"]
-    why = [
-        *([] if entry["choice"] == "auto" else [f"requested: {entry['choice']}"]),
-        entry["reason"],
-        *([entry["decision"]] if entry["decision"].startswith(("neglected", "on after")) else []),
-        *([f"price: {entry['price']}"] if entry["price"] and entry["on"] else []),
-    ]
+    why = [] if entry["choice"] == "auto" else [f"requested: {entry['choice']}"]
+    why.append(entry["reason"])
+    if entry["decision"].startswith(("neglected", "on after")):
+        why.append(entry["decision"])
+    if entry["price"] and entry["on"]:
+        why.append(f"price: {entry['price']}")
     return [
         entry["name"].replace("_", " "),
         "yes" if entry["on"] else "no",
@@ -87,8 +87,7 @@ def run_lines(attributes: Mapping[str, Any]) -> Iterator[str]:
             yield f"repeated with {name}: {reason} (first run {cost}{since})"
     corrected = {**attributes, **attributes.get("receipt", {})}.get("base_radius_corrected", {})
     for gear, radius in corrected.items():
-        from_teeth, used = (1e3 * radius[name] for name in ("given", "used"))
-        change = f"from {from_teeth:.6g} to {used:.6g} mm"
+        change = f"from {1e3 * radius['given']:.6g} to {1e3 * radius['used']:.6g} mm"
         yield f"base radius of {gear} corrected {change}: one base pitch per train"
     for check in attributes.get("effect_ledger", {}).get("checks", ()):
         if check["holds"] is False:

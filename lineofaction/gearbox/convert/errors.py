@@ -14,18 +14,16 @@ from dynamics.errors import InputError as DynamicsInputError
 from fe_contact.errors import FeContactError, InfeasibleGeometry
 from fe_contact.errors import InputError as ContactInputError
 from host import Unavailable, missing_extra
-from lineofaction.gearbox.convert.boundary_names import (
-    _SUFFIXES_IN_TEXT,
-    boundary_name,
-    case_field,
-    scene_field,
-)
+from lineofaction.gearbox.convert.boundary_names import boundary_name, case_field, scene_field
 from lineofaction.gearbox.problems import BadInput, Fault, JobFailed, ServiceError
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.faults import field_remedy
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.units import BY_SUFFIX, MM, as_typed, factor, unit_of
 from model_studies.workers import WorkersLost
+
+_SUFFIXES_IN_TEXT = ("_n_per_mm3", "_gpa", "_deg", "_rpm")
+"""Units in which a message writes values of other fields, by the suffix of a field."""
 
 
 @dataclass(frozen=True)

@@ -193,7 +193,8 @@ def placeholder(index: int, housing: HousingInput) -> Housing:
     except BadInput as error:
         raise error.within(f"housings[{index}]") from None
     unit = np.eye(_MOTIONS * len(housing.bushings))
-    stiffness, mass = (tuple(map(tuple, (scale * unit).tolist())) for scale in (ANY_STIFFNESS, _ANY_MASS))
+    stiffness = tuple(map(tuple, (ANY_STIFFNESS * unit).tolist()))
+    mass = tuple(map(tuple, (_ANY_MASS * unit).tolist()))
     with named(f"housings[{index}]"):
         return Housing(housing.name, housing.bushings, stiffness, mass=mass)
 

@@ -54,10 +54,9 @@ _DIGITS = 5
 _STEPS, _COLUMNS = 32, 64
 """Positions in a base pitch and most columns over the face of a passage."""
 _PLACES = ("pair.", "load.", "errors.")
-"""Tables of a case, whose names the fields of a question do not have."""
-_OF_BAND = {
-    *("torque_n_m", "misalignment_um", "center_distance_change_mm", "pinion", "wheel", "tolerance_class")
-}
+"""Prefixes of a case's fields, which the fields of a question do not have."""
+_OF_BAND = {"torque_n_m", "misalignment_um", "center_distance_change_mm"}
+_OF_BAND |= {"pinion", "wheel", "tolerance_class"}
 """Fields of a question on which its band depends."""
 _MAX_DRAWN = 4
 """Most bands of a case that stay in memory."""
@@ -122,21 +121,18 @@ def _passage_json(flanks: LoadDistribution, separation: FloatArray) -> Json:
     path_position = (flanks.position[first, None] + flanks.pair).ravel()
     order = np.argsort(path_position)
     loaded = (flanks.pressure[first] > 0.0).any(axis=-1).ravel()
-    low, high = (
-        math.floor(path_position[loaded].min() * _STEPS) - 1,
-        math.ceil(path_position[loaded].max() * _STEPS) + 1,
-    )
+    # one more row at either end, where the pair carries no load
+    low = math.floor(path_position[loaded].min() * _STEPS) - 1
+    high = math.ceil(path_position[loaded].max() * _STEPS) + 1
     rows = np.arange(low, high + 1) / _STEPS
-    face = np.linspace(
-        flanks.face_position[0], flanks.face_position[-1], min(_COLUMNS, len(separation[0, 0]))
-    )
+    columns = min(_COLUMNS, separation.shape[-1])
+    face = np.linspace(flanks.face_position[0], flanks.face_position[-1], columns)
 
     def on_grid(values: FloatArray) -> FloatArray:
         """Interpolate values (P, N, K) at the rows and at the face positions."""
         table = values[first].reshape(path_position.size, -1)[order]
-        return interpolated_columns(
-            face, flanks.face_position, interpolated_columns(rows, path_position[order], table).T
-        ).T
+        by_row = interpolated_columns(rows, path_position[order], table)
+        return interpolated_columns(face, flanks.face_position, by_row.T).T
 
     return {
         "first_place": low / _STEPS,
@@ -223,8 +219,7 @@ def live_curves(condensed: CondensedCase, change: LiveInput) -> Json:
 
 def _figures_of(flank: BoundaryModel) -> dict[str, object]:
     """Return the figures that a change of a flank states."""
-    figures = {name: getattr(flank, name) for name in type(flank).model_fields}
-    return {name: value for name, value in figures.items() if value is not None}
+    return {name: value for name, value in flank if value is not None}
 
 
 def _add_band(
@@ -317,7 +312,9 @@ def _answer(bodies: CondensedPair, pair: ParallelAxes, change: LiveInput, stored
 
 
 def _stored_load(stored: SteDatabase | None, solved: SteDatabase, k: int) -> tuple[int, int, int] | None:
-    """Return the indices of load and alignment at which the stored table has load k solved; None: nowhere.
+    """Return the node of the stored table at load k: indices of load, misalignment and center distance.
+
+    None is returned if the stored table has no node there.
 
     Between loads and alignments the table interpolates, with a larger error than an answer that is solved.
     """

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from bounds import engineering, shaft_words
@@ -25,15 +24,14 @@ def pair_point(
     Torque on the driving gear in N m, normal force in N, None: not named; both lengths in m.
     """
     newtons = "" if force is None else f" ({engineering(force, 4)} N)"
-    parts = [f"at {typed(torque)} N m{newtons}"]
-    parts.append(f"misalignment {engineering(misalignment / UM, 4)} µm")
+    parts = [f"at {typed(torque)} N m{newtons}", f"misalignment {engineering(misalignment / UM, 4)} µm"]
     if center_distance_change:
         parts.append(f"center distance {engineering(center_distance_change / MM, 4, '+')} mm")
     return ", ".join(parts)
 
 
 def typed(value: float) -> str:
-    """Return a stated number as it was typed; one with more digits than anybody types, to four of them."""
+    """Return a number as it was typed; a number of more digits than anybody types is rounded to four."""
     text = engineering(value, _TYPED)
     return text if float(text) == float(f"{value:.12g}") else engineering(value, _COMPUTED)
 
@@ -43,28 +41,18 @@ def scene_point(scene: SceneInput, speed: tuple[str, float] | None = None) -> st
 
     `speed`: a shaft and its speed, rad/s, at which a result is computed in place of the speeds of drives.
     """
-    own = (
-        [] if speed is None else [f"{engineering(speed[1] / RPM, _COMPUTED)} rpm of {shaft_words(speed[0])}"]
-    )
-    parts = [*_loads(scene), *(own or _speeds(scene)), *_misalignments(scene)]
-    return f"at {', '.join(parts)}" if parts else ""
-
-
-def _loads(scene: SceneInput) -> Iterator[str]:
+    parts = []
     for load in scene.loads:
         later = " at the start" if len(set(load.torque_n_m)) > 1 else ""
-        yield f"{typed(load.torque_n_m[0])} N m on {shaft_words(load.shaft)}{later}"
-    for part in scene.speed_torques:
-        yield f"the torques over speed of {part.name}"
-
-
-def _speeds(scene: SceneInput) -> Iterator[str]:
-    for drive in scene.drives:
+        parts.append(f"{typed(load.torque_n_m[0])} N m on {shaft_words(load.shaft)}{later}")
+    parts += [f"the torques over speed of {part.name}" for part in scene.speed_torques]
+    if speed is not None:
+        parts.append(f"{engineering(speed[1] / RPM, _COMPUTED)} rpm of {shaft_words(speed[0])}")
+    for drive in scene.drives if speed is None else ():
         if drive.speed_rpm is not None and drive.speed_rpm[0] and len(set(drive.speed_rpm)) == 1:
-            yield f"{typed(drive.speed_rpm[0])} rpm of {shaft_words(drive.shaft)}"
-
-
-def _misalignments(scene: SceneInput) -> Iterator[str]:
+            parts.append(f"{typed(drive.speed_rpm[0])} rpm of {shaft_words(drive.shaft)}")
     for mesh in scene.meshes:
-        if misalignment := getattr(mesh, "misalignment_um", 0.0):
-            yield f"{engineering(misalignment, 4)} µm misalignment of {mesh.name}"
+        misalignment = getattr(mesh, "misalignment_um", 0.0)
+        if misalignment:
+            parts.append(f"{engineering(misalignment, 4)} µm misalignment of {mesh.name}")
+    return f"at {', '.join(parts)}" if parts else ""

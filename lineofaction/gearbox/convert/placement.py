@@ -34,9 +34,9 @@ class Placement:
 
     @property
     def fields(self) -> dict[str, list[float]]:
-        """The fields of a housing that say it; none where the file stands as the scene does."""
+        """The fields of a housing that differ from those of a file that stands as the scene does."""
         frame = {"origin_mm": self.origin / MM, "x_axis": self.axes[:, 0], "z_axis": self.axes[:, 2]}
-        return {
+        return {  # 0.0 is added because it makes 0.0 of -0.0
             name: [as_typed(float(np.round(value, 9)) + 0.0) for value in values]
             for name, values in frame.items()
             if not np.allclose(values, _IDENTITY[name], rtol=0.0, atol=1e-9)

@@ -46,17 +46,18 @@ class SceneEffect(NamedTuple):
 
 def scene_effects(ledger: Json) -> tuple[list[SceneEffect], list[SceneEffect]]:
     """Return the decisions on the effects of a scene, and separately on effects of negligible size."""
-    estimates, effects = ledger.get("influences", {}), dict[str, list[Json]]()
+    effects = dict[str, list[Json]]()
     for entry in ledger.get("entries", ()):
         effects.setdefault(entry["effect"], []).append(entry)
     main, trifles = list[SceneEffect](), list[SceneEffect]()
     for name, entries in effects.items():
-        size, estimate = effect_size(ledger, name), estimates.get(name)
+        size = effect_size(ledger, name)
+        estimate = ledger.get("influences", {}).get(name)
         freedoms = f"{estimate['freedoms']:+d}".replace("+0", "0") if estimate else ""
         listed = trifles if _is_trifle(entries, size, estimate) else main
         if estimate and estimate.get("level"):
             size = size.partition(", ")[0]  # the text begins with the level, which is enough
-        listed += _decisions(name.replace("_", " "), size or "nothing", freedoms, entries)
+        listed.extend(_decisions(name.replace("_", " "), size or "nothing", freedoms, entries))
     return main, trifles
 
 

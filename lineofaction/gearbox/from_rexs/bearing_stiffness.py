@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 
@@ -32,13 +33,14 @@ AXIAL_SHARE = 0.5
 """Axial over radial stiffness where the file has neither a value nor the geometry."""
 
 RADIAL_LOAD, AXIAL_LOAD = 0.1, 0.025
-"""Load at which a bearing's tangent is taken, as shares of its static load rating; axial is the least."""
+"""Radial load and least axial load at which a bearing's tangent is taken, over its static load rating."""
 
 INDUCED = 1.25
-"""Axial over radial load, times cot(alpha): the thrust F_r / (2 Y) that a row of contact angle alpha itself
-induces, Y = 0.4 cot(alpha) (ISO 281). Half of its elements carry; with much less it slips off its raceway."""
+"""Axial over radial load, times cot(alpha), at which half of the rolling elements of a row carry. The row of
+contact angle alpha itself induces this thrust: F_r / (2 Y), Y = 0.4 cot(alpha) (ISO 281)."""
 
 _TILTS = (3, 4)
+"""Indices of the tilts in a displacement x, y, z, tilts."""
 
 COPIES = 8
 """Number of positions of a rolling element, spread over one pitch, over which the stiffness is averaged."""
@@ -111,28 +113,25 @@ def _axial(part: Part, tangent: FloatArray | None, radial: float) -> float:
 
 
 def finite_stiffness(part: Part, item: str) -> float | None:
-    """Return a stated stiffness of a bearing, None where there is none, or none that is finite."""
+    """Return the stated stiffness of a bearing, None where the file has none or one that means rigid."""
     value = part.number(item, "stiffness of the bearing")
-    return value if value is not None and 0.0 < value < _rigid(item)[0] else None
-
-
-def _rigid(item: str) -> tuple[float, float, str]:
-    """Return from where on a stiffness means rigid, the stiffness of a rigid seat, and their unit."""
-    tilt = item == "bending_stiffness"
-    return (RIGID_TILT_FROM, RIGID_TILT, "N m/rad") if tilt else (RIGID_FROM, RIGID, "N/m")
+    rigid_from = RIGID_TILT_FROM if item == "bending_stiffness" else RIGID_FROM
+    return value if value is not None and 0.0 < value < rigid_from else None
 
 
 def _resolved_stiffness(part: Part, item: str, derived: float | None) -> float | None:
     """Return a stiffness: a finite stated one, else the derived one, else a rigid one, else None."""
-    value, (rigid_from, rigid, unit) = part.number(item, "stiffness of the bearing"), _rigid(item)
-    if finite_stiffness(part, item) is not None:
+    value = finite_stiffness(part, item)
+    if value is not None:
         return value
+    rigid, unit = (RIGID_TILT, "N m/rad") if item == "bending_stiffness" else (RIGID, "N/m")
+    stated = part.number(item, "stiffness of the bearing")
     if derived is not None:
-        of = f"{derived:.3g} {unit}, tangent of the bearing's geometry at {RADIAL_LOAD:g} C0 radially"
-        part.say(item, "derived", of + ("" if value is None else f" instead of the stated {value:.3g}"))
+        text = f"{derived:.3g} {unit}, tangent of the bearing's geometry at {RADIAL_LOAD:g} C0 radially"
+        part.say(item, "derived", text + ("" if stated is None else f" instead of the stated {stated:.3g}"))
         return max(0.0, float(derived))
-    if value is not None and value >= rigid_from:
-        part.say(item, "derived", f"{value:.3g} {unit} means rigid: {rigid:g} here")
+    if stated is not None and stated > 0.0:
+        part.say(item, "derived", f"{stated:.3g} {unit} means rigid: {rigid:g} here")
         return rigid
     return None
 
@@ -175,7 +174,10 @@ def operating_point(part: Part) -> FloatArray | None:
     matrix = 0.5 * (matrix + matrix.T)
     minimum, largest = map(float, np.linalg.eigvalsh(matrix)[[0, -1]])
     if largest <= 0.0 or minimum < -1e-6 * largest or np.max(np.abs(matrix)) >= RIGID_FROM:
-        for name in (name for row in names for name in row if part.attribute(name) is not None):
-            part.say(name, "refused", "no stiffness matrix: it is not positive semidefinite, or not finite")
+        for name in itertools.chain.from_iterable(names):
+            if part.attribute(name) is not None:
+                part.say(
+                    name, "refused", "no stiffness matrix: it is not positive semidefinite, or not finite"
+                )
         return None
     return np.asarray(matrix)

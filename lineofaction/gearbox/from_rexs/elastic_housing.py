@@ -18,6 +18,7 @@ from lineofaction.gearbox.from_rexs.placement import FIXED, Placement
 _MATRIX = "reduced_static_stiffness_matrix"
 
 _PER_POINT = 6
+"""Degrees of freedom of a reduction point."""
 
 _SYMMETRIC = 1e-6
 """Relative asymmetry up to which a matrix counts as symmetric: finite-element programs write matrices with
@@ -94,8 +95,8 @@ def _stiffness(group: Part, points: int) -> FloatArray | None:
         group.say("", "refused", f"no {_MATRIX}: files of finite-element programs are not read")
         return None
     size = _PER_POINT * points
-    sizes = [len(row) if isinstance(row, tuple) else 0 for row in (rows if isinstance(rows, tuple) else ())]
-    if not isinstance(rows, tuple) or sizes != [size] * size:
+    lengths = [len(row) for row in rows if isinstance(row, tuple)] if isinstance(rows, tuple) else []
+    if not isinstance(rows, tuple) or len(rows) != size or lengths != [size] * size:
         text = f"{size} rows of {size} numbers are needed: six for each reduction point"
         group.say(_MATRIX, "refused", text)
         return None
@@ -104,7 +105,7 @@ def _stiffness(group: Part, points: int) -> FloatArray | None:
     except (TypeError, ValueError):
         group.say(_MATRIX, "refused", "not all of its entries are numbers")
         return None
-    # N/mm times 1e3 is N/m, N stays, N mm times 1e-3 is N m: roots, as each entry has two factors
+    # N/mm times 1e3 is N/m, N stays, N mm times 1e-3 is N m; an entry has those of its row and its column
     scale = np.tile([1e3**0.5] * 3 + [1e-3**0.5] * 3, points)
     matrix *= scale[:, None] * scale
     largest = float(np.max(np.abs(matrix)))

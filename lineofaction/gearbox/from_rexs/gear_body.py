@@ -17,6 +17,7 @@ _THINNEST = 1.0  # normal modules between bore and root circle; a thinner gear i
 _INTEGRAL = 0.5  # bore over root diameter of a gear without a stated bore
 
 STEEL = (210e9, 0.3)
+"""Young's modulus, Pa, and Poisson's ratio of steel."""
 
 Table = dict[str, Any]
 
@@ -66,7 +67,8 @@ def _shaft_diameter(gear: Part) -> float | None:
             end = section.number("outer_diameter_end", "outer diameter of the section")
             if begin is None or end is None:
                 return begin if end is None else end
-            return begin + (0.0 if length == 0.0 else (u - start) / length) * (end - begin)
+            share = 0.0 if length == 0.0 else (u - start) / length
+            return begin + share * (end - begin)
         start += length
     return None
 

@@ -36,8 +36,8 @@ class Train:
     def of(cls, layout: Layout) -> Train:
         """Return the train of stages and couplings; all speeds and torques are about z.
 
-        Those of a shaft that is not parallel are about its own u: the sense in which a bevel stage turns what
-        lies behind it is left open by the file, its power is not.
+        Speeds and torques of a shaft that is not parallel to z are about its own u. The file leaves open in
+        which sense a bevel stage turns the shafts behind it, but not their power.
         """
         stages, rotors = layout.stages, layout.rotors
         ids = tuple(sorted(set(rotors.of.values())))
@@ -76,9 +76,11 @@ class Train:
     def joined_to(self, rotors: Iterable[int]) -> set[int]:
         """Return these rotors and all that stages and couplings join to them."""
         joined = np.isin(self.rotors, list(rotors))
-        count = -1
-        while count < (count := int(joined.sum())):
-            joined |= np.any(self.rows[np.any(self.rows[:, joined], axis=1)], axis=0)
+        count = 0
+        while count < joined.sum():
+            count = joined.sum()
+            joining = np.any(self.rows[:, joined], axis=1)
+            joined |= np.any(self.rows[joining], axis=0)
         return {rotor for rotor, is_joined in zip(self.rotors, joined, strict=True) if is_joined}
 
     def _free(self, resting: set[int]) -> FloatArray:

@@ -27,9 +27,10 @@ NO_STAGE = "relation `stage` needs two gears with teeth, on two shafts that carr
 class Part:
     """A component as an import reads it, with its account and the parts that it is related to.
 
-    A value read is taken, in the words of the reader; `say` corrects the entry afterwards: derived,
-    defaulted, ignored or refused. Numbers are in SI; None stands for what the file does not give. Whatever
-    reads raises `BadInput` where a value is no number, is given twice, or has a unit of another quantity.
+    Whoever reads a value gives its meaning, and the account gets the value as taken. `say` corrects that
+    entry: derived, defaulted, ignored or refused. Numbers are in SI; None stands for what the file does not
+    give. Reading raises `BadInput` where a value is no number, is given twice, or has a unit of another
+    quantity.
     """
 
     def __init__(self, component: Component, unit: GearUnit) -> None:
@@ -129,7 +130,8 @@ class Part:
 
     def value(self, item: str) -> Value:
         """Return the value of an attribute as it stands, without an entry in the account."""
-        return None if (attribute := self.attribute(item)) is None else attribute.value
+        attribute = self.attribute(item)
+        return None if attribute is None else attribute.value
 
     def say(self, item: str, fate: Fate, text: str) -> None:
         """State the fate of an attribute that the component has or lacks; "" is the component."""
@@ -161,12 +163,13 @@ class Part:
     @property
     def shaft(self) -> Part | None:
         """The first shaft that has the component, None if there is none."""
-        relations = self.unit.relations("assembly", "ordered_assembly")
-        owners = [
-            relation.of_role("assembly") for relation in relations if relation.of_role("part") == self.id
-        ]
-        parts = (self.unit.part(owner) for owner in owners if owner is not None)
-        return next((part for part in parts if part.type == "shaft"), None)
+        for relation in self.unit.relations("assembly", "ordered_assembly"):
+            owner = relation.of_role("assembly")
+            if relation.of_role("part") == self.id and owner is not None:
+                part = self.unit.part(owner)
+                if part.type == "shaft":
+                    return part
+        return None
 
     @property
     def teeth(self) -> int | None:
@@ -210,12 +213,8 @@ class GearUnit:
 
     def load_cases(self) -> tuple[tuple[Part, ...], ...]:
         """Return the components of each load case of the first spectrum, empty without a spectrum."""
-        spectra = self.model.spectra[:1]
-        return tuple(
-            tuple(Part(part, self) for part in case.components)
-            for spectrum in spectra
-            for case in spectrum.cases
-        )
+        cases = self.model.spectra[0].cases if self.model.spectra else ()
+        return tuple(tuple(Part(part, self) for part in case.components) for case in cases)
 
     @cached_property
     def bearings(self) -> tuple[Connection, ...]:
@@ -329,10 +328,10 @@ class GearStage:
 def _gear_stages(unit: GearUnit) -> Iterator[GearStage]:
     for relation in unit.relations("stage"):
         number = relation.of_role("stage")
-        ends = [relation.of_role(role) for role in ("gear_1", "gear_2")]
         if number is None:
             continue
         stage = unit.part(number)
+        ends = [relation.of_role(role) for role in ("gear_1", "gear_2")]
         gears = [unit.part(end) for end in ends if end is not None]
         shafts = [shaft for gear in gears if (shaft := gear.shaft) is not None]
         signed = [teeth for gear in gears if (teeth := gear.teeth) is not None]

@@ -11,10 +11,7 @@ import numpy as np
 
 from lineofaction.gearbox.from_rexs.flank_modification import Modification, PlainFlank
 from lineofaction.gearbox.from_rexs.gear_unit import Part, rounded
-from lineofaction.gearbox.from_rexs.profile_modifications import (
-    Growth,
-    both_amounts,
-)
+from lineofaction.gearbox.from_rexs.profile_modifications import Growth, both_amounts
 from lineofaction.gearbox.from_rexs.relief_laws import shape_of, two_parabolas
 from lineofaction.gearbox.units import UM
 

@@ -97,11 +97,8 @@ class Layout:
             return coordinate or 0.0
         u = shaft.placement.along(placement.origin)
         if coordinate is not None and not math.isclose(coordinate, u, abs_tol=_TOLERANCE):
-            text = (
-                f"{coordinate * 1e3:.6g} mm; "
-                f"its place (support_vector) is at {u * 1e3:.6g} mm, which is taken"
-            )
-            part.say(item, "ignored", text)
+            taken = f"its place (support_vector) is at {u * 1e3:.6g} mm, which is taken"
+            part.say(item, "ignored", f"{coordinate * 1e3:.6g} mm; {taken}")
         off_axis = shaft.off_axis(placement.origin)
         if off_axis > _TOLERANCE:
             text = f"{off_axis * 1e3:.4g} mm off the axis of its shaft; taken along the axis alone"
@@ -169,7 +166,7 @@ def _by_stage(stage: GearStage, placements: dict[int, Placement]) -> None:
         return
     angle = stage.stage.number(_ANGLE, "direction from gear 1 to gear 2, deg", 0.0, "0 deg")
     sign = 1.0 if known[0] else -1.0  # from the first shaft to the second, or back
-    base, new = (stage.shafts[index] for index in ((0, 1) if known[0] else (1, 0)))
+    base, new = stage.shafts if known[0] else stage.shafts[::-1]
     u, v, w = placements[base.id].axes
     across = sign * center_distance * (math.sin(angle) * v + math.cos(angle) * w)
     ends = [_u(gear, "u_coordinate_on_shaft") for gear in stage.gears]

@@ -44,9 +44,10 @@ def micro_geometry(gear: Toothing, loaded: LoadedFlank) -> Table:
             if raster.difference <= ALLOWED_DIFFERENCE:
                 break
         fields["flank_grid"] = raster.table
+        names = ", ".join(entry.part.name for entry in rest)
         lines = f"{raster.counts[0]} roll lengths by {raster.counts[1]} face positions"
-        text = f"{', '.join(entry.part.name for entry in rest)} on {lines}; differs by at most"
-        loaded.flank.say("flank_grid", "derived", f"{text} {engineering(raster.difference / UM, 2)} µm")
+        difference = f"differs by at most {engineering(raster.difference / UM, 2)} µm"
+        loaded.flank.say("flank_grid", "derived", f"{names} on {lines}; {difference}")
     return fields
 
 

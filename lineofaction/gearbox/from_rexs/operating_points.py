@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
 
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit, Part
 
@@ -56,10 +55,11 @@ class OperatingPoint:
         unit_parts = unit.of_type("shaft", "external_load", "gear_unit")
         cases = unit.load_cases()
         for number, spectrum in enumerate(unit.model.spectra[1:], 2):
-            for part in (part for case in spectrum.cases for part in case.components):
-                unit.account.say(part, "", "refused", f"load spectrum {number}; the first is taken")
+            for case in spectrum.cases:
+                for part in case.components:
+                    unit.account.say(part, "", "refused", f"load spectrum {number}; the first is taken")
         if not cases:
-            return (_point(_Entry("nominal", 1, 1.0), unit_parts, ()),)
+            return (_point(unit_parts, (), "nominal", 1, 1.0),)
         shares = [_share(case) for case in cases]
         total = sum(share for share in shares if share is not None)
         if total > 0.0 and None not in shares:
@@ -69,29 +69,24 @@ class OperatingPoint:
             for root in unit.of_type("gear_unit"):
                 root.say(_SHARES[0], "defaulted", "equal shares: not every load case states one")
         rows = enumerate(zip(cases, parts, strict=True), 1)
-        return tuple(
-            _point(_Entry(f"load case {n}", n, share), unit_parts, case) for n, (case, share) in rows
-        )
-
-
-class _Entry(NamedTuple):
-    """Name, number and share of the time of an operating point in the spectrum."""
-
-    name: str
-    number: int
-    share: float
+        return tuple(_point(unit_parts, case, f"load case {n}", n, share) for n, (case, share) in rows)
 
 
 def _share(case: tuple[Part, ...]) -> float | None:
     """Return the share of the time that a case states, 0 to 1."""
     for part in case:
-        for item in _SHARES if part.type == "gear_unit" else ():
-            if (share := part.number(item, "share of the time, %")) is not None:
+        if part.type != "gear_unit":
+            continue
+        for item in _SHARES:
+            share = part.number(item, "share of the time, %")
+            if share is not None:
                 return max(0.0, share)
     return None
 
 
-def _point(entry: _Entry, unit_parts: tuple[Part, ...], case: tuple[Part, ...]) -> OperatingPoint:
+def _point(
+    unit_parts: tuple[Part, ...], case: tuple[Part, ...], name: str, number: int, share: float
+) -> OperatingPoint:
     """Return an operating point; values of a load case replace values of the component itself."""
     parts = [*unit_parts, *case]  # later entries of a part's id replace earlier ones
     loads = [part for part in parts if part.type == "external_load"]
@@ -106,7 +101,7 @@ def _point(entry: _Entry, unit_parts: tuple[Part, ...], case: tuple[Part, ...]) 
     for part in loads:
         _enter_torque(part, torques, powers)
         _enter_forces(part, forces)
-    return OperatingPoint(*entry, speeds, torques, powers, forces)
+    return OperatingPoint(name, number, share, speeds, torques, powers, forces)
 
 
 def _enter_forces(part: Part, forces: dict[int, tuple[float, ...]]) -> None:
@@ -139,12 +134,9 @@ def _enter_torque(part: Part, torques: dict[int, float | None], powers: dict[int
     elif power is not None:
         torques[part.id] = None
         powers[part.id] = power
-    elif part.id not in torques and _transmits(part):
-        torques[part.id] = None
-
-
-def _transmits(part: Part) -> bool:
-    value = part.value("transmits_torque")
-    if value is not None:
-        part.say("transmits_torque", "taken", "whether the load passes torque on")
-    return value is True
+    elif part.id not in torques:
+        transmits = part.value("transmits_torque")
+        if transmits is not None:
+            part.say("transmits_torque", "taken", "whether the load passes torque on")
+        if transmits is True:
+            torques[part.id] = None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import accumulate
 
 import numpy as np
@@ -18,6 +18,7 @@ SAME_POSITION = 1e-6
 """Length in m up to which the length in the file and the sum of the sections are equal."""
 
 _LENGTHS = ("length", "outer_diameter_begin", "outer_diameter_end")
+_LARGEST = 100.0  # largest length or diameter of a section, m
 
 
 @dataclass(frozen=True)
@@ -80,7 +81,7 @@ class PlacedShaft:
 
 
 def _rows(shaft: Part) -> Iterator[tuple[float, BeamSection]]:
-    """Yield u of the left end and the section of each piece, one after the other; state other places."""
+    """Yield u of the left end and the section of each piece; the account has the places that do not fit."""
     pieces = [
         (part.number("u_coordinate_on_shaft", "left end of the section, mm"), part)
         for part in shaft.children("shaft_section")
@@ -124,9 +125,9 @@ def _size(part: Part, item: str) -> float:
     if value is None and item == "outer_diameter_end":
         value = part.number("outer_diameter_begin", "outer diameter of the section, mm")
         part.say(item, "derived", "as at the begin")
-    if value is None or not 0.0 < value <= 100.0:
+    if value is None or not 0.0 < value <= _LARGEST:
         written = None if value is None else value * 1e3
-        raise part.refusal(item, written, "above 0 mm and at most 100000 mm")
+        raise part.refusal(item, written, f"above 0 mm and at most {1e3 * _LARGEST:.0f} mm")
     return value
 
 
@@ -144,5 +145,10 @@ def _turned(section: BeamSection) -> BeamSection:
     if section.end_outer_diameter is None:
         return section
     outer, bore = section.outer_diameters, section.bore_diameters
-    material = section.youngs_modulus, section.poissons_ratio, section.density
-    return BeamSection(section.length, outer[1], bore[1], *material, outer[0], bore[0])
+    return replace(
+        section,
+        outer_diameter=outer[1],
+        bore_diameter=bore[1],
+        end_outer_diameter=outer[0],
+        end_bore_diameter=bore[0],
+    )

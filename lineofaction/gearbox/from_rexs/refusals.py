@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from lineofaction.gearbox.from_rexs.account import Line
 
 MAX, LONGEST = 100, 2000
-"""Statements of a unit, and characters of one."""
+"""Largest number of sentences, and of characters in a sentence."""
 
 NO_REASON = "no part of the scene is made of it"
 
@@ -40,14 +40,15 @@ def refused_lines(lines: Iterable[Line]) -> list[Line]:
 
 
 def _statement(group: list[Line], reason: str) -> str:
-    lines = {line: "" if line.line is None else f" (line {line.line})" for line in group}
-    named = "; ".join(
-        f"{line_name(line)}{location}{f', {line.item}' if line.item else ''}"
-        for line, location in lines.items()
-    )
+    names = []
+    for line in dict.fromkeys(group):
+        location = "" if line.line is None else f" (line {line.line})"
+        item = f", {line.item}" if line.item else ""
+        names.append(f"{line_name(line)}{location}{item}")
+    text = "; ".join(names)
     room = max(LONGEST - len(reason) - 2, LONGEST // 2)
-    named = named if len(named) <= room else f"{named[: room - 4]} ..."
-    return f"{named}: {reason}"[:LONGEST]
+    text = text if len(text) <= room else f"{text[: room - 4]} ..."
+    return f"{text}: {reason}"[:LONGEST]
 
 
 def line_name(line: Line) -> str:

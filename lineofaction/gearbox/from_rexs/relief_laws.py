@@ -42,7 +42,8 @@ def shape_of(part: Part) -> str:
 def blended_depth(fraction: FloatArray, start: float, end: float) -> FloatArray:
     """Return the depth of a linear relief whose slope grows evenly between two fractions.
 
-    1 at the fraction 1; tangential to the involute at `start`, straight from `end` on.
+    The depth is 1 at the fraction 1. The relief is tangential to the involute at `start` and straight from
+    `end` on.
     """
     inside = np.clip(fraction, start, end)
     rise = 0.5 * (inside - start) ** 2 / (end - start) + np.maximum(fraction - end, 0.0)
@@ -56,13 +57,9 @@ def two_parabolas(
 
     `ends` are the places on either side where the amounts are stated.
     """
-    sides = [
-        amount
-        * np.where(
-            (coordinate - highest) * (end - highest) > 0.0,
-            ((coordinate - highest) / (end - highest)) ** 2,
-            0.0,
-        )
-        for end, amount in zip(ends, amounts, strict=True)
-    ]
-    return np.asarray(sum(sides))
+    depth = np.zeros_like(coordinate)
+    for end, amount in zip(ends, amounts, strict=True):
+        on_side = (coordinate - highest) * (end - highest) > 0.0
+        parabola = ((coordinate - highest) / (end - highest)) ** 2
+        depth = depth + amount * np.where(on_side, parabola, 0.0)
+    return np.asarray(depth)

@@ -74,10 +74,8 @@ class SceneTable:
             **motion.tables(),
             "forces": [force.table(flow.point) for force in forces],
         }
-        named = [
-            (mesh["name"], by_stage[stage.stage.id])
-            for stage, mesh in zip(shafts.stages, meshes, strict=True)
-        ]
+        meshed = zip(shafts.stages, meshes, strict=True)
+        named = [(mesh["name"], by_stage[stage.stage.id]) for stage, mesh in meshed]
         return SceneTable(
             table={key: value for key, value in table.items() if value != []},
             leader=motion.drivers[0] if motion.drivers else None,
@@ -130,7 +128,8 @@ def _gravity(layout: Layout) -> list[float]:
             break
         placement = Placement.of(part) or FIXED
         turned = layout.axes.rotation(placement) @ vector / length * (size or STANDARD_GRAVITY)
-        return [float(value) + 0.0 for value in np.round(turned, 12)]  # no rounding of a rotation, no -0
+        # rounded to what the rotation does not falsify; 0.0 makes 0 of -0
+        return [float(value) + 0.0 for value in np.round(turned, 12)]
     return [0.0, 0.0, 0.0]
 
 

@@ -24,8 +24,8 @@ class SceneAxes:
     def of(cls, root: Placement | None, shafts: Iterable[Placement]) -> SceneAxes:
         """Return the axes for shafts that are parallel to the first of them.
 
-        u of the gear unit, whose place is `root`, is z if the first shaft is parallel to it, in either sense;
-        else that of the first shaft.
+        The gear unit's u is z if the first shaft is parallel to it, in either sense; else the first shaft's u
+        is z. `root` is the placement of the gear unit.
         """
         unit = root or FIXED
         first = next(iter(shafts), unit)
@@ -39,9 +39,10 @@ class SceneAxes:
 
     def sense(self, placement: Placement) -> int:
         """Return +1 where u of a place is along z, -1 where it is against it, 0 where it is neither."""
-        along = float(self.rows[2] @ placement.axes[0])
         across = float(np.linalg.norm(np.cross(self.rows[2], placement.axes[0])))
-        return 0 if across > PARALLEL else (1 if along > 0.0 else -1)
+        if across > PARALLEL:
+            return 0
+        return 1 if self.rows[2] @ placement.axes[0] > 0.0 else -1
 
     def rotation(self, placement: Placement) -> FloatArray:
         """Return the matrix that takes u, v, w of a place to x, y, z."""

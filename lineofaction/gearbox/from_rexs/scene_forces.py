@@ -57,9 +57,9 @@ class SceneForce:
 def scene_forces(
     layout: Layout, points: Sequence[OperatingPoint], shafts: SceneShafts
 ) -> Iterator[SceneForce]:
-    """Yield the external loads that push or tilt a shaft at any of some operating points.
+    """Yield the external loads that push or tilt a shaft at one of the operating points at least.
 
-    The account says which are left out, and why.
+    The account says which loads are left out, and why.
     """
     names = Names()
     acting = {load for point in points for load, wrench in point.forces.items() if any(wrench)}
@@ -81,10 +81,8 @@ def scene_forces(
         if abs(lever) <= SAME_POSITION:
             lever = 0.0
         else:
-            text = (
-                f"{abs(lever) / MM:.6g} mm beyond the end of its shaft: the force is there, with its moment"
-            )
-            part.say("u_coordinate_on_shaft", "derived", text)
+            text = f"{abs(lever) / MM:.6g} mm beyond the end of its shaft"
+            part.say("u_coordinate_on_shaft", "derived", f"{text}: the force is there, with its moment")
         yield SceneForce(names.of(part), shaft.name, position, part.id, rotation, lever)
 
 

@@ -66,16 +66,12 @@ class SceneShafts:
         for placed in layout.shafts.values():
             if placed.part.id not in others and layout.rotor(placed.part.id) not in rotors:
                 placed.part.say("", "refused", "no computed stage or coupling joins it to the train")
-        for stage in (
-            stage_of_shaft for stage_of_shaft in complete if layout.carrier(stage_of_shaft) is not None
-        ):
+        for stage in complete:
+            if layout.carrier(stage) is None:
+                continue
             for gear, shaft in zip(stage.gears, stage.shafts, strict=True):
-                meshing = (
-                    stage_of_shaft
-                    for stage_of_shaft in complete
-                    if shaft.id in {member.id for member in stage_of_shaft.shafts}
-                )
-                if len(set(map(layout.carrier, meshing))) > 1:
+                meshing = [s for s in complete if shaft.id in {member.id for member in s.shafts}]
+                if len({layout.carrier(s) for s in meshing}) > 1:
                     bodies.stubs[gear.id] = _stub(layout, shaft, gear, names)
         _enter_frames(layout, bodies)
         return bodies

@@ -27,7 +27,7 @@ def topographical_modification(flank: PlainFlank, part: Part) -> Modification:
     if amounts is None or faces is None or rolls is None or not len(amounts) == len(faces) == len(rolls):
         counts = [None if entry is None else len(entry) for entry in (faces, rolls, amounts)]
         raise part.refusal(_AMOUNTS, counts, "as many coordinates, diameters and amounts")
-    nodes = dict(zip(zip(rolls, faces, strict=True), amounts, strict=True))
+    nodes = {(roll, face): amount for roll, face, amount in zip(rolls, faces, amounts, strict=True)}
     axes = [np.array(sorted({node[axis] for node in nodes})) for axis in (0, 1)]
     if len(nodes) != len(axes[0]) * len(axes[1]) or min(map(len, axes)) < 2 or len(nodes) != len(amounts):
         raise part.refusal(_AMOUNTS, len(amounts), "on a grid of coordinates and diameters")

@@ -63,7 +63,7 @@ class StepHousing:
 def step_housing(
     scene: SceneInput, solid: StepSolid, material: str, stands_on: str, placement: Placement | None = None
 ) -> StepHousing:
-    """Return the housing of a scene that a solid is, its bearings seated in bores, on its outermost faces.
+    """Return the housing that a solid is in a scene: its bearings are in bores, it stands on outermost faces.
 
     Raises `BadInput`: the scene has no bearings, no placement fits, no bearing is in a bore, or no face looks
     where it should stand.
@@ -78,17 +78,19 @@ def step_housing(
         Default: `best_seating` by the bores.
     """
     bearings = _bearings(scene)
-    seating = (
-        best_seating(solid.bores, bearings) if placement is None else seated(solid.bores, bearings, placement)
-    )
+    if placement is None:
+        seating = best_seating(solid.bores, bearings)
+    else:
+        seating = seated(solid.bores, bearings, placement)
     if not seating.bores:
         remedy = "Leave --origin-mm, --x-axis and --z-axis out: the bores say where it stands."
         raise BadInput.of("--origin-mm", seating.placement.fields, "such that a bearing is in a bore", remedy)
     stand = _stand(solid, seating.placement, stands_on)
+    point = [as_typed(float(np.round(value, 8)) + 0.0, MM) for value in stand.point]
     fields = {
         "material": material,
         **seating.placement.fields,
-        "feet": [{"name": "base", "point_mm": _typed(stand.point), "normal": (stand.normal + 0.0).tolist()}],
+        "feet": [{"name": "base", "point_mm": point, "normal": (stand.normal + 0.0).tolist()}],
         "seats": [_seat(name, seating) for name in seating.bores],
     }
     omitted = tuple(name for name in bearings if name not in seating.bores)
@@ -102,9 +104,8 @@ def _bearings(scene: SceneInput) -> Bearings:
     origin = {shaft.name: np.array(shaft.origin_mm) for shaft in scene.shafts}
     parts: tuple[BushingInput | RollingBearingInput, ...] = (*scene.bushings, *scene.rolling_bearings)
     if not parts:
-        raise BadInput.of(
-            "bushings", [], "given, or rolling_bearings: bores are known by the bearings in them"
-        )
+        bound = "given, or rolling_bearings: bores are known by the bearings in them"
+        raise BadInput.of("bushings", [], bound)
     return {part.name: MM * (origin[part.shaft] + np.array([0.0, 0.0, part.position_mm])) for part in parts}
 
 
@@ -128,11 +129,10 @@ def _stand(solid: StepSolid, placement: Placement, stands_on: str) -> Stand:
     normal = DIRECTIONS[stands_on]
     facing = [face for face in solid.planes if _faces(face, placement, normal)]
     if not facing:
-        sides = [
-            name
-            for name, axis in DIRECTIONS.items()
-            if any(_faces(face, placement, axis) for face in solid.planes)
-        ]
+        sides = []
+        for name, axis in DIRECTIONS.items():
+            if any(_faces(face, placement, axis) for face in solid.planes):
+                sides.append(name)
         bound = f"a side of the solid with a flat face: {', '.join(sides) or 'it has none'}"
         raise BadInput.of("--stands-on", stands_on, bound, "Or write its feet into the scene yourself.")
     heights = [float(placement.points(face.plane.point) @ normal) for face in facing]
@@ -144,7 +144,3 @@ def _stand(solid: StepSolid, placement: Placement, stands_on: str) -> Stand:
 def _faces(face: FlatFace, placement: Placement, normal: FloatArray) -> bool:
     direction = placement.axes @ np.array(face.plane.normal)
     return bool(direction @ normal > 0.0 and np.linalg.norm(np.cross(direction, normal)) < _FACING)
-
-
-def _typed(point: FloatArray) -> list[float]:
-    return [as_typed(float(np.round(value, 8)) + 0.0, MM) for value in point]

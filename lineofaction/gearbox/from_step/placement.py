@@ -82,19 +82,18 @@ def best_seating(bores: Sequence[Bore], bearings: Bearings) -> Seated:
         key=lambda candidate: candidate.order,
     )
     first = best[0]
-    if len(first.bores) < _FEWEST or _shafts(first.bores) < 2:
-        raise BadInput.of("step_file", _listed(bores), _bound(bearings), _WHERE)
+    places = [bore.position for bore in first.bores.values()]
+    shafts = {(round(place[0] / NEAR), round(place[1] / NEAR)) for place in places}
+    if len(first.bores) < _FEWEST or len(shafts) < 2:
+        at = ", ".join(f"{name} at {_in_mm(position)}" for name, position in bearings.items())
+        bound = f"a solid with bores about bearings of at least two shafts, three bearings in all: {at}"
+        raise BadInput.of("step_file", _listed(bores), bound, _WHERE)
     rivals = [candidate for candidate in best if _rival(candidate, first)]
     if rivals:
         ways = "; or ".join(_options(candidate.placement) for candidate in (first, *rivals[:3]))
         bound = f"one that fits the bearings in one way only: {1 + len(rivals)} are equally good"
         raise BadInput.of("step_file", f"{len(first.bores)} bearings in bores", bound, f"Choose: {ways}.")
     return first
-
-
-def _bound(bearings: Bearings) -> str:
-    at = ", ".join(f"{name} at {_in_mm(position)}" for name, position in bearings.items())
-    return f"a solid with bores about bearings of at least two shafts, three bearings in all: {at}"
 
 
 def _listed(bores: Sequence[Bore]) -> str:
@@ -108,14 +107,11 @@ def _in_mm(position: Sequence[float] | FloatArray) -> str:
 
 def _options(placement: Placement) -> str:
     fields = placement.fields or {"origin_mm": [0.0, 0.0, 0.0]}
-    return " ".join(
-        f"--{name.replace('_', '-')} {','.join(f'{value:.9g}' for value in values)}"
-        for name, values in fields.items()
-    )
-
-
-def _shafts(bores: Mapping[str, Bore]) -> int:
-    return len({(round(bore.position[0] / NEAR), round(bore.position[1] / NEAR)) for bore in bores.values()})
+    options = []
+    for name, values in fields.items():
+        digits = ",".join(f"{value:.9g}" for value in values)
+        options.append(f"--{name.replace('_', '-')} {digits}")
+    return " ".join(options)
 
 
 def _rival(other: Seated, first: Seated) -> bool:

@@ -31,7 +31,7 @@ from lineofaction.gearbox.units import DEGREE, MM, UM
 
 GEARS = ("pinion", "wheel")
 _PITCHES = ("pitch_deviation_um", "single_pitch_deviation_um")
-"""Fields for the pitches of a gear, of which it has one: a new one replaces either."""
+"""Fields for the pitches of a gear. A gear has one of them; a new one replaces either."""
 _IN_TOLERANCE = 3.0
 """Tolerance over the standard deviation of a drawn figure. Larger figures are clipped to the tolerance."""
 _ECCENTRICITY = (0.2, 0.8)
@@ -93,7 +93,9 @@ def _with_fields(case: Case, fields: Mapping[str, Mapping[str, Any]]) -> Case:
     """Return the case with some fields of its gears replaced; raises `BadInput` for an impossible pair."""
     content = case_json(case)
     for name, replacement in fields.items():
-        replaced = {*replacement, *(_PITCHES if {*replacement} & {*_PITCHES} else ())}
+        replaced = set(replacement)
+        if replaced & set(_PITCHES):
+            replaced |= set(_PITCHES)
         unchanged = {key: value for key, value in content["pair"][name].items() if key not in replaced}
         content["pair"][name] = {**unchanged, **replacement}
     changed = validated(Case, content)

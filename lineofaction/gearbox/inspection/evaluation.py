@@ -15,8 +15,11 @@ ALPHA = math.sqrt(math.log(2.0) / math.pi)
 CUTOFFS = 30.0
 """Cut-offs over the length of a trace, where none is stated."""
 _MAX_CUTOFFS, _MAX_POINTS = 200, 20_000
+"""Largest number of cut-offs and of points of a trace."""
 _PER_CUTOFF = 2
-"""Steps of the stations at which the filtered trace is kept."""
+"""Stations of the filtered trace in a cut-off."""
+_ROUNDING = 1e-9
+"""Relative rounding of the spacing, and rounding of the ends of an interval, m."""
 
 
 @dataclass(frozen=True)
@@ -41,8 +44,8 @@ def split(
 ) -> Split:
     """Filter a trace and split it.
 
-    Where the machine states an interval, its trace is filtered before it is stored: slope and form are those
-    of the points in the interval, and the filter thins the rest.
+    Where the machine states an interval, it has filtered the trace before it stores it: slope and form are
+    those of the points in the interval, and the filter only thins the rest.
 
     Raises `ValueError`: too few or too many points, points further apart than the cut-off, or one that is too
     short.
@@ -63,11 +66,9 @@ def split(
     if cutoff < length / _MAX_CUTOFFS:
         raise ValueError(f"a trace of at most {_MAX_CUTOFFS} cut-offs; {1e3 * cutoff:.4g} mm is too short")
     spacing = float(np.diff(coordinate).max())
-    if spacing > cutoff * (1.0 + 1e-9):
-        raise ValueError(
-            f"a trace whose points are at most the cut-off {1e3 * cutoff:.4g} mm apart; "
-            f"two are {1e3 * spacing:.4g} mm apart"
-        )
+    if spacing > cutoff * (1.0 + _ROUNDING):
+        bound = f"a trace whose points are at most the cut-off {1e3 * cutoff:.4g} mm apart"
+        raise ValueError(f"{bound}; two are {1e3 * spacing:.4g} mm apart")
     stations = np.linspace(coordinate[0], coordinate[-1], math.ceil(_PER_CUTOFF * length / cutoff) + 1)
     filtered = gaussian(coordinate, values, stations, cutoff)
     if interval is None:
@@ -81,7 +82,7 @@ def split(
 
 def _mean_line(coordinate: FloatArray, values: FloatArray, interval: Interval) -> tuple[float, float, float]:
     """Return slope and value at the beginning of the mean line of an interval, and the form there."""
-    inside = (coordinate >= interval.first - 1e-9) & (coordinate <= interval.last + 1e-9)
+    inside = (coordinate >= interval.first - _ROUNDING) & (coordinate <= interval.last + _ROUNDING)
     if inside.sum() < 3:
         raise ValueError(f"a trace of 3 points where it is evaluated; it has {inside.sum()}")
     way = (coordinate[inside] - interval.first) / interval.length

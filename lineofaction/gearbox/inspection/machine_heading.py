@@ -126,9 +126,7 @@ class Heading:
     def _measure(self, symbol: str, text: str, number: int) -> None:
         values = [float(value) for value in NUMBER.findall(text)]
         if len(values) not in (1, 2):
-            raise ValueError(
-                f"a file with {symbol} [mm] of one or both flanks; line {number} has {text[:40]!r}"
-            )
+            raise ValueError(f"a file with {symbol} [mm] of one or both flanks; {_found(number, text)}")
         pair = (values[0], values[-1])
         if self.dimensions.setdefault(symbol, pair) != pair:
             raise ValueError(f"a file that states {symbol} once; line {number} states it again")
@@ -139,9 +137,8 @@ class Heading:
         if value not in statement.known:
             known = " or ".join(f"{value} ({meaning})" for value, meaning in statement.known.items())
             location = f"line {statement.line} of the heading" if statement.line else "the preamble"
-            raise ValueError(
-                f"a file whose {name} ({statement.subject}, {location}) is {known}; {_found(line, value)}"
-            )
+            bound = f"a file whose {name} ({statement.subject}, {location}) is {known}"
+            raise ValueError(f"{bound}; {_found(line, value)}")
         return statement.known[value]
 
     def _ranges(self) -> Iterator[tuple[tuple[str, Flank], TraceRange]]:
@@ -156,7 +153,8 @@ class Heading:
                     line = max(self.dimension_lines[symbol] for symbol in symbols)
                     raise ValueError(f"a file with {' <= '.join(symbols)}; up to line {line} they are {ends}")
                 reliefs = self.dimensions.get(relief, (-math.inf, -math.inf))
-                yield (kind, flank), TraceRange(begin, first, last, end, min(end, max(last, reliefs[side])))
+                relief_end = min(end, max(last, reliefs[side]))
+                yield (kind, flank), TraceRange(begin, first, last, end, relief_end)
 
 
 def _found(line: int, value: str) -> str:

@@ -1,4 +1,4 @@
-"""Check of the reading of a curve file: slopes, forms and pitches are recomputed, compared to printed ones.
+"""Check of the reading of a curve file: printed slopes, forms and pitches are compared to recomputed ones.
 
 Without printed values the tips of both flanks decide: material is missing there, never in excess.
 """
@@ -11,7 +11,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_contact.geometry import Toothing
-from fe_contact.types import FloatArray
 from lineofaction.gearbox.inspection.machine_file import (
     MATERIAL,
     MachineFile,
@@ -35,6 +34,8 @@ _SYMBOLS |= {"Fb": "F_beta", "fp max": "largest f_p", "fu max": "largest f_u", "
 _SYMBOLS |= {"Fpz/8": "F_pz/8", "Fr": "F_r"}
 _CLEAR_UM, _TIP_POINTS = 1.0, 3
 """Fall of a tip from which it counts, and points at the end of a trace over which it is averaged."""
+_ROUNDING = 1e-9
+"""Rounding of a difference, um, and of the ends of a range, m."""
 Key = tuple[str, Flank | None, int]
 
 
@@ -52,16 +53,22 @@ def judged(file: MachineFile, gear: Toothing, printed: Iterable[Printed] = ()) -
     Raises `ValueError`: nothing is printed of its profiles, and the tips show that their sign is wrong.
     """
     computed = dict(results(file, gear))
-    # value[1:4] is the key of a result: figure, flank, tooth
-    pairs = [(value, computed[value[1:4]]) for value in (*file.printed, *printed) if value[1:4] in computed]
-    differences = [
-        _difference(value, result) for value, result in pairs if abs(value.value - result) > LIMIT_UM + 1e-9
-    ]
+    recomputed = 0
+    judged_flanks = set()
+    differences = []
+    for entry in (*file.printed, *printed):
+        result = computed.get((entry.figure, entry.flank, entry.tooth))
+        if result is None:
+            continue
+        recomputed += 1
+        if entry.figure == "fHa":
+            judged_flanks.add(entry.flank)
+        if abs(entry.value - result) > LIMIT_UM + _ROUNDING:
+            differences.append(_difference(entry, result))
     for table in file.tables:
         differences += _unequal_columns(table)
-    profiles = {value.flank for value, _ in pairs if value.figure == "fHa"}
-    differences += _tips(file, gear, profiles)
-    return Judgement(len(pairs), tuple(differences))
+    differences += _tips(file, gear, judged_flanks)
+    return Judgement(recomputed, tuple(differences))
 
 
 def evaluated(trace: Trace, conventions: Conventions, gear: Toothing) -> tuple[float, float, float]:
@@ -71,14 +78,12 @@ def evaluated(trace: Trace, conventions: Conventions, gear: Toothing) -> tuple[f
     """
     ends, coordinate = trace_range(trace, conventions), places(trace, conventions, gear)
     first, last = (place(trace.kind, end, gear) for end in (ends.first, ends.last))
-    inside = (
-        (coordinate >= first - 1e-9) & (coordinate <= last + 1e-9) & (trace.values != conventions.undefined)
-    )
+    in_range = (coordinate >= first - _ROUNDING) & (coordinate <= last + _ROUNDING)
+    inside = in_range & (trace.values != conventions.undefined)
     values = trace.values[inside]
     if values.size < 3:
-        raise ValueError(
-            f"a file of traces measured where they are evaluated; that of line {trace.line} is not"
-        )
+        bound = "a file of traces measured where they are evaluated"
+        raise ValueError(f"{bound}; that of line {trace.line} is not")
     slope, mean = np.polyfit(coordinate[inside] - first, values, 1)
     rest = values - mean - slope * (coordinate[inside] - first)
     length, sign = last - first, MATERIAL[trace.flank]
@@ -99,14 +104,9 @@ def results(file: MachineFile, gear: Toothing) -> Iterator[tuple[Key, float]]:
         yield ("fu max", table.flank, 0), float(np.abs(single - np.roll(single, 1)).max())
         yield ("Rp", table.flank, 0), float(np.ptp(single))
         yield ("Fp", table.flank, 0), float(np.ptp(np.append(cumulative, 0.0)))
-        yield ("Fpz/8", table.flank, 0), _over_an_eighth(cumulative)
+        eighth = int(cumulative.size / 8.0 + 0.5)  # of the teeth, rounded half up
+        yield ("Fpz/8", table.flank, 0), float(np.abs(np.roll(cumulative, -eighth) - cumulative).max())
         yield ("Fr", None, 0), float(np.ptp(run_out))
-
-
-def _over_an_eighth(cumulative: FloatArray) -> float:
-    """Return the largest sum of pitches over an eighth of the teeth, rounded half up, um."""
-    span = int(cumulative.size / 8.0 + 0.5)
-    return float(np.abs(np.roll(cumulative, -span) - cumulative).max())
 
 
 def _difference(printed: Printed, value: float) -> str:
@@ -128,26 +128,20 @@ def _unequal_columns(table: PitchTable) -> Iterator[str]:
 
 def _tips(file: MachineFile, gear: Toothing, judged_flanks: set[Flank | None]) -> list[str]:
     """Judge the sign of profiles by their tips where no slope is printed."""
-    falls = {
-        flank: [
-            _fall(trace, file.conventions, gear)
-            for trace in file.traces
-            if (trace.kind, trace.flank) == ("profile", flank)
-        ]
-        for flank in MATERIAL
-        if flank not in judged_flanks
-    }
-    for flank, values in falls.items():
-        if max(values, default=0.0) > _CLEAR_UM:
+    unsure = []
+    for flank in MATERIAL:
+        traces = [trace for trace in file.traces if (trace.kind, trace.flank) == ("profile", flank)]
+        if flank in judged_flanks or not traces:
+            continue
+        falls = [_fall(trace, file.conventions, gear) for trace in traces]
+        if max(falls) > _CLEAR_UM:
             raise ValueError(
                 f"a file whose tips fall off on both flanks; those of {flank} profiles rise by "
-                f"{max(values):.1f} µm, and no printed value shows their sign"
+                f"{max(falls):.1f} µm, and no printed value shows their sign"
             )
-    return [
-        f"the sign of {flank} profiles: no value is printed, and no tip falls off"
-        for flank, values in falls.items()
-        if values and min(values) > -_CLEAR_UM
-    ]
+        if min(falls) > -_CLEAR_UM:
+            unsure.append(f"the sign of {flank} profiles: no value is printed, and no tip falls off")
+    return unsure
 
 
 def _fall(trace: Trace, conventions: Conventions, gear: Toothing) -> float:

@@ -121,7 +121,7 @@ class _XmlElement(Element):
         return Attribute(name, kind, value, unit, code, origin, self.extra())
 
     def _scalar(self, name: str, kind_name: str | None) -> tuple[str, Value, None]:
-        """Return kind and value of a scalar, and None for the code; without text the value is None."""
+        """Return kind, value and code of a scalar: the code is None, and so is the value without a text."""
         text = self.content()
         if not text:
             return kind_name or kind_of(name, []), None, None
@@ -302,10 +302,10 @@ def _body(attribute: Attribute) -> str:
     rows: list[Array] = [row for row in value if isinstance(row, tuple)]
     scalars: list[Scalar] = [entry for entry in value if not isinstance(entry, tuple)]
     if code is not None:
-        size = f' rows="{len(rows)}" columns="{len(rows[0]) if rows else 0}"'
-        numbers = [*scalars, *(number for row in rows for number in row)]
-        form, size = ("array", "") if kind.endswith("_array") else ("matrix", size)
-        return f'<{form} code="{code}"{size}>{coded(code, numbers)}</{form}>'
+        text = coded(code, [*scalars, *(number for row in rows for number in row)])
+        size = f'rows="{len(rows)}" columns="{len(rows[0]) if rows else 0}"'
+        matrix = f'<matrix code="{code}" {size}>{text}</matrix>'
+        return f'<array code="{code}">{text}</array>' if kind.endswith("_array") else matrix
     if kind.startswith("array_of_"):
         inside = "".join(f"<array>{_cells(row)}</array>" for row in rows)
         return f"<array_of_arrays>{inside}</array_of_arrays>"

@@ -11,14 +11,7 @@ from dynamics.joints.coupling import Coupling
 from dynamics.shafts.bodies import Inertia
 from dynamics.shafts.rigid_bodies import DiscBody, GearBody
 from lineofaction.gearbox.schemas.declared import declared_in, figures, with_fields
-from lineofaction.gearbox.schemas.model import (
-    BoundaryModel,
-    Coordinate,
-    CouplingRows,
-    Listed,
-    Name,
-    refuse,
-)
+from lineofaction.gearbox.schemas.model import BoundaryModel, Coordinate, CouplingRows, Listed, Name, refuse
 from lineofaction.gearbox.schemas.rules import all_of, exactly_one_of
 
 _PIN = next(figure for figure in figures(PlanetBearing) if figure.name == "radial_error")
@@ -88,9 +81,8 @@ class PlanetsInput(BoundaryModel):
         for field in ("angles_deg", "radial_errors_um", "tangential_errors_um"):
             values = getattr(self, field)
             if values is not None and len(values) != self.number:
-                refuse(
-                    field, list(values), f"a list of {self.number}, one for each planet", "Or leave it out."
-                )
+                bound = f"a list of {self.number}, one for each planet"
+                refuse(field, list(values), bound, "Or leave it out.")
         return self
 
 

@@ -74,12 +74,8 @@ class LoadInput(BoundaryModel):
     def _one_of_both(self) -> Self:
         if (self.torque_n_m is None) == (self.normal_force_n is None):
             value = None if self.torque_n_m is None else list(self.torque_n_m)
-            refuse(
-                "torque_n_m",
-                value,
-                "given, or normal_force_n instead, but not both",
-                "For example torque_n_m = [10, 100, 400].",
-            )
+            bound = "given, or normal_force_n instead, but not both"
+            refuse("torque_n_m", value, bound, "For example torque_n_m = [10, 100, 400].")
         refuse_unsorted("torque_n_m", self.torque_n_m)
         refuse_unsorted("normal_force_n", self.normal_force_n)
         return self
@@ -203,7 +199,7 @@ class Case(BoundaryModel):
         @model_validator(mode="before")
         @classmethod
         def _default_wish(cls, data: Any) -> Any:
-            """Ask for the default tolerance when nothing is requested, so that the echo says so."""
+            """Request the default tolerance where nothing is requested, so that the echo has it."""
             if isinstance(data, dict) and all(data.get(name) is None for name in _WISHES):
                 return {**data, "tolerance": _USUAL_TOLERANCE}
             return data

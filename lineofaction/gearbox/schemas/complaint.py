@@ -14,12 +14,12 @@ WHATS, SPEEDS = ("frequency_hz", "order"), ("road_speed_km_h", "speed_rpm")
 OF_ROAD = ("tire_radius_mm", "final_shaft", "final_ratio")
 """Fields that a road speed needs and a shaft speed does not."""
 
-_MIN = (
-    ("frequency_hz", 20.0, ("Hz", "Lower ones are not heard. In kHz? Then write {:g}.")),
-    ("road_speed_km_h", 1.0, ("km/h", "Write kilometers per hour, such as 40.0.")),
-    ("tire_radius_mm", 50.0, ("mm", "In meters? Then write {:g}.")),
-)
-"""Least values of fields: field, value, and its unit with the remedy for a lower value.
+_MIN = {
+    "frequency_hz": (20.0, "Hz", "Lower ones are not heard. In kHz? Then write {:g}."),
+    "road_speed_km_h": (1.0, "km/h", "Write kilometers per hour, such as 40.0."),
+    "tire_radius_mm": (50.0, "mm", "In meters? Then write {:g}."),
+}
+"""Least value of a field, its unit, and the remedy for a lower value.
 
 A lower value is probably in a unit 1000 times as large; {:g} in a remedy stands for the converted value.
 """
@@ -124,12 +124,13 @@ class ComplaintInput(ComplaintFields):
         if self.frequency_hz is not None and self.road_speed_km_h is None and self.speed_rpm is None:
             bound = "given with a frequency, or road_speed_km_h instead"
             refuse("speed_rpm", None, bound, "For example 3360.0; or give the order.")
-        for name in OF_ROAD if self.road_speed_km_h is None else ():
-            if (value := getattr(self, name)) is not None:
+        for name in OF_ROAD:
+            value = getattr(self, name)
+            if value is not None and self.road_speed_km_h is None:
                 refuse(name, value, "left out without road_speed_km_h", "Give the road speed too.")
         if self.road_speed_km_h is not None and self.tire_radius_mm is None:
             refuse("tire_radius_mm", None, "given with a road speed", "Its rolling radius, such as 310.0.")
-        for name, minimum, (unit, remedy) in _MIN:
+        for name, (minimum, unit, remedy) in _MIN.items():
             value = getattr(self, name)
             if value is not None and value < minimum:
                 refuse(name, value, f"at least {minimum:g} {unit}", remedy.format(1e3 * value))

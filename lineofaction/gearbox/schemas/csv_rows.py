@@ -1,4 +1,4 @@
-"""Rows of a CSV file from outside: a heading, then one row per point; a fault names its line.
+"""Rows of a CSV file from outside: a heading, then one row per point.
 
 Every function raises `ValueError`, which says what the file must hold and which line does not.
 """
@@ -44,7 +44,7 @@ class CsvRows:
 
 
 def csv_rows(text: str, maximum: int) -> CsvRows:
-    """Return the rows of a file of at most so many."""
+    """Return the rows of a file of at most `maximum` points."""
     lines = text.removeprefix("\ufeff").splitlines()
     data_lines = [
         (n, line) for n, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")
@@ -72,12 +72,12 @@ def number_in(row: Cells, column: str, line: int) -> float:
 def complete_grid(nodes: Nodes, names: tuple[str, str]) -> tuple[list[float], list[float], list[list[float]]]:
     """Return the axes of values at nodes, by `names` in messages, and the values in rows."""
     first, second = (sorted({node[axis] for node in nodes}) for axis in (0, 1))
-    missing = len(first) * len(second) - len(nodes)
+    count = len(first) * len(second)
+    missing = count - len(nodes)
     if missing:
         missing_node = next((a, b) for a in first for b in second if (a, b) not in nodes)
         where = ", ".join(f"{name} = {value:.12g}" for name, value in zip(names, missing_node, strict=True))
-        of = len(first) * len(second)
-        raise ValueError(f"a complete grid: {missing} of {of} nodes are missing, the first at {where}")
+        raise ValueError(f"a complete grid: {missing} of {count} nodes are missing, the first at {where}")
     return first, second, [[nodes[a, b] for b in second] for a in first]
 
 

@@ -90,23 +90,23 @@ class WheelInput(ToothingInput):
         if self.bore_diameter_mm is None:
             remedy = "Bore diameter in mm. For example 40.0; or internal = true for a ring gear."
             refuse("bore_diameter_mm", None, "given", remedy)
-        for name in (figure.field for figure in _RING_ONLY):
-            if getattr(self, name) is not None:
+        for figure in _RING_ONLY:
+            value = getattr(self, figure.field)
+            if value is not None:
                 bound = "left out, or given with internal = true"
-                refuse(name, getattr(self, name), bound, "Only a ring gear has it.")
+                refuse(figure.field, value, bound, "Only a ring gear has it.")
         return self
 
     def _check_ring(self) -> None:
         if self.rim_diameter_mm is None:
             remedy = "Outer diameter in mm of the ring gear's rim. For example 212.0."
             refuse("rim_diameter_mm", None, "given with internal = true", remedy)
+        bound = "left out with internal = true"
         if self.bore_diameter_mm is not None:
-            bound = "left out with internal = true"
-            refuse(
-                "bore_diameter_mm", self.bore_diameter_mm, bound, "A ring gear is held by rim_diameter_mm."
-            )
+            remedy = "A ring gear is held by rim_diameter_mm."
+            refuse("bore_diameter_mm", self.bore_diameter_mm, bound, remedy)
         for name in ("blank", "seat", "sector_teeth"):
-            if (value := getattr(self, name)) is not None:
+            value = getattr(self, name)
+            if value is not None:
                 remedy = "The rim of a ring gear is solid, and held rigidly all round."
-                written = value if isinstance(value, int) else "given"
-                refuse(name, written, "left out with internal = true", remedy)
+                refuse(name, value if isinstance(value, int) else "given", bound, remedy)

@@ -33,7 +33,8 @@ def line_of_field(text: str, field: str) -> int | None:
     while field:
         if field in lines:
             return lines[field]
-        field = re.sub(r"(\[\d+\]|\.?[^.\[\]]+)$", "", field)  # the table around it
+        # the table around it; a dot or bracket at the end belongs to a name in quotes
+        field = re.sub(r"(\[\d+\]|\.?[^.\[\]]+|[.\[\]])\Z", "", field)
     return None
 
 

@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import difflib
 import types
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from itertools import islice
-from typing import Annotated, Any, Union, get_args, get_origin
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache
+from itertools import islice, takewhile
+from typing import Annotated, Any, NamedTuple, Union, get_args, get_origin
 
 import annotated_types
 from pydantic import BaseModel, ValidationError
@@ -25,6 +27,10 @@ _LONGEST_NAME = 200
 """Characters of a field's name that a fault repeats: a request may have names of any length."""
 _LONGEST_GUESS = 64
 """Characters of an unknown name that are compared with the known names."""
+_MOST_NAMES = 12
+"""Most fields of a table that a fault lists."""
+_MOST_TABLES = 3
+"""Most tables that a fault names as those of a field; where more have it, none of them is meant."""
 _ALTERNATIVES = ("[key]", "[one]", "[many]")
 """Parts of a `loc` that name a key of a table or an alternative of a union; the user did not write them."""
 
@@ -75,7 +81,11 @@ def fault_of(item: Mapping[str, Any], model: type[BaseModel] | None, loc: Loc) -
         return Fault(field, context["value"], context["bound"], context["suggestion"])
     parent, info = _field_at(model, loc)
     value = None if item["type"] == "missing" else item.get("input")
-    return Fault(_dotted(loc), value, _bound(item, info), _suggestion(item, parent, info, loc))
+    if item["type"] == "extra_forbidden" and parent is not None and model is not None:
+        suggestion = _advice_on_unknown(str(loc[-1]), loc[:-1], model, parent)
+    else:
+        suggestion = _described(info)
+    return Fault(_dotted(loc), value, _bound(item, info), suggestion)
 
 
 def _dotted(loc: Loc) -> str:
@@ -84,12 +94,17 @@ def _dotted(loc: Loc) -> str:
     for part in loc:
         if part in _ALTERNATIVES:
             continue
-        name = str(part)[:_LONGEST_NAME]
+        name = _printable(str(part)[:_LONGEST_NAME])
         if isinstance(part, int):
             text += f"[{name}]"
         else:
             text += f".{name}" if text else name
     return text or "input"
+
+
+def _printable(name: str) -> str:
+    """Return a name with escapes as in Python if it could start a line or command a terminal."""
+    return name if name.isprintable() else name.encode("unicode_escape").decode()
 
 
 def _field_at(model: type[BaseModel] | None, loc: Loc) -> tuple[type[BaseModel] | None, FieldInfo | None]:
@@ -165,15 +180,76 @@ def _bound(item: Mapping[str, Any], info: FieldInfo | None) -> str:
     return texts[kind]() if kind in texts else f"valid ({item.get('msg', '')})"
 
 
-def _suggestion(
-    item: Mapping[str, Any], parent: type[BaseModel] | None, info: FieldInfo | None, loc: Loc
-) -> str:
-    """Return a suggestion: the nearest known name, or the field's description with an example."""
-    if item["type"] != "extra_forbidden" or parent is None:
-        return _described(info)
-    known = list(parent.model_fields)
-    close = difflib.get_close_matches(str(loc[-1])[:_LONGEST_GUESS], known, n=1)
-    return f"Did you mean {close[0]}?" if close else f"Known here: {', '.join(known)}."
+def _advice_on_unknown(name: str, place: Loc, model: type[BaseModel], table: type[BaseModel]) -> str:
+    """Return a suggestion for a name of which the `table` at a place of `model` has no field.
+
+    It names other tables that have such a field, or else the nearest names in this table.
+    """
+    path = [part for part in place if isinstance(part, str) and part not in _ALTERNATIVES]
+    if tables := _nearest_tables(_tables_by_field(model).get(name, ()), path):
+        return f"{name} is a field of {' and '.join(tables)}."
+    close = difflib.get_close_matches(name[:_LONGEST_GUESS], table.model_fields, n=1)
+    manual = getattr(table, "MANUAL", "")
+    return f"Did you mean {close[0]}?" if close else known_names(name, list(table.model_fields), manual)
+
+
+def known_names(name: str, known: Sequence[str], manual: str) -> str:
+    """Return a sentence with the known names, or of many the nearest ones and the `manual` that has all."""
+    if len(known) <= _MOST_NAMES:
+        return f"Known here: {', '.join(known)}."
+    nearest = difflib.get_close_matches(name[:_LONGEST_GUESS], known, n=_MOST_NAMES, cutoff=0.0)
+    return f"Nearest of {len(known)} here: {', '.join(nearest)}. All are in {manual}."
+
+
+class _Table(NamedTuple):
+    """A table of a file: the names of the tables down to it, and whether it is one of a list."""
+
+    path: tuple[str, ...]
+    in_list: bool
+
+    def __str__(self) -> str:
+        """Return the table as its header in TOML."""
+        if not self.path:
+            return "the top level, outside of all tables"
+        name = ".".join(self.path)
+        return f"[[{name}]]" if self.in_list else f"[{name}]"
+
+
+def _nearest_tables(tables: Sequence[_Table], path: Sequence[str]) -> list[str]:
+    """Return the tables that share the longest beginning with a path, if they are few."""
+    shared = [_shared(table.path, path) for table in tables]
+    nearest = [str(table) for table, count in zip(tables, shared, strict=True) if count == max(shared)]
+    return nearest if len(nearest) <= _MOST_TABLES else []
+
+
+def _shared(first: Sequence[str], second: Sequence[str]) -> int:
+    """Return how many names two paths share from the beginning on."""
+    pairs = zip(first, second, strict=False)
+    return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
+
+
+@lru_cache(maxsize=32)
+def _tables_by_field(model: type[BaseModel]) -> Mapping[str, Sequence[_Table]]:
+    """Return the tables below `model` that have a field of each name."""
+    tables: dict[str, list[_Table]] = defaultdict(list)
+    for table, inner in _tables(model, _Table((), in_list=False)):
+        for name in inner.model_fields:
+            tables[name].append(table)
+    return tables
+
+
+def _tables(model: type[BaseModel], table: _Table) -> Iterator[tuple[_Table, type[BaseModel]]]:
+    """Yield a table and those below it, each with its model."""
+    yield table, model
+    for name, info in model.model_fields.items():
+        inner = model_in(info.annotation)
+        if inner is not None:
+            yield from _tables(inner, _Table((*table.path, name), _is_list(info.annotation)))
+
+
+def _is_list(annotation: object) -> bool:
+    """Whether an annotation such as `tuple[Model, ...] | None` has a list."""
+    return get_origin(annotation) in (tuple, list) or any(map(_is_list, get_args(annotation)))
 
 
 def field_remedy(model: type[BaseModel], field: str) -> str:

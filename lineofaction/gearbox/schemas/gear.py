@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Annotated, Self, TypeVar
 
 from pydantic import Field, model_validator
@@ -31,6 +31,7 @@ PitchDeviations = Annotated[Listed[Deviation], Field(max_length=4000)]
 SHARED = tuple(figure for figure in figures(Toothing) if figure.name in MATING)
 """Figures that a case has once, for both gears."""
 _STARTS = {f"{relief}_length_mm": relief for relief in RELIEFS}
+"""Relief by the field of its length."""
 
 
 @with_fields(declared_in(Material))
@@ -59,6 +60,12 @@ class _ToothingFigures(BoundaryModel):
 def _start_fields(relief: str) -> tuple[str, ...]:
     """Return the fields of a gear that state where a relief starts."""
     return tuple(figure.field for figure in figures(DrawingStarts) if figure.name in starts_of(relief))
+
+
+def _replaced_starts(names: Iterable[str]) -> set[str]:
+    """Return the fields of starts that the lengths of reliefs among some fields replace."""
+    reliefs = [_STARTS[name] for name in names if name in _STARTS]
+    return {field for relief in reliefs for field in _start_fields(relief)}
 
 
 @with_fields({**declared_in(FlankModification), **declared_in(DrawingStarts), **parts_in(parts_of(Gear))})
@@ -121,7 +128,7 @@ class GearInput(ToothingInput):
 
 def with_figures(gear: Json, figures: Json) -> Json:
     """Return the table of a gear with figures of its flanks; a length replaces where the relief starts."""
-    replaced = {field for name in figures if name in _STARTS for field in _start_fields(_STARTS[name])}
+    replaced = _replaced_starts(figures)
     return {name: value for name, value in gear.items() if name not in replaced} | figures
 
 
@@ -130,8 +137,8 @@ def with_flank(gear: ToothingT, figures: Mapping[str, object]) -> ToothingT:
 
     A length replaces where the relief starts.
     """
-    replaced = {field for name in figures if name in _STARTS for field in _start_fields(_STARTS[name])}
-    defaults = {field: type(gear).model_fields[field].get_default() for field in replaced}
+    fields = type(gear).model_fields
+    defaults = {field: fields[field].get_default() for field in _replaced_starts(figures)}
     return gear.model_copy(update=defaults | dict(figures))
 
 

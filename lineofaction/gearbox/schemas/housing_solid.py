@@ -35,13 +35,12 @@ def material_by_name(value: object) -> object:
 
 
 def _figures_of(value: object, *, later: bool) -> object:
-    """Return the figures of a material by name, with those added `later` than stored results, or without."""
-    if isinstance(value, str) and value in MATERIALS:
-        declared = (figure for figure in figures(Material) if later or not figure.what.later)
-        return {
-            figure.field: figure.boundary_value(getattr(MATERIALS[value], figure.name)) for figure in declared
-        }
-    return value
+    """Return the figures of a material by name, `later`: with those added after results had been stored."""
+    if not isinstance(value, str) or value not in MATERIALS:
+        return value
+    material = MATERIALS[value]
+    declared = [figure for figure in figures(Material) if later or not figure.what.later]
+    return {figure.field: figure.boundary_value(getattr(material, figure.name)) for figure in declared}
 
 
 MATERIAL: Any = Literal[tuple(MATERIALS)] | HousingMaterialInput

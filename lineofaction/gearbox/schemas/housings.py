@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, ConfigDict, Field, model_validator
@@ -31,9 +32,11 @@ RESPONSES = "frf_file"
 """The field that names the file of measured responses."""
 _MATRICES = ("stiffness_matrix", "damping_matrix", "mass_matrix", "seat_positions_mm", "modal_coordinates")
 _SOLID = ("material", "seats", "feet")
-_SETTINGS = (figure.field for figure in figures(ReductionSettings))
 _AXES = ("x_axis", "z_axis")
-_OF_SOLID = (*_SOLID, "points", "modal_damping", "mesh_unit", "origin_mm", *_SETTINGS)
+_OF_SOLID = (
+    *(*_SOLID, "points", "modal_damping", "mesh_unit", "origin_mm"),
+    *(figure.field for figure in figures(ReductionSettings)),
+)
 _NODES = ("seat_nodes", "point_nodes")
 _BY_MATRICES, _BY_SOLID = "stiffness_matrix", "step_file or mesh_file"
 _FOREIGN = {
@@ -142,13 +145,7 @@ class HousingInput(_MatrixHousing):
         examples=["mm"],
         exclude_if=_is_absent,
     )
-    material: (
-        Annotated[
-            HousingMaterialInput,
-            BeforeValidator(material_by_name, MATERIAL),
-        ]
-        | None
-    ) = Field(
+    material: Annotated[HousingMaterialInput, BeforeValidator(material_by_name, MATERIAL)] | None = Field(
         default=None,
         description="Material of the solid: gray_cast_iron, spheroidal_cast_iron, cast_aluminum, or a table",
         examples=["gray_cast_iron"],
@@ -230,7 +227,7 @@ class HousingInput(_MatrixHousing):
     @model_validator(mode="before")
     @classmethod
     def _bearings_of_seats(cls, data: Any) -> Any:
-        """Fill in the bearings of the seats, so that the echo says them."""
+        """Fill in the bearings of the seats, so that the echo has them."""
         if not isinstance(data, dict) or data.get("bushings"):
             return data
         seats, nodes = data.get("seats"), data.get("seat_nodes")
@@ -248,9 +245,8 @@ class HousingInput(_MatrixHousing):
         every = ("stiffness_matrix", *SOURCES, RESPONSES)
         sources = [name for name in every if getattr(self, name) is not None]
         if len(sources) != 1:
-            bound = (
-                "given, or step_file, mesh_file, stiffness_file, modes_file or frf_file instead, one of them"
-            )
+            others = "step_file, mesh_file, stiffness_file, modes_file or frf_file"
+            bound = f"given, or {others} instead, one of them"
             refuse("stiffness_matrix", sources or None, bound, "See docs/case-file.md.")
         for kind, fields in _FOREIGN[self._kind].items():
             for name in fields:
@@ -279,9 +275,8 @@ class HousingInput(_MatrixHousing):
             nodes = [part.node for part in getattr(self, name)]
             if not nodes:
                 refuse(name, None, "given with frf_file", remedy[name])
-            repeated = next((i for i, node in enumerate(nodes) if node in nodes[:i]), None)
-            if repeated is not None:
-                refuse(f"{name}[{repeated}].node", nodes[repeated], "a node that no other one of them has")
+            for index in _repeated(nodes):
+                refuse(f"{name}[{index}].node", nodes[index], "a node that no other one of them has")
         if self.bushings != tuple(dict.fromkeys(part.bearing for part in self.seat_nodes)):
             bound = "left out with seat_nodes"
             refuse("bushings", list(self.bushings), bound, "The nodes of seats name their bearings.")
@@ -300,9 +295,8 @@ class HousingInput(_MatrixHousing):
             if not getattr(self, name):
                 refuse(name, None, "given with step_file or mesh_file", remedy[name])
         if self.modal_damping and self.loss_factor is not None:
-            refuse(
-                "modal_damping", list(self.modal_damping), "left out with loss_factor", "State one of them."
-            )
+            bound = "left out with loss_factor"
+            refuse("modal_damping", list(self.modal_damping), bound, "State one of them.")
         if self.bushings != tuple(seat.bearing for seat in self.seats):
             refuse("bushings", list(self.bushings), "left out with seats", "Seats name their bearings.")
         if (self.mesh_unit is None) == (self.mesh_file is not None):
@@ -313,9 +307,8 @@ class HousingInput(_MatrixHousing):
         self._check_axes()
         for kind in ("feet", "points"):
             names = [part.name for part in getattr(self, kind)]
-            repeated = next((i for i, name in enumerate(names) if name in names[:i]), None)
-            if repeated is not None:
-                refuse(f"{kind}[{repeated}].name", names[repeated], "a name that no other one of them has")
+            for index in _repeated(names):
+                refuse(f"{kind}[{index}].name", names[index], "a name that no other one of them has")
 
     def _check_axes(self) -> None:
         for axis in _AXES:
@@ -325,6 +318,11 @@ class HousingInput(_MatrixHousing):
         if abs(across) > PERPENDICULAR * math.hypot(*self.file_x_axis) * math.hypot(*self.file_z_axis):
             bound = f"perpendicular to z_axis, {list(self.file_z_axis)}"
             refuse("x_axis", list(self.file_x_axis), bound, "Give both where the file is turned.")
+
+
+def _repeated(values: Sequence[object]) -> list[int]:
+    """Return the indices of the values that are in the list before."""
+    return [index for index, value in enumerate(values) if value in values[:index]]
 
 
 def _bearing(seat: Any) -> str | None:

@@ -14,6 +14,10 @@ from lineofaction.gearbox.schemas.model import BoundaryModel, Listed, Name
 
 Torques = Annotated[Listed[Load], Field(min_length=1, max_length=16)]
 Caller = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,64}$")]
+_CALLER = (
+    "Name of a series of requests within the access key; a later one replaces the one that waits, and stops "
+    "the one that is answered"
+)
 
 
 def _optional_field(name: str) -> Any:
@@ -101,12 +105,7 @@ class LiveInput(BoundaryModel):
         "the request to continue",
         examples=[False],
     )
-    caller: Caller | None = Field(
-        default=None,
-        description="Name of a series of requests within the access key; a later one replaces the one that "
-        "waits, and stops the one that is answered",
-        examples=["slider-1"],
-    )
+    caller: Caller | None = Field(default=None, description=_CALLER, examples=["slider-1"])
 
 
 class PlanRequest(BoundaryModel):
@@ -130,9 +129,4 @@ class PlanRequest(BoundaryModel):
         )
 
     inputs: PlanInputs = Field(description="Inputs of the plan")
-    caller: Caller | None = Field(
-        default=None,
-        description="Name of a series of requests within the access key; a later one replaces the one that "
-        "waits, and stops the one that is answered",
-        examples=["form-1"],
-    )
+    caller: Caller | None = Field(default=None, description=_CALLER, examples=["form-1"])

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from itertools import islice, pairwise
-from typing import TYPE_CHECKING, Annotated, Any, Literal, NoReturn, TypeVar, cast
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NoReturn, TypeVar, cast
 
 from pydantic import BaseModel, ConfigDict, Field, GetCoreSchemaHandler, Strict
 from pydantic_core import CoreSchema, PydanticCustomError, PydanticKnownError, core_schema
@@ -117,6 +117,8 @@ class BoundaryModel(BaseModel):
     """A table of the case or scene file, or a JSON body: unknown fields and NaN are refused."""
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
+    MANUAL: ClassVar[str] = "docs/case-file.md"
+    """Page of the manual with all fields."""
 
     @classmethod
     def __get_pydantic_core_schema__(

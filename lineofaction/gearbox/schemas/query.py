@@ -41,13 +41,9 @@ _Deflections = Annotated[tuple[Annotated[float, _limit("deflection_um")], ...], 
 _Misalignment = Annotated[float, _limit("misalignment_um")]
 _Change = Annotated[float, _limit("center_distance_change_mm")]
 _Misalignments = Annotated[
-    Annotated[_Misalignment, ONE] | Annotated[tuple[_Misalignment, ...], *_List, MANY],
-    ONE_OR_MANY,
+    Annotated[_Misalignment, ONE] | Annotated[tuple[_Misalignment, ...], *_List, MANY], ONE_OR_MANY
 ]
-_Changes = Annotated[
-    Annotated[_Change, ONE] | Annotated[tuple[_Change, ...], *_List, MANY],
-    ONE_OR_MANY,
-]
+_Changes = Annotated[Annotated[_Change, ONE] | Annotated[tuple[_Change, ...], *_List, MANY], ONE_OR_MANY]
 
 
 class QueryInput(BoundaryModel):
@@ -79,10 +75,9 @@ class QueryInput(BoundaryModel):
             if points == 1:
                 points = count
             elif count not in (1, points):
+                bound = f"a list of {points} values, like position, or of one"
                 remedy = "Give as many values in every list, or one for all points."
-                refuse(
-                    name, f"{count} values", f"a list of {points} values, like position, or of one", remedy
-                )
+                refuse(name, f"{count} values", bound, remedy)
         return self
 
 

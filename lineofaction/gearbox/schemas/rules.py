@@ -42,7 +42,7 @@ def absent(*names: str) -> Json:
 
 
 def both(first: Json, second: Json) -> Json:
-    """Return the schema of tables of which both hold."""
+    """Return the schema of tables for which two schemas hold."""
     properties = first["properties"] | second["properties"]
     return {"required": [*first.get("required", ()), *second.get("required", ())], "properties": properties}
 

@@ -163,7 +163,7 @@ class SceneInput(BoundaryModel):
                 if name in names[:index]:
                     refuse(f"{kind}[{index}].name", name, "a name that no other one of them has")
         shafts = [shaft.name for shaft in self.shafts]
-        for field, name in _named(self, "shafts"):
+        for field, name in _named_shafts(self):
             _refuse_unknown(field, name, shafts)
         _refuse_off_shafts(self)
         bushings = [*(part.name for part in self.bushings), *(part.name for part in self.rolling_bearings)]
@@ -190,7 +190,9 @@ _KINDS: dict[str, type[BaseModel]] = {
 
 def _with_field(name: str) -> Iterator[str]:
     """Yield the kinds of parts that have a field of this name."""
-    yield from (kind for kind, part in _KINDS.items() if name in part.model_fields)
+    for kind, part in _KINDS.items():
+        if name in part.model_fields:
+            yield kind
 
 
 def _references() -> dict[str, dict[str, str]]:
@@ -206,19 +208,21 @@ def _references() -> dict[str, dict[str, str]]:
     return {kind: on_shafts.get(kind, {}) | further.get(kind, {}) for kind in on_shafts | further}
 
 
-def _named(scene: SceneInput, target_kind: str) -> Iterator[tuple[str, str]]:
-    """Yield the fields by which parts name parts of a kind, and the names."""
+def _named_shafts(scene: SceneInput) -> Iterator[tuple[str, str]]:
+    """Yield the fields by which parts name shafts, and the names."""
     for kind, fields in _references().items():
         for index, part in enumerate(getattr(scene, kind)):
-            for field, referenced_kind in fields.items():
-                if referenced_kind == target_kind and getattr(part, field) is not None:
-                    yield f"{kind}[{index}].{field}", getattr(part, field)
+            for field, named_kind in fields.items():
+                name = getattr(part, field)
+                if named_kind == "shafts" and name is not None:
+                    yield f"{kind}[{index}].{field}", name
 
 
 def _refuse_complaint(complaint: ComplaintInput, shafts: list[str], bearings: list[str]) -> None:
     """Refuse a complaint that names unknown parts, or that has a torque: the loads of the scene apply."""
     for name, known in (("shaft", shafts), ("final_shaft", shafts), ("bearing", bearings)):
-        if (value := getattr(complaint, name)) is not None:
+        value = getattr(complaint, name)
+        if value is not None:
             _refuse_unknown(f"complaint.{name}", value, known)
     if complaint.torque_n_m is not None:
         bound = "left out: the loads of the scene are those at which it is heard"

@@ -21,21 +21,16 @@ _OF_RUN = both(required("run"), {"properties": {"speed_rpm": {"maxItems": 0}}})
 _OVER_SPEEDS = both(absent("run"), {"required": ["speed_rpm"], "properties": {"speed_rpm": {"minItems": 1}}})
 Factor = Annotated[float, Field(ge=0.05, le=20.0)]
 Factors = Row[Factor]
-RANGES = (
-    "housing_damping",
-    "housing_frequency",
-    "mount_stiffness",
-    "bearing_stiffness",
-    "mesh_damping",
-)
+RANGES = ("housing_damping", "housing_frequency", "mount_stiffness", "bearing_stiffness", "mesh_damping")
 """Copy of the names in `dynamics.noise.GUESSES`. Importing that module takes longer than a service takes to
 start."""
 
 
 class OverSpeeds(BoundaryModel):
-    """Inputs of a study over speeds; `at_rest`: whether it also has an answer without speeds.
+    """Inputs of a study over speeds.
 
-    `usual_speeds` is the number of speeds by default: with fewer, peaks of modes damped by 1 % are missed.
+    `at_rest` says whether the study also has an answer without speeds. `usual_speeds` is the number of speeds
+    by default: with fewer, peaks of modes damped by 1 % are missed.
     """
 
     at_rest: ClassVar[bool] = False

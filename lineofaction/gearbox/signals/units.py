@@ -10,16 +10,14 @@ from lineofaction.gearbox.problems import BadInput
 STANDARD_GRAVITY = 9.80665
 """Standard gravity, m/s^2 (ISO 80000-3)."""
 _TURN = 2.0 * math.pi
-ACCELERATION, VELOCITY, FORCE, LENGTH, SPEED, TORQUE, TIME, ANGLE = (
-    "acceleration",
-    "velocity",
-    "force",
-    "displacement",
-    "speed",
-    "torque",
-    "time",
-    "angle",
-)
+ACCELERATION = "acceleration"
+VELOCITY = "velocity"
+FORCE = "force"
+LENGTH = "displacement"
+SPEED = "speed"
+TORQUE = "torque"
+TIME = "time"
+ANGLE = "angle"
 SI_UNITS = {
     ACCELERATION: "m/s²",
     VELOCITY: "m/s",

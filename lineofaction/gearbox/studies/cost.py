@@ -34,11 +34,9 @@ class Work(NamedTuple):
     def text(self) -> str:
         """Return the work as text: "24 values at 1.6 s", of a single piece "gears 3.2 s"."""
         piece_seconds = engineering(self.piece_seconds, 2)
-        return (
-            f"{self.name} {piece_seconds} s"
-            if self.pieces == 1.0
-            else f"{self.pieces:.0f} {self.name} at {piece_seconds} s"
-        )
+        if self.pieces == 1.0:
+            return f"{self.name} {piece_seconds} s"
+        return f"{self.pieces:.0f} {self.name} at {piece_seconds} s"
 
 
 @dataclass(frozen=True)
@@ -64,9 +62,8 @@ class StudyCost:
         memory = f", {engineering(self.bytes / 2**30, 2)} GiB" if self.bytes else ""
         parts = ", ".join(part.text for part in self._by_name if part.seconds > _SMALL * total)
         hours = f" ({engineering(total / 3600.0, 2)} h)" if total > LONG else ""
-        return (
-            f"about {engineering(total, 2)} CPU s{hours}{memory}: {parts}{self.remedy and f'. {self.remedy}'}"
-        )
+        remedy = f". {self.remedy}" if self.remedy else ""
+        return f"about {engineering(total, 2)} CPU s{hours}{memory}: {parts}{remedy}"
 
     @property
     def _by_name(self) -> Iterator[Work]:
@@ -83,5 +80,5 @@ class StudyCost:
 
 
 def panels_work(housings: int) -> Work:
-    """Return the usual work of making the panels of so many housings."""
+    """Return the usual work of making the panels of some housings."""
     return Work("panels", _PANELS, housings)

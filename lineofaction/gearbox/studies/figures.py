@@ -41,11 +41,11 @@ def figures_of(model: type[Part], *sources: Any, **members: Any) -> Json:
     """Return a result as a model of figures has it.
 
     A figure ``speed_rpm`` is the member ``speed_rpm`` of the first source that has one, or its member
-    ``speed``, which is in SI; or what its `Source` says. A name without unit that several figures share is
-    none of theirs. A part is made of its own source, or of several and a mapping of its own members as a
-    tuple. A number that is not finite is None where None may stand; a figure that may be missing is left out
-    where it is None. Raises `AttributeError`: no source has a figure; `TypeError`: one of `members` is none
-    of the model's figures, or might be several.
+    ``speed``, which is in SI; or what its `Source` says. A name without unit that several figures share
+    stands for none of them. A part is made of its own source, or of a tuple: several sources, then a mapping
+    of the part's members. A number that is not finite is None where None may stand; a figure that may be
+    missing is left out where it is None. Raises `AttributeError`: no source has a figure; `TypeError`: one of
+    `members` is none of the model's figures, or might be several.
 
     Parameters
     ----------
@@ -84,12 +84,14 @@ class _Declared:
         if self.bare in members:
             return members[self.bare], convert
         for candidate in sources:
-            if self.source is None and (value := _member(candidate, self.name)) is not _MISSING:
-                return value, _same
-            value = _member(candidate, self.bare)
             if self.source:
                 of = self.source.of
                 value = of(candidate) if callable(of) else reduce(_member, of.split("."), candidate)
+            else:
+                value = _member(candidate, self.name)
+                if value is not _MISSING:
+                    return value, _same
+                value = _member(candidate, self.bare)
             if value is not _MISSING:
                 return value, convert
         if self.source and self.source.missing is not REQUIRED:
@@ -158,9 +160,8 @@ def _figure(kind: Any, value: Any, convert: Callable[[Any], Any]) -> Any:
         return None
     parts = get_args(kind)
     if isinstance(kind, type) and issubclass(kind, Part):
-        *sources, members = (
-            value if isinstance(value, tuple) and not hasattr(value, "_fields") else (value, {})
-        )
+        is_source = not isinstance(value, tuple) or hasattr(value, "_fields")  # such as a named tuple
+        *sources, members = (value, {}) if is_source else value
         return figures_of(kind, *sources, **members)
     if isinstance(value, np.ndarray) and (not _holds_none(kind) or _is_finite(value)):
         return convert(value).tolist()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,6 @@ from bounds.types import IntArray, Json
 from dynamics.bearings import CatalogLine
 from dynamics.effects.ledger import mechanism_of
 from dynamics.mechanism.bodies import modal_housing
-from dynamics.scene import Scene
 from dynamics.shafts import Shaft
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.convert.declared import in_si
@@ -39,11 +38,10 @@ MAX_FACETS = 2_000
 
 def bodies_of(subject: TabledScene) -> list[Json]:
     """Return the bodies of a scene as plain JSON for its results; copies of planets are bodies too."""
-    scene = subject.scene
-    parts = (*_shafts(scene), *_gears(subject), *_bearings(subject))
-    bodies: list[Json] = [
-        {**asdict(part), "axis": list(part.axis), "rings": [*map(asdict, part.rings)]} for part in parts
-    ]
+    shafts = (_body(SHAFT, shaft.name, shaft, *_sections(shaft)) for shaft in subject.scene.shafts)
+    bodies: list[Json] = []
+    for part in (*shafts, *_gears(subject), *_bearings(subject)):
+        bodies.append({**asdict(part), "axis": list(part.axis), "rings": [*map(asdict, part.rings)]})
     return bodies + [hull.written for hull, _ in _hulls(subject)]
 
 
@@ -55,7 +53,8 @@ def _hulls(subject: TabledScene) -> Iterator[tuple[Hull, IntArray]]:
     from dynamics.housings.drawn_surface import DrawnSurface  # noqa: PLC0415 (start-up time)
 
     for name, housing in subject.housings.items():
-        if (surface := housing.surface) is not None:
+        surface = housing.surface
+        if surface is not None:
             used, corners = np.unique(surface.triangles[:, :3], return_inverse=True)
             fine = DrawnSurface(surface.points[used], corners.reshape(-1, 3))
             drawn, node_index = fine.reduced(MAX_FACETS)
@@ -73,7 +72,8 @@ def surface_motion(subject: TabledScene, freedom: Sequence[str]) -> NDArray[np.f
     parts = {part.name: part for part in subject.scene.housings}
     motions = [np.zeros((0, 3, len(freedom)), dtype=np.float32)]
     for hull, nodes in _hulls(subject):
-        body, motion = subject.housings[hull.name], np.zeros((len(nodes), 3, len(freedom)), dtype=np.float32)
+        body = subject.housings[hull.name]
+        motion = np.zeros((len(nodes), 3, len(freedom)), dtype=np.float32)
         if f"{hull.name}.mode_1" in number and body.surface is not None:
             modal = modal_housing(parts[hull.name])
             columns = [number[f"{hull.name}.{kind}"] for kind in modal.kinds]
@@ -86,17 +86,8 @@ def surface_motion(subject: TabledScene, freedom: Sequence[str]) -> NDArray[np.f
 def _body(kind: str, name: str, shaft: Shaft, *rings: Ring) -> Body:
     """Return a body on a shaft; the positions of `rings` count from the shaft's left end, m."""
     x, y, z = map(float, shaft.origin)
-    at = (
-        Ring(ring.low + z, ring.high + z, ring.inner, ring.outer, ring.outer_high)
-        for ring in rings
-        if ring.high > ring.low
-    )
+    at = (replace(ring, low=ring.low + z, high=ring.high + z) for ring in rings if ring.high > ring.low)
     return Body(kind, name, (x, y), tuple(at))
-
-
-def _shafts(scene: Scene) -> Iterator[Body]:
-    for shaft in scene.shafts:
-        yield _body(SHAFT, shaft.name, shaft, *_sections(shaft))
 
 
 def _sections(shaft: Shaft) -> Iterator[Ring]:
@@ -122,10 +113,12 @@ def _radius(shaft: Shaft, position: float) -> float:
 
 def _gears(subject: TabledScene) -> Iterator[Body]:
     """Yield gears as discs of their face width and tip diameter; ring gears as rings of two tooth heights."""
-    scene, radii = subject.scene, _gear_radii(subject)
+    scene = subject.scene
+    radii = _gear_radii(subject)
     driven = {mesh.driven for mesh in scene.meshes} - {mesh.driver for mesh in scene.meshes}
     for gear in scene.gears:
-        low, high = (gear.position + side * 0.5 * gear.face_width for side in (-1.0, 1.0))
+        low = gear.position - 0.5 * gear.face_width
+        high = gear.position + 0.5 * gear.face_width
         tip, root = radii[gear.name]
         inner, outer = (tip, 2.0 * root - tip) if gear.internal else (0.0, tip)
         kind = WHEEL if gear.name in driven else PINION
@@ -142,7 +135,8 @@ def _gear_radii(subject: TabledScene) -> dict[str, tuple[float, float]]:
     radii = {}
     for gear in scene.gears:
         pitch = gear.base_radius / cosine.get(gear.name, 1.0)
-        module, sign = 2.0 * pitch / gear.teeth, -1.0 if gear.internal else 1.0
+        module = 2.0 * pitch / gear.teeth
+        sign = -1.0 if gear.internal else 1.0
         by_module = (pitch + sign * ADDENDUM * module, pitch - sign * DEDENDUM * module)
         radii[gear.name] = of_cases.get(gear.name, by_module)
     return radii
@@ -156,10 +150,10 @@ def _radii_of_cases(subject: TabledScene) -> dict[str, tuple[float, float]]:
     radii: dict[str, tuple[float, float]] = {}
     for mesh in meshes:
         name = mesh.name if mesh.name in known else tables.get(id(mesh.table), "")
-        if name not in known or not (case := known[name].metadata.case):
+        if name not in known or not known[name].metadata.case:
             continue
         try:
-            pair = gear_pair(validated(Case, case))
+            pair = gear_pair(validated(Case, known[name].metadata.case))
         except BadInput:  # a table of another version, or one that no case here made
             continue
         names = (mesh.driven, mesh.driver) if written[name].wheel_drives else (mesh.driver, mesh.driven)

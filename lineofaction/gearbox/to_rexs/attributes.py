@@ -36,19 +36,18 @@ def with_results(document: Document, results: Results) -> Document:
 def with_case_results(document: Document, number: int, results: Results) -> Document:
     """Return a document with results in a load case of its first spectrum; see `with_results`.
 
-    Without a spectrum the results are the components' own.
-    `number` is the place of the load case in the spectrum, from 1.
+    Without a spectrum the results are those of the components themselves. `number` is the place of the load
+    case in the spectrum, from 1.
     """
     model = document.model
     if not model.spectra:
         return with_results(document, results)
     _refuse_unknown(document, results)
-    first, cases = model.spectra[0], list(model.spectra[0].cases)
+    first = model.spectra[0]
+    cases = list(first.cases)
     case = cases[number - 1]
-    present = {component.id for component in case.components}
-    further = (
-        Component(part.id, part.type) for part in model.components if part.id in results.keys() - present
-    )
+    absent = results.keys() - {component.id for component in case.components}
+    further = (Component(part.id, part.type) for part in model.components if part.id in absent)
     components = tuple(_with(part, results.get(part.id, ())) for part in (*case.components, *further))
     cases[number - 1] = replace(case, components=components)
     spectra = (replace(first, cases=tuple(cases)), *model.spectra[1:])

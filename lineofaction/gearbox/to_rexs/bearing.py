@@ -31,8 +31,7 @@ def bearing_results(part: BearingPart, load: BearingLoad) -> tuple[Attribute, ..
 
     The force on a side is what the bearing exerts on the component of that side: what it carries acts on the
     housing, its reaction on the shaft. The deflection is the displacement of the inner less that of the
-    outer side, clearance included.
-    The load is in x, y, z of the scene.
+    outer side, clearance included. The load is in x, y, z of the scene.
     """
     on_housing, moment = _turned(part, load.force)
     deflection, tilt = _turned(part, load.elastic + load.clearance)
@@ -40,13 +39,11 @@ def bearing_results(part: BearingPart, load: BearingLoad) -> tuple[Attribute, ..
     shaft, shaft_tilt = deflection + seat, tilt + seat_tilt
     shaft_side, housing_side = ("inner", "outer") if part.shaft_inside else ("outer", "inner")
     inward = 1.0 if part.shaft_inside else -1.0
+    deflections = zip(_DEFLECTIONS, deflection, strict=True)
     return (
         *_loads(shaft_side, -on_housing, -moment),
         *_loads(housing_side, on_housing, moment),
-        *(
-            calculated(name, inward * value / UM, "mum")
-            for name, value in zip(_DEFLECTIONS, deflection, strict=True)
-        ),
+        *(calculated(name, inward * value / UM, "mum") for name, value in deflections),
         *_along("angular_deflection_in", inward * tilt, "rad", "vw"),
         *_displacements(shaft_side, shaft, shaft_tilt),
         *_displacements(housing_side, seat, seat_tilt),

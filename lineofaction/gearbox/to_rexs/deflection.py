@@ -25,9 +25,9 @@ _Part = tuple[int, tuple[Attribute, ...]]
 def deflected(document: Document, unit: OpenedUnit, result: GearboxDeflection) -> Document:
     """Return the document, in the newest version of REXS, with the results of a deflection as calculated.
 
-    Results stand in the load cases of the document's first spectrum, of a document without one at the
-    components themselves. Raises `BadInput`: the result is of another scene or of other load cases, or a case
-    was not found.
+    Results stand in the load cases of the document's first spectrum. In a document without a spectrum they
+    stand at the components themselves. Raises `BadInput`: the result is of another scene or of other load
+    cases, or a case was not found.
 
     Parameters
     ----------

@@ -24,7 +24,7 @@ from lineofaction.gearbox.units import UM
 POSITIONS = 64
 """Positions of the curves in one base pitch."""
 
-_N_PER_MM = 1e3
+_N_PER_MM = 1e3  # N/m in a N/mm
 
 
 def exported(
@@ -57,31 +57,26 @@ def exported(
     return with_results(newest, results)
 
 
-def _stage_results(
-    pair: ParallelAxes, database: SteDatabase, torque: float | None = None
-) -> tuple[Attribute, ...]:
+def _stage_results(pair: ParallelAxes, database: SteDatabase, torque: float | None) -> tuple[Attribute, ...]:
     """Return the attributes of a ``cylindrical_stage``.
 
     REXS has no attribute for the transmission error, so that it gets custom ones. It is the displacement
     along the transverse line of action, > 0 where the driven gear lags. It is given over positions of the
     driving gear in transverse base pitches; at 0 the reference pair touches at the pitch point.
 
-    `database` is a table of the gears of `pair`. `torque` is that on gear 1, N m; by default the largest of
-    the table.
+    `database` is a table of the gears of `pair`. `torque` is that on gear 1, N m; None: the largest of the
+    table.
     """
     position = np.arange(POSITIONS * database.period) / POSITIONS
     load = float(database.torque[-1]) if torque is None else torque
     with boundary_errors():
         curve = database.curve(torque=load, at=position)
         stiffness = np.asarray(database.force_at(position, curve.ste).stiffness)
-    return (*_contact_ratios(pair), *_mesh(curve, stiffness))
-
-
-def _contact_ratios(pair: ParallelAxes) -> tuple[Attribute, ...]:
     return (
         calculated("radial_contact_ratio", pair.transverse_contact_ratio, "none"),
         calculated("overlap_contact_ratio", pair.overlap_ratio, "none"),
         calculated("total_contact_ratio", pair.total_contact_ratio, "none"),
+        *_mesh(curve, stiffness),
     )
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from fe_contact.geometry import Gear, GearBlank, GearPair
 from fe_contact.material import Material
+from fe_contact.types import FloatArray
 from lineofaction.hardcases.contact.contact_case import (
     NOMINAL_TORQUE,
     ContactCase,
@@ -49,7 +50,7 @@ def _plastic_on_steel() -> Sequence[Measured]:
         *soundness(problem, solution),
         Measured(
             "mean STE over that of two gears of the mean compliance",
-            float(solution.deflection[:, 1].mean() / halves[:, 1].mean()),
+            solution.deflection[:, 1].mean() / halves[:, 1].mean(),
             maximum=1.0,
             minimum=0.9,
         ),
@@ -118,6 +119,6 @@ def _on_rim(modules: float) -> GearPair:
     return GearPair(nominal_gear(), wheel)
 
 
-def _mean(case: ContactCase, position: np.ndarray[tuple[int], np.dtype[np.float64]]) -> float:
+def _mean(case: ContactCase, position: FloatArray) -> float:
     """Return the mean STE at the highest load, m."""
     return float(case.ste(position)[:, -1].mean())

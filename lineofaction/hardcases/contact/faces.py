@@ -18,7 +18,7 @@ from lineofaction.hardcases.contact.contact_case import (
     off,
 )
 from lineofaction.hardcases.contact.laws import soundness
-from lineofaction.hardcases.scene import Measured, Scenes
+from lineofaction.hardcases.scene import Measured, Scenes, largest
 
 SCENES = Scenes("contact")
 
@@ -61,7 +61,7 @@ def _five_per_cent() -> Sequence[Measured]:
         Measured(
             "centroid over half the face width, to the side that comes closer, least",
             # positive misalignment opens the gap towards larger face positions: the load is at the lower ones
-            float(-_centroid(problem, solution).max() / (0.5 * _WIDE)),
+            -_centroid(problem, solution).max() / (0.5 * _WIDE),
             minimum=0.9,
         ),
         Measured(
@@ -71,15 +71,11 @@ def _five_per_cent() -> Sequence[Measured]:
         ),
         Measured(
             "centroids off their mirror images, m",
-            float(np.abs(_centroid(mirrored_problem, mirrored) + _centroid(problem, solution)).max()),
+            largest(_centroid(mirrored_problem, mirrored) + _centroid(problem, solution)),
             maximum=1e-9,
         ),
-        Measured(
-            "rigid gap of plain flanks off the wedge's, m", float(np.abs(plain + wedge).max()), maximum=1e-12
-        ),
-        Measured(
-            "first touch later than the wedge's, m", float((solution.no_load + wedge).max()), maximum=1e-12
-        ),
+        Measured("rigid gap of plain flanks off the wedge's, m", largest(plain + wedge), maximum=1e-12),
+        Measured("first touch later than the wedge's, m", (solution.no_load + wedge).max(), maximum=1e-12),
     )
 
 
@@ -94,20 +90,14 @@ def _single_slice() -> Sequence[Measured]:
     """Spread the load evenly: one slice in three dimensions, then three, then nine."""
     full = contact_case(nominal_pair(), model="3d")
     position = even_positions(24)
-    curves = []
-    for slices in (1, 3, 9):
-        fewer = ContactCase(full.contact.in_slices(slices), full.model)
-        problem, solution = fewer.solve(position)
-        curves.append(solution.deflection[:, 0])
-        if slices == 1:
-            figures = soundness(problem, solution, 8)
-    freed = float(np.min(curves[1] - curves[2]))
+    solved = [ContactCase(full.contact.in_slices(slices), full.model).solve(position) for slices in (1, 3, 9)]
+    one, three, nine = (solution.deflection[:, 0] for _, solution in solved)
     return (
-        *figures,
-        Measured("least drop of STE as three slices are divided, m", freed, minimum=0.0),
+        *soundness(*solved[0], 8),
+        Measured("least drop of STE as three slices are divided, m", np.min(three - nine), minimum=0.0),
         Measured(
             "mean of one slice over nine",
-            float(curves[0].mean() / curves[2].mean()),
+            one.mean() / nine.mean(),
             maximum=1.05,
             minimum=0.95,
         ),
@@ -133,7 +123,7 @@ def _duplicates() -> Sequence[Measured]:
         ),
         Measured(
             "asked together or alone, difference in m",
-            float(np.abs(together.deflection[:, 0] - single).max()),
+            largest(together.deflection[:, 0] - single),
             maximum=1e-20,
         ),
     )

@@ -21,8 +21,7 @@ from lineofaction.hardcases.contact.contact_case import (
     nominal_pair,
 )
 from lineofaction.hardcases.contact.laws import soundness
-from lineofaction.hardcases.contact.tip_edges import largest
-from lineofaction.hardcases.scene import Measured, Scenes
+from lineofaction.hardcases.scene import Measured, Scenes, largest
 
 SCENES = Scenes("contact")
 
@@ -65,13 +64,14 @@ def _gap_beyond_deflection() -> Sequence[Measured]:
     elastic = float((solution.deflection - solution.no_load[:, None]).max())
     # an infinite gap is no candidate at all; twice the deflection is out of reach for certain
     far = np.isfinite(c.gap) & (c.gap - solution.no_load[:, None] > 2.0 * elastic)
+    at_each_load = far[:, None, :].repeat(case.plan.load.size, axis=1)  # (positions, loads, candidates)
     without = solve_contact(_with_gap(problem, np.where(far, np.inf, c.gap)), case.plan.load)
     wider = solve_contact(_with_gap(problem, np.where(far, c.gap + 1.0, c.gap)), case.plan.load)
     return (
         *soundness(problem, solution),
-        Measured("candidates out of reach", float(far.sum()), minimum=50.0),
+        Measured("candidates out of reach", far.sum(), minimum=50.0),
         Measured("largest gap over the elastic deflection", float(c.gap[far].max()) / elastic),
-        Measured("force on them, N", float(solution.force[far[:, None, :].repeat(3, 1)].max()), maximum=0.0),
+        Measured("force on them, N", solution.force[at_each_load].max(), maximum=0.0),
         Measured("STE without them, change in m", largest(without.deflection - solution.deflection), 0.0),
         Measured("STE with 1 m more gap, change in m", largest(wider.deflection - solution.deflection), 0.0),
     )
@@ -107,11 +107,11 @@ def _pitch_error_beyond_deflection() -> Sequence[Measured]:
     share = solution.force[:, 0].max(axis=1) / solution.force[:, 0].sum(axis=1)
     return (
         *soundness(problem, solution),
-        Measured("share of the tooth that is ahead, least", float(share[ahead].min()), minimum=1.0),
+        Measured("share of the tooth that is ahead, least", share[ahead].min(), minimum=1.0),
         Measured("its STE off the shifted curve, m", largest(change[ahead] + shift), maximum=1e-15),
         Measured("STE far from it, change in m", largest(change[separate]), maximum=1e-15),
         Measured("all teeth ahead: STE off the shifted curve, m", largest(shifted), maximum=1e-15),
-        Measured("positions with the one tooth alone", float(ahead.sum()), minimum=5.0),
+        Measured("positions with the one tooth alone", ahead.sum(), minimum=5.0),
     )
 
 
@@ -146,7 +146,7 @@ def _noisy_flanks() -> Sequence[Measured]:
         Measured("added STE over the most removed", float(added.max()) / high, maximum=1.0),
         Measured(
             "least growth of STE with load, m",
-            float(np.diff(solution.deflection, axis=1).min()),
+            np.diff(solution.deflection, axis=1).min(),
             minimum=1e-12,
         ),
     )

@@ -19,7 +19,7 @@ from lineofaction.hardcases.contact.contact_case import (
     off,
 )
 from lineofaction.hardcases.contact.laws import soundness
-from lineofaction.hardcases.scene import Measured, Scenes
+from lineofaction.hardcases.scene import Measured, Scenes, largest
 
 SCENES = Scenes("contact")
 
@@ -49,15 +49,15 @@ def _handover_at_ratio(ratio: float) -> Sequence[Measured]:
     shares = loaded.sum(axis=2) / case.plan.load
     return (
         *soundness(problem, solution),
-        Measured("contact ratio", pair.transverse_contact_ratio, ratio + 1e-9, ratio - 1e-9),
+        Measured("contact ratio", pair.transverse_contact_ratio, maximum=ratio + 1e-9, minimum=ratio - 1e-9),
         Measured(
             "pairs that touch, mean over positions, off the contact ratio",
             abs(_mean_pairs(case) - ratio),
             maximum=2.0 / _COUNTED,
         ),
         Measured("STE one pitch further, relative change", off(ends[1], ends[0]), maximum=CYCLIC),
-        Measured("load shares off one", float(np.abs(shares - 1.0).max()), maximum=1e-12),
-        Measured("smallest share", float(loaded.min()), minimum=0.0),
+        Measured("load shares off one", largest(shares - 1.0), maximum=1e-12),
+        Measured("smallest share", loaded.min(), minimum=0.0),
     )
 
 

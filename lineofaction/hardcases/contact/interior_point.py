@@ -167,8 +167,7 @@ def _strips(problem: Problem, half: Array) -> tuple[Array, Array]:
     slope, tilted, mean = _pieces(about, middle, half)
     at_edge = (middle == low) | (middle == high)
     # Where a strip ends at a break, the means of g' and g' sin t both vary with the root of the distance to
-    # the
-    # break, and so linearly with each other: the second mean is interpolated to where the first is zero.
+    # the break, so linearly with each other: the second is interpolated to where the first is zero.
     below, above = (np.clip(middle + side * 1e-8 * half, low, high) for side in (-1.0, 1.0))
     slope_below, tilted_below, _ = _pieces(about, below, half)
     slope_above, tilted_above, _ = _pieces(about, above, half)

@@ -31,9 +31,9 @@ def soundness(
     points = [tuple(map(int, np.unravel_index(i, solution.status.shape))) for i in chosen]
     differences = [_disagreement(problem, solution, position, load) for position, load in points]
     return (
-        Measured("failed points", float(np.count_nonzero(solution.status)), maximum=0.0),
-        Measured("largest residual", float(solution.residuals.max()), maximum=LARGEST_RESIDUAL),
-        Measured("most iterations", float(solution.iterations.max()), maximum=MAX_ITERATIONS),
+        Measured("failed points", (solution.status != 0).sum(), maximum=0.0),
+        Measured("largest residual", solution.residuals.max(), maximum=LARGEST_RESIDUAL),
+        Measured("most iterations", solution.iterations.max(), maximum=MAX_ITERATIONS),
         Measured("two solvers apart", max(differences), maximum=LARGEST_DISAGREEMENT),
     )
 

@@ -45,17 +45,17 @@ def _seven_decades() -> Sequence[Measured]:
         *soundness(problem, solution),
         Measured(
             "least growth of STE from load to load",
-            float(np.min(elastic[:, 1:] / elastic[:, :-1])),
+            np.min(elastic[:, 1:] / elastic[:, :-1]),
             minimum=1.0 + 1e-9,
         ),
-        Measured("largest growth of the tangent compliance", float(stiffening.max()), maximum=1e-9),
+        Measured("largest growth of the tangent compliance", stiffening.max(), maximum=1e-9),
         Measured(
             "mean STE at nominal load, against a table of that load alone",
             mean_off(at_nominal, nominal),
             maximum=5e-3,
         ),
         Measured("peak-to-peak likewise", range_off(at_nominal, nominal), maximum=2e-2),
-        Measured("points whose contact outgrew its patch", float(solution.beyond.sum())),
+        Measured("points whose contact outgrew its patch", solution.beyond.sum()),
     )
 
 
@@ -81,10 +81,8 @@ def _zero_load() -> Sequence[Measured]:
         refused = error.field
     return (
         *soundness(problem, solution),
-        Measured("STE left at 1e-15 of the load, over its nominal value", float(rest.max()), 1e-12, 0.0),
-        Measured("table at zero force against the rigid gap, m", float(np.ptp(at_rest - lift_off)), 1e-16),
-        Measured("force at lift-off, N", float(table.force_at(table.position, lift_off).force.max()), 0.0),
-        Measured(
-            "zero in a list of torques refused by its name", float(refused == "torques[0]"), minimum=1.0
-        ),
+        Measured("STE left at 1e-15 of the load, over its nominal value", rest.max(), 1e-12, 0.0),
+        Measured("table at zero force against the rigid gap, m", np.ptp(at_rest - lift_off), maximum=1e-16),
+        Measured("force at lift-off, N", table.force_at(table.position, lift_off).force.max(), maximum=0.0),
+        Measured("zero in a list of torques refused by its name", refused == "torques[0]", minimum=1.0),
     )

@@ -21,7 +21,7 @@ from lineofaction.hardcases.contact.contact_case import (
     off,
 )
 from lineofaction.hardcases.contact.laws import soundness
-from lineofaction.hardcases.scene import Measured, Scenes
+from lineofaction.hardcases.scene import Measured, Scenes, largest
 
 SCENES = Scenes("contact")
 
@@ -77,9 +77,7 @@ def _slight_helix() -> Sequence[Measured]:
     return (
         *soundness(problem, solution, compared=8),
         Measured("mean STE against the spur pair's", mean_off(curve, plain), maximum=2e-3),
-        Measured(
-            "least slip below the spur pair's curve, m", float(np.max(plain.min() - curve)), maximum=5e-8
-        ),
+        Measured("least slip below the spur pair's curve, m", np.max(plain.min() - curve), maximum=5e-8),
         Measured("left hand against right hand", off(mirrored, curve), maximum=1e-9),
     )
 
@@ -103,7 +101,7 @@ def _steep_helix() -> Sequence[Measured]:
         Measured("total contact ratio", right.pair.total_contact_ratio, minimum=2.0),
         Measured("left hand against right hand", off(mirrored, curve), maximum=1e-9),
         Measured("STE one pitch further", off(next_pitch.deflection, curve), maximum=1e-9),
-        Measured("load shares off one", float(np.abs(shares - 1.0).max()), maximum=1e-12),
+        Measured("load shares off one", largest(shares - 1.0), maximum=1e-12),
     )
 
 

@@ -9,7 +9,6 @@ import numpy as np
 from scipy.optimize import brentq
 
 from fe_contact.geometry import FlankModification, Gear, GearPair
-from fe_contact.types import FloatArray
 from lineofaction.hardcases.contact.contact_case import (
     NOMINAL_TORQUE,
     ContactCase,
@@ -21,7 +20,7 @@ from lineofaction.hardcases.contact.contact_case import (
     range_off,
 )
 from lineofaction.hardcases.contact.laws import soundness
-from lineofaction.hardcases.scene import Measured, Scenes
+from lineofaction.hardcases.scene import Measured, Scenes, largest
 
 SCENES = Scenes("contact")
 
@@ -46,8 +45,8 @@ def _tip_edge_at_high_load() -> Sequence[Measured]:
     relief = (without_edges.deflection - solution.deflection) / solution.deflection
     return (
         *soundness(problem, solution),
-        Measured("least relief by the tip edges", float(relief.min()), minimum=-1e-12),
-        Measured("largest relief by the tip edges", float(relief.max()), minimum=0.02),
+        Measured("least relief by the tip edges", relief.min(), minimum=-1e-12),
+        Measured("largest relief by the tip edges", relief.max(), minimum=0.02),
         _smoothness(case),
     )
 
@@ -109,7 +108,7 @@ def _rounded_tips() -> Sequence[Measured]:
     *rises, turned = (float(np.min(deep - shallow)) for shallow, deep in pairwise(curves))
     return (
         *soundness(problem, solution),
-        Measured("no rounding against none given, m", float(np.ptp(curves[0] - plain)), maximum=0.0),
+        Measured("no rounding against none given, m", np.ptp(curves[0] - plain), maximum=0.0),
         Measured("1 nm of rounding, largest change of STE, m", largest(curves[1] - plain), maximum=1e-9),
         Measured("least rise of STE with the depth, m", min(rises), minimum=-1e-14),
         Measured("least rise with a normal that turns, over STE", turned / float(plain.max()), minimum=-0.02),
@@ -132,8 +131,3 @@ def _smoothness(case: ContactCase) -> Measured:
         curve = case.ste(even_positions(count))[:, -1]
         steps.append(largest(np.diff(curve, append=curve[0])))
     return Measured("largest step of STE, at a quarter of the spacing", steps[1] / steps[0], maximum=0.4)
-
-
-def largest(values: FloatArray) -> float:
-    """Return the largest size of the values."""
-    return float(np.abs(values).max())

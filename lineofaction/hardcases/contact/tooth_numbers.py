@@ -47,7 +47,7 @@ def _undercut_pinion() -> Sequence[Measured]:
     pairs = float((alone.force[:, 0] > 0.0).sum(axis=1).mean())
     return (
         *soundness(problem, solution),
-        Measured("undercut", float(pair.pinion.form_point.undercut), minimum=1.0),
+        Measured("undercut", pair.pinion.form_point.undercut, minimum=1.0),
         Measured("contact ratio", pair.transverse_contact_ratio),
         Measured("mean STE, draft against fine mesh", errors[0], maximum=1e-2),
         Measured("mean STE, standard against fine mesh", errors[1], maximum=3e-3),
@@ -92,7 +92,7 @@ def _twenty_to_two_hundred() -> Sequence[Measured]:
         Measured(
             "STE with the wheel driving, relative difference",
             off(driving.deflection, driven.deflection),
-            CYCLIC,
+            maximum=CYCLIC,
         ),
-        Measured("positions compared", float(problem.candidates.position.size), minimum=50.0),
+        Measured("positions compared", problem.candidates.position.size, minimum=50.0),
     )

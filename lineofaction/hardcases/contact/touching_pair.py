@@ -46,19 +46,21 @@ def _relief_that_touches() -> Sequence[Measured]:
     rise, widening = np.diff(ste), np.diff(reliefs)
     rounding = 1e-14 * ste.max()
     problem, touching = solved[_NUDGES.size // 2]
-    raised = problem, solve_contact(problem, touching.load[-1] * _LOADS)
-    checks = [soundness(*solution) for solution in (*solved, raised)]
+    raised = solve_contact(problem, touching.load[-1] * _LOADS)
+    checks = [soundness(*solution) for solution in (*solved, (problem, raised))]
     # of two pairs that may carry, the entering one has the second largest force
-    entering = np.sort(raised[1].force[0], axis=1)[:, -2] / raised[1].load
+    force = np.sort(touching.force[0, 0])
+    entering = np.sort(raised.force[0], axis=1)[:, -2] / raised.load
     return (
-        *(max(column, key=lambda m: m.value) for column in zip(*checks, strict=True)),
+        # the worst of each figure over all solutions
+        *(max(figures, key=lambda figure: figure.value) for figures in zip(*checks, strict=True)),
         Measured("relief found, µm", 1e6 * exact),
         Measured("its gap off the closed form of a straight ramp", _off_the_ramp(case, exact), maximum=1e-3),
-        Measured("share of the touching pair", _share(touching), maximum=1e-9),
-        Measured("its share a millionth below the load at which it touches", float(entering[1]), maximum=0.0),
-        Measured("a millionth above it, raised to it", float(entering[2]), maximum=1e-6, minimum=1e-9),
-        Measured("least rise of STE with relief, m", float((rise + rounding).min()), minimum=0.0),
-        Measured("largest rise over the relief's", float(((rise - rounding) / widening).max()), maximum=1.0),
+        Measured("share of the touching pair", force[-2] / force.sum(), maximum=1e-9),
+        Measured("its share a millionth below the load at which it touches", entering[1], maximum=0.0),
+        Measured("a millionth above it, raised to it", entering[2], maximum=1e-6, minimum=1e-9),
+        Measured("least rise of STE with relief, m", (rise + rounding).min(), minimum=0.0),
+        Measured("largest rise over the relief's", ((rise - rounding) / widening).max(), maximum=1.0),
     )
 
 
@@ -102,9 +104,3 @@ def _off_the_ramp(case: ContactCase, relief: float) -> float:
     radius = 1.0 / (1.0 / first + 1.0 / second)
     lag = (height - 0.5 * radius * slope**2) / (1.0 - roll_slope)
     return abs(float(problem.candidates.gap[0, entering]) / lag - 1.0)
-
-
-def _share(solution: ContactSolution) -> float:
-    """Return the load share of the pair with the second largest force."""
-    force = np.sort(solution.force[0, 0])
-    return float(force[-2] / force.sum())

@@ -35,8 +35,9 @@ _BACKLASH, _RIPPLE = 20e-6, 15e-6
 """Backlash and amplitude of the transmission error, m."""
 _PERIODS, _SAMPLES = 60, 64
 """Mesh periods of the rattle, and samples in each."""
-_IMPACTS, _SPEED, _TOLERANCE = 40, 0.1, 1e-9
-"""Number of impacts, speed in the gap in m/s, and tolerance of the integrators, m."""
+_IMPACTS = 40
+_SPEED = 0.1  # in the gap, m/s
+_TOLERANCE = 1e-9  # of the integrators, m
 
 
 @SCENES.add(
@@ -64,9 +65,9 @@ def _no_mean_load() -> Sequence[Measured]:
         *common_figures(runs, scene),
         Measured("half a period later mirrored in the gap, relative", mirrored, maximum=1e-3),
         Measured("a period later the same, m", abs(float(last[-1] - last[0])), maximum=1e-8),
-        Measured("share of time on the driving flank", float(np.mean(drive > 0.0)), minimum=0.1),
-        Measured("share of time on the coast flank", float(np.mean(back > 0.0)), minimum=0.1),
-        Measured("both flanks at once, samples", float(np.count_nonzero((drive > 0.0) & (back > 0.0))), 0.0),
+        Measured("share of time on the driving flank", np.mean(drive > 0.0), minimum=0.1),
+        Measured("share of time on the coast flank", np.mean(back > 0.0), minimum=0.1),
+        Measured("both flanks at once, samples", ((drive > 0.0) & (back > 0.0)).sum(), maximum=0.0),
     )
 
 
@@ -95,9 +96,9 @@ def _reversal() -> Sequence[Measured]:
         Measured(
             "force of the coast flank at the end, off the load",
             abs(back[-1] * BASE_RADIUS / TORQUE - 1.0),
-            1e-4,
+            maximum=1e-4,
         ),
-        Measured("both flanks at once, samples", float(np.count_nonzero((force > 0.0) & (back > 0.0))), 0.0),
+        Measured("both flanks at once, samples", ((force > 0.0) & (back > 0.0)).sum(), maximum=0.0),
     )
 
 

@@ -36,8 +36,9 @@ SCENES = Scenes("dynamics")
 _WAVE, _DAMPING = 1e-6, 0.05
 """Amplitude of the teeth's error, m, and damping ratio."""
 
-_STEP_TIME, _STEP_TORQUE, _RISE = 1e-3, 150.0, 1e-7
-"""Time of the torque step, s, its size, N m, and the time in which it rises, s."""
+_STEP_TIME = 1e-3  # s
+_STEP_TORQUE = 150.0  # size of the torque step, N m
+_RISE = 1e-7  # time in which the torque rises, s
 
 _MANY, _ROUNDING = 10_000_000, 1e-9
 """Steps of the longest run, and the relative energy that rounding may add."""
@@ -142,7 +143,7 @@ def _tolerances() -> Sequence[Measured]:
         measured = (*common_figures(runs, scene), off_closed_form(runs, scene, exact))
         figures += [replace(figure, name=f"{share:g}: {figure.name}") for figure in measured]
         figures += [
-            Measured(f"{share:g}: steps, {method}", float(run.statistics.accepted))
+            Measured(f"{share:g}: steps, {method}", run.statistics.accepted)
             for method, run in zip(METHODS, runs.both, strict=True)
         ]
     return figures
@@ -153,7 +154,7 @@ def _many_steps(method: str) -> Sequence[Measured]:
     tenth, drift = (_drift(method, steps) for steps in (_MANY // 10, _MANY))
     in_proportion = drift / (10.0 * tenth + _ROUNDING)
     return (
-        Measured("steps", float(_MANY)),
+        Measured("steps", _MANY),
         Measured("energy drift", drift, maximum=1e-6),
         Measured("drift over ten times that of a tenth of the steps", in_proportion, maximum=1.1),
     )

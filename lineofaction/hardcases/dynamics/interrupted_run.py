@@ -50,10 +50,10 @@ def _resumed_run() -> Sequence[Measured]:
         # an odd value of `contact` says that the driving flank touches
         impacts = int(np.count_nonzero(np.diff(unbroken.contact[0] % 2.0) == 1.0))
         figures += [
-            Measured(f"{method}: times it was taken up again", float(legs - 1), minimum=5.0),
-            Measured(f"{method}: impacts on the driving flank", float(impacts), minimum=10.0),
-            Measured(f"{method}: series with a bit that differs", float(len(changed)), maximum=0.0),
-            Measured(f"{method}: steps more or fewer", float(extra), maximum=0.0),
+            Measured(f"{method}: times it was taken up again", legs - 1, minimum=5.0),
+            Measured(f"{method}: impacts on the driving flank", impacts, minimum=10.0),
+            Measured(f"{method}: series with a bit that differs", len(changed), maximum=0.0),
+            Measured(f"{method}: steps more or fewer", extra, maximum=0.0),
         ]
     return figures
 

@@ -33,8 +33,10 @@ from lineofaction.hardcases.scene import Measured, Scenes
 
 SCENES = Scenes("dynamics")
 
-_ZETA, _MEAN, _AMPLITUDE, _TEETH = 0.05, 0.1, 0.05, 20
-"""z, Fm, Fa, and the number of teeth: the gear turns at W / teeth."""
+_ZETA = 0.05  # z
+_MEAN = 0.1  # Fm
+_AMPLITUDE = 0.05  # Fa
+_TEETH = 20  # the gear turns at W / teeth
 
 _SLOWEST = 0.5
 """Lowest frequency W."""

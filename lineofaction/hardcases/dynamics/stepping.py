@@ -20,7 +20,7 @@ from lineofaction.hardcases.dynamics.oscillators import (
     spring,
     torsional,
 )
-from lineofaction.hardcases.scene import Measured, Scenes
+from lineofaction.hardcases.scene import Measured, Scenes, largest
 
 SCENES = Scenes("dynamics")
 
@@ -60,12 +60,12 @@ def _rest_to_rest() -> Sequence[Measured]:
         Measured(
             "at rest at the end, off the static deflection, m",
             abs(float(result.dynamic_transmission_error[0, -1]) - rest),
-            1e-10,
+            maximum=1e-10,
         ),
-        Measured("speeds at the end, rad/s", float(np.abs(result.speed[:, -1]).max()), maximum=1e-6),
+        Measured("speeds at the end, rad/s", largest(result.speed[:, -1]), maximum=1e-6),
         Measured(
             "largest speed of the driven gear over the drive's",
-            float(np.abs(result.speed[1]).max()) / top,
+            largest(result.speed[1]) / top,
             maximum=1.5,
             minimum=1.0,
         ),
@@ -99,11 +99,11 @@ def _contact_lost() -> Sequence[Measured]:
     bend = np.diff(error, 2)[flying] * rate**2 / fall
     return (
         *common_figures(runs, scene),
-        Measured("share of time out of contact", float(np.mean(force == 0.0)), minimum=0.05),
+        Measured("share of time out of contact", np.mean(force == 0.0), minimum=0.05),
         Measured("largest force over the load's", float(force.max()) * BASE_RADIUS / TORQUE, minimum=2.0),
         Measured(
             "in flight: acceleration over that of the load alone, largest off",
-            float(np.abs(bend - 1.0).max()),
-            1e-3,
+            largest(bend - 1.0),
+            maximum=1e-3,
         ),
     )

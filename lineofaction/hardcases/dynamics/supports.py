@@ -19,7 +19,7 @@ from dynamics.types import FloatArray
 from lineofaction.hardcases.dynamics.bouncing_mass import bounce, cycle
 from lineofaction.hardcases.dynamics.laws import METHODS, common_figures, rms, run_both
 from lineofaction.hardcases.dynamics.oscillators import BASE_RADIUS, RPM, damping_of, spring, torsional
-from lineofaction.hardcases.scene import Measured, Scenes
+from lineofaction.hardcases.scene import Measured, Scenes, largest
 
 SCENES = Scenes("dynamics")
 
@@ -61,16 +61,15 @@ def _unlike_bushings() -> Sequence[Measured]:
     radial = np.hypot(start_force[:, 0], start_force[:, 1])
     system = assemble(scene)
     start = static_equilibrium(system)
-    # the work of the mesh force over the distance by which the gears move apart strains the bushings: F s =
-    # x' K x
+    # the mesh force strains the bushings by its work over the distance s between the gears: F s = x' K x
     distance = float(start.displacement @ system.arrays.stiffness @ start.displacement) / force
     expected = force / 2.0 * (1.0 / _SOFT + 1.0 / _HARD)
     return (
         *common_figures(runs, scene),
-        Measured("share of the load on a bushing, off 1/2", float(np.abs(radial / force - 0.5).max()), 1e-6),
+        Measured("share of the load on a bushing, off 1/2", largest(radial / force - 0.5), maximum=1e-6),
         Measured("gears moved apart over the closed form, off one", abs(distance / expected - 1.0), 1e-6),
-        Measured("steps, implicit", float(runs.implicit.statistics.accepted)),
-        Measured("steps, explicit", float(runs.explicit.statistics.accepted)),
+        Measured("steps, implicit", runs.implicit.statistics.accepted),
+        Measured("steps, explicit", runs.explicit.statistics.accepted),
     )
 
 
@@ -102,10 +101,9 @@ def _unloaded_in_clearance() -> Sequence[Measured]:
     """Throw an unloaded disc to and fro in the clearance of its bearing."""
     natural = math.sqrt(_WALL / _DISC.mass)
     duration = 0.5 * _BOUNCES * cycle(2.0 * _CLEARANCE, _SPEED, natural)
-    # An error of one tolerance in the depth of an impact, _SPEED / natural, changes the speed by this part of
-    # it.
+    # relative error of the speed by an error of one tolerance in the depth of an impact, _SPEED / natural
     speed_error = _TOLERANCE * natural / _SPEED
-    # The flight after the k-th impact is off by k of these; over n impacts that is n^2 / 2 of them.
+    # the flight after the k-th impact is off by k of these; over n impacts that is n^2 / 2 of them
     path_error = 2.0 * _CLEARANCE * speed_error * _BOUNCES**2 / 2.0
     paths, energies = [], []
     for method in METHODS:
@@ -117,7 +115,7 @@ def _unloaded_in_clearance() -> Sequence[Measured]:
         energies.append((rms(path - exact), abs(float(at_end - at_start - run.work.sum()))))
     start = static_equilibrium(assemble(_disc(duration, Integration())))
     return (
-        Measured("equilibrium of the unloaded disc found", float(start.status.usable), minimum=1.0),
+        Measured("equilibrium of the unloaded disc found", start.status.usable, minimum=1.0),
         Measured(
             "two integrators apart, over a tolerance per impact and what flights make of it",
             rms(paths[0] - paths[1]) / (2.0 * path_error), maximum=1.0,

@@ -29,8 +29,9 @@ SCENES = Scenes("dynamics")
 _RATIO, _SPEED = 1e4, 50.0
 """Ratio of the moments of inertia, and speed of the train at the start, rad/s."""
 
-_BEGIN, _RISE, _STEP = 1e-3, 1e-6, 20.0
-"""Begin and duration of the torque's rise, s, and its size, N m."""
+_BEGIN = 1e-3  # of the torque's rise, s
+_RISE = 1e-6  # duration of the rise, s
+_STEP = 20.0  # size of the rise, N m
 
 
 @SCENES.add(

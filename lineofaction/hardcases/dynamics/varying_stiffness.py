@@ -8,10 +8,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from dynamics.assembly.assemble import assemble
-from dynamics.periodic import (
-    find_orbit,
-    periodic_problem,
-)
+from dynamics.periodic import find_orbit, periodic_problem
 from dynamics.scene import Integration
 from dynamics.types import FloatArray
 from lineofaction.hardcases.dynamics.laws import METHODS, common_figures, run_both
@@ -50,13 +47,13 @@ def _threefold() -> Sequence[Measured]:
                 Measured(
                     f"{name}: trace of the monodromy off Mathieu's",
                     abs(float(np.trace(matrix) - np.trace(exact))),
-                    1e-4,
+                    maximum=1e-4,
                 ),
                 Measured(
                     f"{name}: determinant off one", abs(float(np.linalg.det(matrix)) - 1.0), maximum=1e-6
                 ),
             ]
-        figures.append(Measured(f"{frequency:g}: largest multiplier by Mathieu", float(sizes[0])))
+        figures.append(Measured(f"{frequency:g}: largest multiplier by Mathieu", sizes[0]))
     scene = torsional(
         changing_spring(_RATIO), speed=_FREQUENCIES[0] * NATURAL / TEETH, damping=damping_of(0.05),
         duration=0.02, integration=Integration(tolerance=1e-10),

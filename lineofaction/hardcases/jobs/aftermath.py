@@ -117,11 +117,11 @@ def _left(service: JobService) -> tuple[Measured, ...]:
     while (left := len(list((service.directory / "work").iterdir()))) and time.monotonic() < end:
         time.sleep(0.05)
     return (
-        Measured("processes left", float(len(service.processes())), maximum=0.0),
-        Measured("workspaces left", float(left), maximum=0.0),
-        Measured("jobs that never end", float(waiting), maximum=0.0),
-        Measured("job table sound", float(sound), minimum=1.0),
-        Measured("turns of the scheduler that failed", float(failed), maximum=0.0),
+        Measured("processes left", len(service.processes()), maximum=0.0),
+        Measured("workspaces left", left, maximum=0.0),
+        Measured("jobs that never end", waiting, maximum=0.0),
+        Measured("job table sound", sound, minimum=1.0),
+        Measured("turns of the scheduler that failed", failed, maximum=0.0),
     )
 
 
@@ -136,10 +136,8 @@ def _others(
     in_turn = (str(after.started) < str(disturbed.finished)) == overtaken
     off = largest_difference(service.errors(after), before) if after.status == "successful" else np.inf
     return (
-        Measured("results served of a job that failed", float(served), maximum=0.0),
-        Measured(
-            "jobs behind it end as they should, in their turn", float(as_wished and in_turn), minimum=1.0
-        ),
+        Measured("results served of a job that failed", served, maximum=0.0),
+        Measured("jobs behind it end as they should, in their turn", as_wished and in_turn, minimum=1.0),
         Measured("next job off the same undisturbed, m", off, maximum=0.0),
     )
 

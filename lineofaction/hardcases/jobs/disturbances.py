@@ -4,11 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from lineofaction.hardcases.jobs.aftermath import (
-    LARGE,
-    LONG,
-    aftermath,
-)
+from lineofaction.hardcases.jobs.aftermath import LARGE, LONG, aftermath
 from lineofaction.hardcases.scene import Measured, Scenes
 
 SCENES = Scenes("service")
@@ -34,8 +30,8 @@ def _out_of_memory() -> Sequence[Measured]:
     job = outcome.job
     is_explained = f"{MEMORY_MB} MB (LOA_MEMORY_LIMIT_MB)" in job.message and "coarser level" in job.message
     return (
-        Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), minimum=1.0),
-        Measured("names the limit and what to try", float(is_explained), minimum=1.0),
+        Measured("failed at the first attempt", outcome.ended_as("failed", 1), minimum=1.0),
+        Measured("names the limit and what to try", is_explained, minimum=1.0),
         *outcome.figures,
     )
 
@@ -57,10 +53,10 @@ def _past_the_deadline() -> Sequence[Measured]:
     job = outcome.job
     is_explained = f"The deadline of {allowed[0]:g} s (LOA_DEADLINE_S) passed" in job.message
     return (
-        Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), minimum=1.0),
+        Measured("failed at the first attempt", outcome.ended_as("failed", 1), minimum=1.0),
         Measured(
             "names the deadline and what to try",
-            float(is_explained and "coarser" in job.message),
+            is_explained and "coarser" in job.message,
             minimum=1.0,
         ),
         Measured("deadline, s", allowed[0]),

@@ -51,9 +51,9 @@ def _disk_full() -> Sequence[Measured]:
     is_explained = "no space left" in outcome.job.message and "Make room" in outcome.job.message
     off = np.inf if outcome.errors is None else largest_difference(outcome.errors, python_ste())
     return (
-        Measured("workers without room", float(len(limited)), 1.0, 1.0),
-        Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), minimum=1.0),
-        Measured("names the cause and what to try", float(is_explained), minimum=1.0),
+        Measured("workers without room", len(limited), 1.0, 1.0),
+        Measured("failed at the first attempt", outcome.ended_as("failed", 1), minimum=1.0),
+        Measured("names the cause and what to try", is_explained, minimum=1.0),
         Measured("submitted again with room, off that of Python, m", off, maximum=0.0),
         *outcome.figures,
     )
@@ -86,7 +86,7 @@ def _greedy_mesher() -> Sequence[Measured]:
     is_explained = "ran out of memory" in outcome.job.message and "coarser level" in outcome.job.message
     return (
         Measured("memory the mesher was seen with, MB", maximum[0], maximum=float(MEMORY_MB), minimum=64.0),
-        Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), minimum=1.0),
-        Measured("names the mesher's memory and what to try", float(is_explained), minimum=1.0),
+        Measured("failed at the first attempt", outcome.ended_as("failed", 1), minimum=1.0),
+        Measured("names the mesher's memory and what to try", is_explained, minimum=1.0),
         *outcome.figures,
     )

@@ -35,27 +35,24 @@ def _change_figure(result: FlankChange) -> Figure:
         caption=f"{len(result.deviation)} pairs, deviating alike before (dashed) and after. All orders of "
         f"{result.mesh} together: {quantity}.",
         alternative=f"The median change is {median[worst]:+.1f} dB at {_loads(result)[worst]}.",
-        content=(_levels_panel(result), _change_panel(result)),
+        content=_distributions(result),
     )
 
 
-def _levels_panel(result: FlankChange) -> Panel:
-    lines = []
+def _distributions(result: FlankChange) -> tuple[Panel, Panel]:
+    """Draw the distributions of the levels before and after, and of their change, by load."""
+    levels, changes = [], []
     for k, load in enumerate(_loads(result)):
         color = palette.ordered(k, result.torque.size)
-        lines.append(_distribution(f"{load}, before", result.before.pairs[:, k, TOTAL], color, dashed=True))
-        lines.append(_distribution(load, result.after.pairs[:, k, TOTAL], color))
+        levels.append(_distribution(f"{load}, before", result.before.pairs[:, k, TOTAL], color, dashed=True))
+        levels.append(_distribution(load, result.after.pairs[:, k, TOTAL], color))
+        changes.append(_distribution(load, result.change[:, k, TOTAL], color))
     limit = () if result.requirement is None else (Reference("requirement", result.requirement),)
-    return Panel(Axis(result.unit), Axis("share of all pairs"), tuple(lines), limit, title="Level")
-
-
-def _change_panel(result: FlankChange) -> Panel:
-    lines = tuple(
-        _distribution(load, result.change[:, k, TOTAL], palette.ordered(k, result.torque.size))
-        for k, load in enumerate(_loads(result))
-    )
-    return Panel(
-        Axis("change, dB"), Axis("share of all pairs"), lines, (Reference("as before", 0.0),), title="Change"
+    zero = (Reference("as before", 0.0),)
+    share = Axis("share of all pairs")
+    return (
+        Panel(Axis(result.unit), share, tuple(levels), limit, title="Level"),
+        Panel(Axis("change, dB"), share, tuple(changes), zero, title="Change"),
     )
 
 
@@ -115,13 +112,10 @@ def _text(result: FlankChange) -> Iterator[Table | str]:
 
 
 def _page(result: FlankChange) -> Page:
-    heads = (
-        Headline("verdict", result.verdict(), result.required()),
-        Headline(GETS_LOUDER, _loudest(result)),
-    )
-    section = Section(
-        "What it brings", "", (_change_figure(result),), (_levels_table(result), _influence_table(result))
-    )
+    verdict = Headline("verdict", result.verdict(), result.required())
+    heads = (verdict, Headline(GETS_LOUDER, _loudest(result)))
+    tables = (_levels_table(result), _influence_table(result))
+    section = Section("What it brings", "", (_change_figure(result),), tables)
     lead = f"Flanks of {result.mesh} over {len(result.deviation)} pairs within their tolerances"
     return Page("Change of flanks", lead, heads, (section,), tuple(result.partings()))
 

@@ -32,23 +32,9 @@ from lineofaction.report.comparison.measured import (
 from lineofaction.report.comparison.of_tables import compare_tables
 from lineofaction.report.comparison.recorded import Measurement, compare_recording
 from lineofaction.report.comparison.universal_files import read_universal
-from lineofaction.report.document import (
-    file_attributes,
-    of_the_store,
-    page_json,
-    read_result,
-    stored_study,
-)
+from lineofaction.report.document import file_attributes, of_the_store, page_json, read_result, stored_study
 from lineofaction.report.drawing import palette
-from lineofaction.report.drawing.figure import (
-    Axis,
-    Dash,
-    Figure,
-    Line,
-    Panel,
-    category_lines,
-    number,
-)
+from lineofaction.report.drawing.figure import Axis, Dash, Figure, Line, Panel, category_lines, number
 from lineofaction.report.drawing.page import Headline, Page, Section
 from lineofaction.report.run.levels import DEPTH, largest_orders, order_blocks
 from lineofaction.report.run.signals import ORDERS, amplitude_spectrum, spectrum_window
@@ -56,6 +42,7 @@ from lineofaction.report.run.sound import RunSignal, run_signals, sound_of
 from lineofaction.report.run.view import SCALES, RunView, along_direction, decibels, run_axis, selected_signal
 
 _DASHES: tuple[Dash, ...] = ("solid", "dash")
+_HIGHEST_ORDER = ORDERS + 0.5  # end of the axis of a spectrum
 _ERRORS = {"bearing_force": "bearing_force_orders", "dynamic_transmission_error": "transmission_error_orders"}
 """Series whose orders have stated errors, and their name in the receipt of a run."""
 
@@ -131,9 +118,8 @@ def _levels(sides: tuple[_Side, ...], orders: tuple[int, ...]) -> Figure:
         lines += category_lines(along, names, cuts, dash=dash)
     signal = sides[0].signal
     change = 20.0 * math.log10(float(overall[-1].max()) / float(overall[0].max()))
-    styles = ". ".join(
-        f"{dash.capitalize()}: {side.name}" for side, dash in zip(sides, _DASHES, strict=False)
-    )
+    dashed = zip(sides, _DASHES, strict=False)  # of one side the first dash alone
+    styles = ". ".join(f"{dash.capitalize()}: {side.name}" for side, dash in dashed)
     return Figure(
         key="levels",
         title=f"Overall level and mesh orders of the {signal.name}",
@@ -150,7 +136,7 @@ def _spectra(sides: tuple[_Side, ...], measured: MeasuredOrders | None) -> Figur
         window = spectrum_window(side.run.time)
         frequency, amplitude = amplitude_spectrum(side.seen, side.signal, window)
         order = frequency / float(np.median(side.run.mesh_frequency[side.signal.mesh, window]))
-        inside = order <= ORDERS + 0.5
+        inside = order <= _HIGHEST_ORDER
         drawn = np.maximum(amplitude[inside], 1e-12)  # the axis is logarithmic
         lines.append(Line(side.name, order[inside], drawn, color, width=1.2))
     signal = sides[0].signal
@@ -158,22 +144,22 @@ def _spectra(sides: tuple[_Side, ...], measured: MeasuredOrders | None) -> Figur
     caption += f"{signal.scale} values."
     if measured is not None:
         measured.require(signal.quantity.unit)
-        inside = measured.order <= ORDERS + 0.5
+        inside = measured.order <= _HIGHEST_ORDER
         order, amplitude = measured.order[inside], measured.amplitude[inside]
         lines.append(Line("measured", order, amplitude, palette.INK, "dash", 1.2))
         caption += " Measured: as read."
     top = max(float(line.y.max()) for line in lines)
-    peaks = [
-        f"{line.name} {number(line.y.max(), 3)} at order {float(line.x[np.argmax(line.y)]):.2f}"
-        for line in lines
-    ]
+    peaks = []
+    for line in lines:
+        order_of_peak = float(line.x[np.argmax(line.y)])
+        peaks.append(f"{line.name} {number(line.y.max(), 3)} at order {order_of_peak:.2f}")
     y = Axis(f"amplitude, {signal.unit}", "log", (1e-5 * top, 3.0 * top))
     return Figure(
         key="spectra",
         title=f"Spectra of the {signal.name} near the end of the runs",
         caption=caption,
         alternative=f"Largest lines, {signal.unit}: {'; '.join(peaks)}.",
-        content=(Panel(Axis("mesh order", limits=(0.0, ORDERS + 0.5)), y, tuple(lines)),),
+        content=(Panel(Axis("mesh order", limits=(0.0, _HIGHEST_ORDER)), y, tuple(lines)),),
     )
 
 
@@ -200,7 +186,8 @@ def compare(
     counts = len(results), len(measured)
     if counts not in {(1, 1), (2, 0), (2, 1)}:
         raise BadInput.of("files", ", ".join(map(str, files)) or None, _BOUND, _REMEDY)
-    if measured and (recording := _recording(measured[0])) is not None:
+    recording = _recording(measured[0]) if measured else None
+    if recording is not None:
         return _compared_with_recording(results, recording, view, measurement)
     return _compare_results(results, view, measured, torque)
 
@@ -222,27 +209,29 @@ def _compared_with_recording(
     runs = [(name, run) for name, run in results_read.items() if isinstance(run, RunResult) and run.mesh]
     if len(results_read) != 1 or not runs:
         bound = "one run with a mesh beside a recording over time"
-        raise BadInput.of(
-            "files", ", ".join(results), bound, "For example: loa compare run.nc test.uff --rpm 3000"
-        )
-    warnings = dict.fromkeys(one["message"] for file in results.values() for one in stamped(file))
-    page = compare_recording(runs[0], recording, view, measurement)
+        remedy = "For example: loa compare run.nc test.uff --rpm 3000"
+        raise BadInput.of("files", ", ".join(results), bound, remedy)
+    return _with_warnings(compare_recording(runs[0], recording, view, measurement), results)
+
+
+def _with_warnings(page: Page, results: dict[str, Path]) -> Page:
+    """Return a page whose alarms begin with the warnings of some result files."""
+    warnings = dict.fromkeys(entry["message"] for file in results.values() for entry in stamped(file))
     return replace(page, alarms=(*(f"Warning: {text}" for text in warnings), *page.alarms))
 
 
 def _compare_folders(folders: Sequence[Path], view: RunView, torque: float | None) -> Page:
     by_folder = {name: _comparable(folder) for name, folder in named_files(folders)}
     first, second = by_folder.values()
-    if not (shared := [name for name in first if name in second]):
+    shared = [name for name in first if name in second]
+    if not shared:
         text = "; ".join(f"{folder} has {', '.join(files) or 'none'}" for folder, files in by_folder.items())
         kind = "two folders with an STE database or a run of one name"
         raise BadInput.of("files", text, kind, f"Name two files. {_REMEDY}")
-    pages = {
-        name.replace("_", " "): _compare_results(
-            {folder: files[name] for folder, files in by_folder.items()}, view, torque=torque
-        )
-        for name in shared
-    }
+    pages = {}
+    for name in shared:
+        results = {folder: files[name] for folder, files in by_folder.items()}
+        pages[name.replace("_", " ")] = _compare_results(results, view, torque=torque)
     unpaired = sorted(first.keys() ^ second.keys())
     rest = f"; in one folder alone: {', '.join(unpaired)}" if unpaired else ""
     page = bound(pages)
@@ -260,9 +249,7 @@ def _compare_results(
 ) -> Page:
     """Compare result files by their names; parameters and errors as for `compare`."""
     read = {name: read_result(file) for name, file in results.items()}
-    warnings = dict.fromkeys(one["message"] for file in results.values() for one in stamped(file))
-    page = _page(read, measured, view, torque)
-    return replace(page, alarms=(*(f"Warning: {text}" for text in warnings), *page.alarms))
+    return _with_warnings(_page(read, measured, view, torque), results)
 
 
 def _page(

@@ -19,6 +19,7 @@ _OUT = 10.0
 _DB = 10.0 / math.log(10.0)
 """Level in dB per unit of a small relative change of power."""
 _SIGMAS = 2.0
+"""Standard deviations in a stated error."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +56,7 @@ class LevelDifference:
         return "the measured one is louder" if self.value > 0.0 else "the computed one is louder"
 
     def between(self, unit: str) -> str:
-        """Both levels, and by how much the measured one differs."""
+        """Return both levels, and by how much the measured one differs."""
         first, second = self.levels
         return f"{first:.1f} to {second:.1f} dB re 1 {unit} rms, by {self.written}"
 
@@ -77,11 +78,11 @@ def level_differences(
     span = shared_frequencies(*sides)
     if span is None:
         return ()
-    powers = [[order_power(side, order, span, overlap) for side in sides] for order in orders]
-    return tuple(
-        _difference(order, (first, second), receipt[order], span)
-        for order, (first, second) in zip(orders, powers, strict=True)
-    )
+    differences = []
+    for order in orders:
+        first, second = (order_power(side, order, span, overlap) for side in sides)
+        differences.append(_difference(order, (first, second), receipt[order], span))
+    return tuple(differences)
 
 
 def _difference(
@@ -102,7 +103,7 @@ def _difference(
 def _largest(powers: tuple[OrderPower, OrderPower], span: tuple[float, float]) -> float:
     """Return the largest difference at one speed, dB, where both stand out of the noise; NaN if nowhere."""
     grid = np.linspace(*span, PLACES)
-    first, second = (np.interp(grid, one.frequency, one.clean) for one in powers)
+    first, second = (np.interp(grid, power.frequency, power.clean) for power in powers)
     above_noise = (first > _OUT * powers[0].noise) & (second > _OUT * powers[1].noise)
     if not above_noise.any():
         return math.nan
@@ -110,7 +111,7 @@ def _largest(powers: tuple[OrderPower, OrderPower], span: tuple[float, float]) -
 
 
 def _level(mean: OrderPower) -> float:
-    """Return the level of an order, dB; of one that is not seen the level below which it lies."""
+    """Return the level of an order, dB; an order in noise has the level below which it lies."""
     return 10.0 * math.log10(max(mean.power, _SIGMAS * mean.deviation, 1e-300))
 
 
@@ -124,11 +125,11 @@ def levels_table(differences: Sequence[LevelDifference], names: tuple[str, str],
         "Levels of mesh orders over the shared speeds",
         differences,
         {
-            "mesh order": lambda one: str(one.order),
-            f"{names[0]}, {unit}": lambda one: f"{one.levels[0]:.2f}",
-            f"{names[1]}, {unit}": lambda one: f"{one.levels[1]:.2f}",
-            "measured less computed, dB": lambda one: one.written,
-            "largest at one speed, dB": lambda one: "" if math.isnan(one.largest) else f"{one.largest:.2f}",
-            "finding": lambda one: one.finding,
+            "mesh order": lambda row: str(row.order),
+            f"{names[0]}, {unit}": lambda row: f"{row.levels[0]:.2f}",
+            f"{names[1]}, {unit}": lambda row: f"{row.levels[1]:.2f}",
+            "measured less computed, dB": lambda row: row.written,
+            "largest at one speed, dB": lambda row: "" if math.isnan(row.largest) else f"{row.largest:.2f}",
+            "finding": lambda row: row.finding,
         },
     )

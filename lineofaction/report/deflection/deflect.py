@@ -26,11 +26,10 @@ LOADED = 1e-3  # share of the largest pressure below which a pattern is blank
 
 
 def _meshes_worst_first(result: GearboxDeflection) -> list[str]:
-    largest = {
-        name: max(abs(_mesh_of(case, name).misalignment) for case in result.deflection.cases)
-        for name in mesh_names(result)
-    }
-    return sorted(largest, key=lambda name: -largest[name])
+    def largest(name: str) -> float:
+        return max(abs(_mesh_of(case, name).misalignment) for case in result.deflection.cases)
+
+    return sorted(mesh_names(result), key=largest, reverse=True)
 
 
 def _worst_case(result: GearboxDeflection, mesh: str) -> CaseDeflection:
@@ -67,18 +66,14 @@ def _mesh_table(result: GearboxDeflection) -> Table:
 def _force_table(result: GearboxDeflection) -> Table | None:
     """List the forces of the scene under the load cases; None without forces."""
     axes = (*(f"{axis}, N" for axis in "xyz"), *(f"about {axis}, N m" for axis in "xyz"))
-    rows = tuple(
-        (
-            force.name,
-            force.shaft,
-            _titled(case),
-            *("0" if value == 0.0 else number(value, 4) for value in (*force.force, *force.moment)),
-        )
-        for case in result.deflection.cases
-        for force in case.forces
-    )
+    rows = []
+    for case in result.deflection.cases:
+        for force in case.forces:
+            values = (*force.force, *force.moment)
+            texts = ("0" if value == 0.0 else number(value, 4) for value in values)
+            rows.append((force.name, force.shaft, _titled(case), *texts))
     caption = "Forces under the load cases, before the factor of their course"
-    return Table(caption, ("force", "shaft", "load case", *axes), rows) if rows else None
+    return Table(caption, ("force", "shaft", "load case", *axes), tuple(rows)) if rows else None
 
 
 def _row(name: str, case: CaseDeflection, flanks: MeshFlanks | None, acting: BoolArray) -> tuple[str, ...]:
@@ -98,13 +93,11 @@ def _titled(case: CaseDeflection) -> str:
 
 
 def _bearing_table(result: GearboxDeflection) -> Table:
-    cases = result.deflection.cases
     loads = [case["bearings"] for case in RUN.figures(result)["load_cases"]]
-    listed = [
-        {"case": _titled(case), **loads[k][index]}
-        for index in range(len(result.outline.bearings))
-        for k, case in enumerate(cases)
-    ]
+    listed = []
+    for index in range(len(result.outline.bearings)):
+        for case, bearings in zip(result.deflection.cases, loads, strict=True):
+            listed.append({"case": _titled(case), **bearings[index]})
     columns = {
         "bearing": lambda bearing: bearing["name"],
         "load case": lambda bearing: bearing["case"],
@@ -132,18 +125,16 @@ def _life_table(result: GearboxDeflection) -> Table:
     def equivalent(way: str, kind: str) -> Callable[[Json], str]:
         return lambda part: number(part[f"equivalent_{way}_force_n"][kind])
 
-    columns = {
+    columns: dict[str, Callable[[Json], str]] = {
         "bearing": lambda part: part["name"],
         "mean speed, rpm": lambda part: number(part["mean_speed_rpm"]),
         "life, h": _life_text,
-    } | {
-        f"{way}, {kind}, N": equivalent(way, kind)
-        for way in ("radial", "axial")
-        for kind in ("ball", "roller")
     }
-    caption = (
-        "Basic reference rating life over all load cases (ISO/TS 16281), and loads of equal life (ISO 281)"
-    )
+    for way in ("radial", "axial"):
+        for kind in ("ball", "roller"):
+            columns[f"{way}, {kind}, N"] = equivalent(way, kind)
+    caption = "Basic reference rating life over all load cases (ISO/TS 16281)"
+    caption += ", and loads of equal life (ISO 281)"
     return Table.of(caption, RUN.figures(result)["bearings"], columns)
 
 
@@ -164,13 +155,15 @@ def _causes_figure(result: GearboxDeflection) -> Figure:
 def _causes_panel(name: str, cases: tuple[CaseDeflection, ...]) -> Panel:
     x = np.arange(len(cases), dtype=float)
     parts = np.array([_mesh_of(case, name).causes for case in cases]) / UM
-    above, below, bars = np.zeros(len(cases)), np.zeros(len(cases)), []
+    above, below = np.zeros(len(cases)), np.zeros(len(cases))
+    bars = []
     for cause, color, part in zip(CAUSES, COLORS, parts.T, strict=True):
         if not np.any(part):
             continue
         base = np.where(part > 0.0, above, below)
         bars.append(Bars(cause, x, base + part, base, 0.5, color))
-        above, below = above + np.maximum(part, 0.0), below + np.minimum(part, 0.0)
+        above = above + np.maximum(part, 0.0)
+        below = below + np.minimum(part, 0.0)
     total = Line("sum", x, parts.sum(axis=1), palette.INK, width=0.0, markers=True)
     names = Axis.of_names([case.name for case in cases])
     return Panel(names, Axis("misalignment, µm"), (total,), title=name, bars=tuple(bars))
@@ -178,22 +171,18 @@ def _causes_panel(name: str, cases: tuple[CaseDeflection, ...]) -> Panel:
 
 def _face_load_figure(result: GearboxDeflection) -> Figure | None:
     """Draw the load along the face of every mesh; None where no model has it."""
-    names = [
-        name
-        for name in _meshes_worst_first(result)
-        if any(flanks.mesh == name and np.isfinite(flanks.face_load_factor) for flanks in result.flanks)
-    ]
-    if not names:
-        return None
     panels = []
-    for name in names:
+    for name in _meshes_worst_first(result):
         flanks = [part for part in result.flanks if part.mesh == name]
-        lines = tuple(
-            # four colors, then the same four dashed
-            Line(part.case, part.face_position / MM, part.face_load * MM, COLORS[k % 4], _DASHES[k // 4 % 2])
-            for k, part in enumerate(flanks)
-        )
-        panels.append(Panel(Axis("face position, mm"), Axis("load, N/mm"), lines, title=name))
+        if not any(np.isfinite(part.face_load_factor) for part in flanks):
+            continue
+        lines = []
+        for k, part in enumerate(flanks):
+            color, dash = COLORS[k % 4], _DASHES[k // 4 % 2]  # four colors, then the same four dashed
+            lines.append(Line(part.case, part.face_position / MM, part.face_load * MM, color, dash))
+        panels.append(Panel(Axis("face position, mm"), Axis("load, N/mm"), tuple(lines), title=name))
+    if not panels:
+        return None
     largest = max(result.flanks, key=lambda part: np.nan_to_num(part.face_load_factor))
     return Figure(
         key="mesh_face_load",
@@ -214,8 +203,9 @@ def _pattern_figure(result: GearboxDeflection) -> Figure | None:
         if flanks is None or not np.isfinite(flanks.face_load_factor):
             continue
         pattern = np.where(flanks.pattern > LOADED * flanks.pattern.max(), flanks.pattern, np.nan) / 1e6
-        top, label = float(np.nanmax(pattern)), "largest pressure, MPa"
-        shade = HeatMap(flanks.face_position / MM, flanks.roll_length / MM, pattern, label, top)
+        top = float(np.nanmax(pattern))
+        face, roll = flanks.face_position / MM, flanks.roll_length / MM
+        shade = HeatMap(face, roll, pattern, "largest pressure, MPa", top)
         axes = Axis("face position, mm"), Axis("roll length of the pinion, mm")
         panels.append(Panel(*axes, title=f"{name}, {case.name}", shade=shade))
         texts.append(f"{name}: {number(1e-6 * flanks.largest_pressure, 4)} MPa.")
@@ -270,9 +260,7 @@ def agreement(result: GearboxDeflection) -> str:
     if not any(np.isfinite(part.face_load_factor) for part in result.flanks):
         return "The meshes press evenly over their faces: no table in three dimensions."
     passes = f"{result.passes} pass{'es' if result.passes > 1 else ''}"
-    if not result.agreed:
-        return f"Not converged in {passes}."
-    return f"Converged in {passes}."
+    return f"{'Converged' if result.agreed else 'Not converged'} in {passes}."
 
 
 def _alarms(result: GearboxDeflection) -> tuple[str, ...]:
@@ -281,9 +269,8 @@ def _alarms(result: GearboxDeflection) -> tuple[str, ...]:
     if not unsolved and not result.agreed:
         alarms.append("Mesh loads and deflections do not agree yet: the misalignments still change.")
     outside = sorted({m.name for case in result.deflection.cases for m in case.meshes if not m.in_table})
-    alarms += [
-        f'Mesh "{name}" runs beyond the misalignments of its table, whose ends are held.' for name in outside
-    ]
+    beyond = "runs beyond the misalignments of its table, whose ends are held"
+    alarms += [f'Mesh "{name}" {beyond}.' for name in outside]
     return tuple(alarms)
 
 

@@ -52,7 +52,8 @@ class _GearName(NamedTuple):
 
 def _gear_names(outline: Outline) -> tuple[_GearName, ...]:
     """Return each name where it is farthest from all circles and from the names before it."""
-    center, radius = outline.origin[outline.gear_shaft, :2], 0.5 * outline.gear[:, 2]
+    center = outline.origin[outline.gear_shaft, :2]
+    radius = 0.5 * outline.gear[:, 2]
     ends = np.vstack([center - radius[:, None], center + radius[:, None]])
     size = float(np.max(np.ptp(ends, axis=0)))  # the larger extent of the circles
     names: list[_GearName] = []
@@ -115,9 +116,9 @@ def _exaggeration(outline: Outline, case: CaseDeflection) -> float:
 
 
 def _view_direction(outline: Outline, case: CaseDeflection) -> FloatArray:
-    """Return the direction (3,) upwards in the view from the side: axes lie farthest apart along it.
+    """Return the direction (3,) upwards in the view from the side.
 
-    Of what leaves two axes closest, the distance is largest. Coaxial shafts are seen as they bend most.
+    Along it the two closest axes are as far apart as they can be. Coaxial shafts are seen as they bend most.
     """
     axes = np.unique(np.round(outline.origin[:, :2] / COAXIAL), axis=0) * COAXIAL
     if len(axes) == 1:
@@ -132,20 +133,19 @@ def _along(outline: Outline, case: CaseDeflection, across: FloatArray, scale: fl
     heights = outline.origin @ across
     lines = [*_shafts(outline, heights), *_gears(outline, heights), *_bearings(outline, heights)]
     displacement = case.shafts.motion[:, :2] @ across[:2]
+    name = f"axis, {scale:.0f} times"
     for k in range(len(outline.shafts)):
         on_shaft = case.shafts.shaft == k
         z = (outline.origin[k, 2] + case.shafts.position[on_shaft]) / MM
-        name = f"axis, {scale:.0f} times"
-        lines.append(
-            Line(name, z, (heights[k] + scale * displacement[on_shaft]) / MM, palette.VERMILLION, width=2.4)
-        )
+        y = (heights[k] + scale * displacement[on_shaft]) / MM
+        lines.append(Line(name, z, y, palette.VERMILLION, width=2.4))
     angle = round(math.degrees(math.atan2(across[1], across[0])))
     axes = Axis("z, mm"), Axis({0: "x, mm", 90: "y, mm"}.get(angle, f"across z, {angle}° from x, mm"))
     return Panel(*axes, tuple(lines), title="From the side", notes=_shaft_names(outline, heights), equal=True)
 
 
 def _shaft_names(outline: Outline, heights: FloatArray) -> tuple[Note, ...]:
-    """Write the names of shafts at their right ends, names that would overlap in one row."""
+    """Write the names of shafts at their right ends; names that would overlap share a row."""
     ends = outline.origin[:, 2] + outline.length
     row = NEAR * max(float(np.max(outline.length)), float(np.ptp(heights)))
     rows: list[tuple[float, float, list[str]]] = []
@@ -178,7 +178,8 @@ def _gears(outline: Outline, heights: FloatArray) -> list[Line]:
 
 
 def _bearings(outline: Outline, heights: FloatArray) -> list[Line]:
-    lines, size = [], 0.03 * float(np.max(outline.length))
+    lines = []
+    size = 0.03 * float(np.max(outline.length))
     for k, position in zip(outline.bearing_shaft, outline.bearing, strict=True):
         z = outline.origin[k, 2] + position
         radius = _radius(outline, int(k), float(position))
@@ -202,26 +203,23 @@ def _end_view(outline: Outline, case: CaseDeflection, scale: float) -> Panel:
     for k, (position, _, diameter) in zip(outline.gear_shaft, outline.gear, strict=True):
         center = outline.origin[k, :2]
         on_shaft = case.shafts.shaft == k
-        path = [
-            np.interp(position, case.shafts.position[on_shaft], case.shafts.motion[on_shaft, axis])
-            for axis in (0, 1)
-        ]
-        circle = center[:, None] + 0.5 * diameter * np.array([np.cos(CIRCLE), np.sin(CIRCLE)])
-        lines.append(
-            Line("operating pitch circles", circle[0] / MM, circle[1] / MM, palette.GEARS[0], width=1.4)
-        )
-        ends = np.array([center, center + scale * np.array(path)]) / MM
-        lines.append(
-            Line("path of centers", ends[:, 0], ends[:, 1], palette.VERMILLION, width=2.4, markers=True)
-        )
+        along, motion = case.shafts.position[on_shaft], case.shafts.motion[on_shaft]
+        path = np.array([np.interp(position, along, motion[:, axis]) for axis in (0, 1)])
+        x, y = (center[:, None] + 0.5 * diameter * np.array([np.cos(CIRCLE), np.sin(CIRCLE)])) / MM
+        lines.append(Line("operating pitch circles", x, y, palette.GEARS[0], width=1.4))
+        x, y = np.array([center, center + scale * path]).T / MM
+        lines.append(Line("path of centers", x, y, palette.VERMILLION, width=2.4, markers=True))
     names = _gear_names(outline)
-    x, y = (Axis(f"{'xy'[k]}, mm", limits=_limits(lines, names, k)) for k in (0, 1))
-    return Panel(x, y, tuple(lines), title="Against z", notes=tuple(name.note for name in names), equal=True)
-
-
-def _limits(lines: Sequence[Line], names: Sequence[_GearName], axis: int) -> tuple[float, float]:
-    values = np.concatenate(
-        [*((line.x, line.y)[axis] for line in lines), *(n.points[:, axis] / MM for n in names)]
+    points = [name.points / MM for name in names]
+    axes = (
+        Axis("x, mm", limits=_limits([*(line.x for line in lines), *(xy[:, 0] for xy in points)])),
+        Axis("y, mm", limits=_limits([*(line.y for line in lines), *(xy[:, 1] for xy in points)])),
     )
+    return Panel(*axes, tuple(lines), title="Against z", notes=tuple(n.note for n in names), equal=True)
+
+
+def _limits(parts: Sequence[FloatArray]) -> tuple[float, float]:
+    """Return the ends of an axis that has all parts of a drawing, with a margin."""
+    values = np.concatenate(parts)
     low, high = float(values.min()), float(values.max())
     return low - EDGE * (high - low), high + EDGE * (high - low)

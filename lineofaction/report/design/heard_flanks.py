@@ -9,7 +9,7 @@ import numpy as np
 from bounds import engineering
 from bounds.error_digits import error_text, to_error
 from lineofaction.gearbox.convert.boundary_names import boundary_name
-from lineofaction.gearbox.studies.optimize.result import HeardDesign, HeardOptimization
+from lineofaction.gearbox.studies.optimize.result import HeardOptimization
 from lineofaction.gearbox.units import UM, factor
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Bars, Figure, Panel, Table, number
@@ -38,12 +38,14 @@ def _levels_figure(result: HeardOptimization) -> Figure:
 
 
 def _panel(result: HeardOptimization, load: int) -> Panel:
-    line, bars = np.arange(len(result.lines), dtype=float), []
+    line = np.arange(len(result.lines), dtype=float)
+    bars = []
     designs = ("before", result.start, palette.DESIGNS[0]), ("after", result.optimum, palette.DESIGNS[1])
     minimum = min(float(np.min(design.level[load] - design.level_error[load])) for _, design, _ in designs)
     floor = 5.0 * np.floor(minimum / 5.0 - 0.5)  # whole 5 dB, at least 2.5 dB below the lowest bar
     for side, (name, design, color) in zip((-0.5, 0.5), designs, strict=True):
-        x, level, error = line + side * _WIDTH, design.level[load], design.level_error[load]
+        x = line + side * _WIDTH
+        level, error = design.level[load], design.level_error[load]
         bars.append(Bars(name, x, level, floor, _WIDTH, color))
         bars.append(Bars("error", x, level + error, level - error, 0.4 * _WIDTH, palette.INK, veiled=True))
     names = [line if line == "all" else f"order {line}" for line in result.lines]
@@ -56,17 +58,10 @@ def _levels_table(result: HeardOptimization) -> Table:
     before, after = result.start, result.optimum
     for load, torque in enumerate(_loads(result)):
         for line, name in enumerate(result.lines):
-            index = load, line
-            rows.append(
-                (
-                    torque,
-                    name,
-                    f"{before.level[index]:.1f}",
-                    f"{after.level[index]:.1f}",
-                    f"{after.level[index] - before.level[index]:+.1f}",
-                    number(before.level_error[index] + after.level_error[index], 2),
-                )
-            )
+            first, second = before.level[load, line], after.level[load, line]
+            error = before.level_error[load, line] + after.level_error[load, line]
+            levels = (f"{first:.1f}", f"{second:.1f}", f"{second - first:+.1f}", number(error, 2))
+            rows.append((torque, name, *levels))
     return Table(f"Levels without scatter, {result.unit}", head, tuple(rows))
 
 
@@ -80,25 +75,16 @@ def _flank_table(result: HeardOptimization) -> Table:
     if np.all(np.isfinite(after.root_stress)):
         head += ("root stress before, MPa", "± MPa", "after, MPa", "± MPa")
         units["root_stress"] = 1e6
-    rows = tuple(
-        (
-            torque,
-            number(result.misalignment[k] / UM, 3),
-            *(
-                text
-                for name, unit in units.items()
-                for design in (before, after)
-                for text in _value_and_error(design, name, k, unit)
-            ),
-        )
-        for k, torque in enumerate(_loads(result))
-    )
-    return Table("Peak to peak of the transmission error, pressure and K_Hbeta", head, rows)
-
-
-def _value_and_error(design: HeardDesign, name: str, load: int, unit: float) -> tuple[str, str]:
-    value, error = (float(getattr(design, field)[load]) / unit for field in (name, f"{name}_error"))
-    return to_error(value, error), error_text(value, error)
+    rows = []
+    for k, torque in enumerate(_loads(result)):
+        row = [torque, number(result.misalignment[k] / UM, 3)]
+        for name, unit in units.items():
+            for design in (before, after):
+                value = float(getattr(design, name)[k]) / unit
+                error = float(getattr(design, f"{name}_error")[k]) / unit
+                row += [to_error(value, error), error_text(value, error)]
+        rows.append(tuple(row))
+    return Table("Peak to peak of the transmission error, pressure and K_Hbeta", head, tuple(rows))
 
 
 def _design_table(result: HeardOptimization) -> Table:
@@ -131,13 +117,8 @@ def _page(result: HeardOptimization) -> Page:
     lead = " ".join(filter(None, outcome))
     levels = Section("What is heard", "", (_levels_figure(result),), (_flank_table(result),))
     design = Section("Design", "", tables=(_design_table(result),))
-    return Page(
-        f"Flanks of {result.mesh} that are heard least",
-        lead,
-        heads,
-        (levels, design),
-        tuple(result.partings()),
-    )
+    title = f"Flanks of {result.mesh} that are heard least"
+    return Page(title, lead, heads, (levels, design), tuple(result.partings()))
 
 
 LEVELS = Presentation(_levels_figure, _page, _text)

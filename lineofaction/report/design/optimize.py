@@ -40,10 +40,12 @@ _POSITION = "position, base pitches"
 
 
 def _harris(result: Optimization) -> Figure:
-    designs = {"before": result.start, "after": result.optimum}
-    curves = {name: _zero_mean_curves(result, design) for name, design in designs.items()}
-    scale = HarrisScale.of(*curves.values())
-    maps = [_map(result, name, design, curves[name], scale) for name, design in designs.items()]
+    before, after = (_zero_mean_curves(result, design) for design in (result.start, result.optimum))
+    scale = HarrisScale.of(before, after)
+    maps = (
+        _map(result, "before", result.start, before, scale),
+        _map(result, "after", result.optimum, after, scale),
+    )
     return Figure(
         key="harris_map",
         title="Transmission error before and after optimization",
@@ -56,7 +58,7 @@ def _harris(result: Optimization) -> Figure:
 
 
 def _chosen(result: Optimization) -> list[int]:
-    """Return the indices of drawn torques: those of the objective, those that get worse, some between."""
+    """Return the indices of drawn torques: of the objective, with more ripple than before, some between."""
     torque = result.start.harris_map.torque
     drawn = {*np.flatnonzero(np.isin(torque, result.torque)).tolist(), *result.rising.tolist()}
     even = np.linspace(torque[0], torque[-1], max(2, MAX_CURVES - len(drawn)))
@@ -75,19 +77,18 @@ def _map(
     harris = design.harris_map
     names = [f"{text} N m" for text in thousands([float(harris.torque[k]) for k in _chosen(result)])]
     end = float(np.ceil(harris.position[-1] + 1e-12))  # the next whole pitch, also of a position on one
-    position, closed = np.append(harris.position, end), np.vstack([values, values[:1]])
-    return harris_panel(
-        f"Harris map {name}", Axis(_POSITION, limits=(0.0, end)), position, closed, names, scale
-    )
+    position = np.append(harris.position, end)
+    closed = np.vstack([values, values[:1]])
+    axis = Axis(_POSITION, limits=(0.0, end))
+    return harris_panel(f"Harris map {name}", axis, position, closed, names, scale)
 
 
 def _scattered(result: Optimization) -> str:
-    if result.nodes.weight.size == 1:
-        return "Nothing scatters."
     count = result.nodes.weight.size
-    return (
-        f"Thick lines: expectation over the {count} nodes of the scatter, dotted ones: its least and largest."
-    )
+    if count == 1:
+        return "Nothing scatters."
+    expectation = f"expectation over the {count} nodes of the scatter"
+    return f"Thick lines: {expectation}, dotted ones: its least and largest."
 
 
 def _ripple(result: Optimization) -> Panel:
@@ -96,9 +97,9 @@ def _ripple(result: Optimization) -> Panel:
     for name, design, color in designs:
         harris = design.harris_map
         if result.nodes.weight.size > 1:
-            ends = harris.peak_to_peak.min(0), harris.peak_to_peak.max(0)
-            for extreme, values in zip(("least", "largest"), ends, strict=True):
-                lines.append(Line(f"{name}, {extreme}", harris.torque, values / UM, color, "dot", 1.0))
+            least, largest = harris.peak_to_peak.min(0) / UM, harris.peak_to_peak.max(0) / UM
+            lines.append(Line(f"{name}, least", harris.torque, least, color, "dot", 1.0))
+            lines.append(Line(f"{name}, largest", harris.torque, largest, color, "dot", 1.0))
             lines.append(Line(f"{name}, no scatter", harris.torque, harris.nominal / UM, color, "dash", 1.0))
         lines.append(Line(name, harris.torque, harris.expected / UM, color, "solid", 2.4, markers=True))
     counted = tuple(Reference("", float(torque)) for torque in result.torque)
@@ -108,24 +109,19 @@ def _ripple(result: Optimization) -> Panel:
 
 def _ripple_table(result: Optimization) -> Table:
     before, after = result.start.harris_map, result.optimum.harris_map
-    texts, skews = thousands(before.torque.tolist()), result.map_misalignment / UM
-    rows = tuple(
-        (
-            text,
-            number(skews[k], 3),
-            "yes" if torque in result.torque else "",
-            *_value(before.expected[k], before.expected_error[k]),
-            *_value(after.expected[k], after.expected_error[k]),
-            number(before.expected[k] / after.expected[k], 3),
-            number(after.peak_to_peak[:, k].max() / UM, 3),
-        )
-        for k, (text, torque) in enumerate(zip(texts, before.torque, strict=True))
-    )
+    rows = []
+    for k, text in enumerate(thousands(before.torque.tolist())):
+        counts = "yes" if before.torque[k] in result.torque else ""
+        first, second = before.expected[k], after.expected[k]
+        ripples = (*_value(first, before.expected_error[k]), *_value(second, after.expected_error[k]))
+        worst = number(after.peak_to_peak[:, k].max() / UM, 3)
+        skew = number(result.map_misalignment[k] / UM, 3)
+        rows.append((text, skew, counts, *ripples, number(first / second, 3), worst))
     head = (
         "torque, N m", "misalignment, µm", "counts", "before, µm", "± µm", "after, µm", "± µm", "factor",
         "worst node after, µm",
     )  # fmt: skip
-    return Table("Expected peak to peak of the transmission error", head, rows)
+    return Table("Expected peak to peak of the transmission error", head, tuple(rows))
 
 
 def _value(value: float, error: float) -> tuple[str, str]:
@@ -152,9 +148,9 @@ def _node_table(result: Optimization) -> Table:
     for word in ("before", "after"):
         head += [f"{word}, {torque} N m, µm" for torque in thousands(result.torque.tolist())]
     counted = np.flatnonzero(np.isin(result.start.harris_map.torque, result.torque))
+    units = [factor(boundary_name(name)) for name in result.nodes.names]
     rows = []
     for node, weight in enumerate(result.nodes.weight):
-        units = [factor(boundary_name(name)) for name in result.nodes.names]
         amounts = zip(result.nodes.deviation[node], units, strict=True)
         deviation = (engineering(amount / unit, 3, "+") for amount, unit in amounts)
         ripples = (d.harris_map.peak_to_peak[node, counted] / UM for d in (result.start, result.optimum))
@@ -164,17 +160,13 @@ def _node_table(result: Optimization) -> Table:
 
 
 def _run_table(result: Optimization) -> Table:
-    rows = tuple(
-        (
-            str(k),
-            number(run.assessed.objective / UM, 4),
-            f"{run.evaluations}" + (f", {run.explored} of them at few positions" if run.explored else ""),
-            run.ended.value,
-            number(run.cpu_seconds, 2),
-        )
-        for k, run in enumerate(result.runs)
-    )
-    return Table("Searches", ("start", "objective, µm", "designs", "ended", "CPU s"), rows)
+    rows = []
+    for k, run in enumerate(result.runs):
+        objective = number(run.assessed.objective / UM, 4)
+        explored = f", {run.explored} of them at few positions" if run.explored else ""
+        cost = number(run.cpu_seconds, 2)
+        rows.append((str(k), objective, f"{run.evaluations}{explored}", run.ended.value, cost))
+    return Table("Searches", ("start", "objective, µm", "designs", "ended", "CPU s"), tuple(rows))
 
 
 def _optimization_page(result: Optimization) -> Page:

@@ -30,7 +30,11 @@ _CAPTION = " Uppermost: the same of the limited order, with its limit."
 def _scatter_figure(study: ToleranceStudy) -> Figure:
     count = study.peak_to_peak.shape[0]
     last = study.quantiles[-1]
-    part, size = f"{100 * last.fraction:g} %", number(last.value[_HIGHEST] / UM, 3)
+    part = f"{100 * last.fraction:g} %"
+    size = number(last.value[_HIGHEST] / UM, 3)
+    limited = () if study.above is None else (_of_order(study, study.above),)
+    lines = _shares(study, study.peak_to_peak)
+    distribution = Panel(Axis("peak to peak, µm"), Axis("share of all pairs"), lines, title="Distribution")
     designed = number(study.nominal[_HIGHEST] / UM, 3)
     return Figure(
         key="scatter",
@@ -40,15 +44,9 @@ def _scatter_figure(study: ToleranceStudy) -> Figure:
         "pair as designed (dashed)." + (_CAPTION if study.above else ""),
         alternative=f"At the highest torque {part} of all pairs stay below {size} µm; as designed "
         f"{designed} µm.",
-        content=(*(_of_order(study, above) for above in [study.above] if above), *_panels(study)),
+        content=(*limited, distribution, _over_torque(study)),
         table=_quantile_table(study),
     )
-
-
-def _panels(study: ToleranceStudy) -> tuple[Panel, Panel]:
-    lines = _shares(study, study.peak_to_peak)
-    distribution = Panel(Axis("peak to peak, µm"), Axis("share of all pairs"), lines, title="Distribution")
-    return distribution, _over_torque(study)
 
 
 def _of_order(study: ToleranceStudy, above: PairsAbove) -> Panel:
@@ -112,10 +110,11 @@ def _influence_table(study: ToleranceStudy) -> Table:
     """Return the rank correlation of each deviation, the strongest at the highest load first."""
     head = ("deviation", *(f"{name} N m" for name in thousands(study.torque.tolist())))
     order = np.argsort(-np.abs(study.influence[:, _HIGHEST]), kind="stable")
-    rows = tuple(
-        (boundary_name(study.names[i]), *(f"{value:+.2f}" for value in study.influence[i])) for i in order
-    )
-    return Table("Influence: rank correlation of a deviation, or of its size, with peak to peak", head, rows)
+    rows = []
+    for i in order:
+        rows.append((boundary_name(study.names[i]), *(f"{value:+.2f}" for value in study.influence[i])))
+    caption = "Influence: rank correlation of a deviation, or of its size, with peak to peak"
+    return Table(caption, head, tuple(rows))
 
 
 def _percent(share: float) -> str:
@@ -134,16 +133,14 @@ def _verdict(study: ToleranceStudy) -> tuple[str, ...]:
     if study.within_class is not None:
         lines += (_class_error(study, study.within_class),)
     if study.solved < len(study.peak_to_peak) or study.above is not None:
-        misses = ", ".join(
-            f"{number(rms / UM, 2)} µm at {torque} N m (at most {number(maximum / UM, 2)})"
-            for rms, maximum, torque in zip(
-                study.missed, study.missed_largest, thousands(study.torque.tolist()), strict=True
-            )
-        )
-        pairs, solved, compared = (f"{n:,}" for n in (len(study.peak_to_peak), study.solved, study.held))
+        misses = []
+        for k, torque in enumerate(thousands(study.torque.tolist())):
+            rms, maximum = number(study.missed[k] / UM, 2), number(study.missed_largest[k] / UM, 2)
+            misses.append(f"{rms} µm at {torque} N m (at most {maximum})")
         lines += (
-            f"{solved} of {pairs} pairs are analyzed whole; the model of the others misses the peak to peak "
-            f"of {compared} that it does not know by {misses}, root of the mean square.",
+            f"{study.solved:,} of {len(study.peak_to_peak):,} pairs are analyzed whole; the model of the "
+            f"others misses the peak to peak of {study.held:,} that it does not know by {', '.join(misses)}, "
+            "root of the mean square.",
         )
     return lines
 
@@ -178,19 +175,20 @@ def _above_limit(study: ToleranceStudy, above: PairsAbove) -> list[str]:
 
 def _class_error(study: ToleranceStudy, of_class: WithinClass) -> str:
     """Return what the class says in place of the measured gears."""
-    torque, mean, measured = (values[_HIGHEST] for values in (study.torque, of_class.mean, study.mean))
+    mean, measured = of_class.mean[_HIGHEST] / UM, study.mean[_HIGHEST] / UM
     text = (
-        f"Within the class in place of the measured gears the mean is {number(mean / UM, 3)} µm at "
-        f"{number(torque, 3)} N m, where it is {number(measured / UM, 3)} µm"
+        f"Within the class in place of the measured gears the mean is {number(mean, 3)} µm at "
+        f"{number(study.torque[_HIGHEST], 3)} N m, where it is {number(measured, 3)} µm"
     )
     if study.above is None:
         return f"{text}."
-    k, decides = study.above.load, boundary_name(study.above.names[study.above.decides])
+    k = study.above.load
+    decides = boundary_name(study.above.names[study.above.decides])
     other = boundary_name(of_class.decides)
+    agreement = "as it does" if other == decides else f"where {decides} does"
     return (
         f"{text}; {_percent(of_class.share[k])} of the pairs would be above the limit, where "
-        f"{_percent(study.above.share[k])} are; {other} would decide, "
-        f"{'as it does' if other == decides else f'where {decides} does'}."
+        f"{_percent(study.above.share[k])} are; {other} would decide, {agreement}."
     )
 
 
@@ -199,33 +197,24 @@ def _limit_tables(study: ToleranceStudy) -> tuple[Table, ...]:
     above = study.above
     if above is None:
         return ()
-    shares = zip(
-        *(thousands(study.torque.tolist()), above.nominal, above.share, above.low, above.high),
-        *(above.missed, above.beyond),
-        strict=True,
-    )
-    by_torque = tuple(
-        (
-            *(torque, number(nominal / UM, 3), _percent(share), f"{_percent(low)} to {_percent(high)}"),
-            *(number(rms_error / UM, 2), _percent(beyond)),
-        )
-        for torque, nominal, share, low, high, rms_error, beyond in shares
-    )
+    torques = thousands(study.torque.tolist())
+    by_torque = []
+    for k, torque in enumerate(torques):
+        bounds = f"{_percent(above.low[k])} to {_percent(above.high[k])}"
+        model = (number(above.missed[k] / UM, 2), _percent(above.beyond[k]))
+        nominal = number(above.nominal[k] / UM, 3)
+        by_torque.append((torque, nominal, _percent(above.share[k]), bounds, *model))
     head = ("torque, N m", "as designed, µm", "above", "bounds", "model ± µm (1 s)", "other side")
-    order = np.argsort(-above.total, kind="stable")
-    rows = tuple(
-        (
-            *(boundary_name(above.names[i]), number(above.total[i], 2), number(above.first_order[i], 2)),
-            _percent(above.cured[i]),
-        )
-        for i in order
-    )
+    rows = []
+    for i in np.argsort(-above.total, kind="stable"):
+        indices = (number(above.total[i], 2), number(above.first_order[i], 2))
+        rows.append((boundary_name(above.names[i]), *indices, _percent(above.cured[i])))
     caption = f"Pairs above {_amplitude(above.limit.amplitude)} at {above.limit.name}"
-    torque = thousands(study.torque.tolist())[above.load]
-    why = f"What decides at {torque} N m: Sobol' indices of the level, and the share above a class finer"
+    why = "Sobol' indices of the level, and the share above a class finer"
+    decides = f"What decides at {torques[above.load]} N m: {why}"
     return (
-        Table(caption, head, by_torque),
-        Table(why, ("deviation", "with others", "alone", "above, a class finer"), rows),
+        Table(caption, head, tuple(by_torque)),
+        Table(decides, ("deviation", "with others", "alone", "above, a class finer"), tuple(rows)),
     )
 
 
@@ -235,15 +224,12 @@ def _tables(study: ToleranceStudy) -> tuple[Table, ...]:
 
 def _page(study: ToleranceStudy) -> Page:
     last = study.quantiles[-1]
+    below = f"{100 * last.fraction:g} % of all pairs below"
     bounds = f"{_bounds(last, _HIGHEST)} with {100 * study.confidence:g} % confidence"
     heads: tuple[Headline, ...] = (
         Headline("as designed", f"{number(study.nominal[_HIGHEST] / UM, 3)} µm"),
         Headline("mean", f"{number(study.mean[_HIGHEST] / UM, 3)} µm"),
-        Headline(
-            f"{100 * last.fraction:g} % of all pairs below",
-            f"{number(last.value[_HIGHEST] / UM, 3)} µm",
-            bounds,
-        ),
+        Headline(below, f"{number(last.value[_HIGHEST] / UM, 3)} µm", bounds),
     )
     figure = replace(_scatter_figure(study), table=None)
     section = Section("Distribution", " ".join(_verdict(study)), (figure,), _tables(study))

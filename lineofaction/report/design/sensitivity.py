@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from itertools import chain
 
 from bounds import engineering
 from bounds.error_digits import NO_CHANGE, change_text, error_text, to_error
@@ -43,15 +42,13 @@ def _sensitivity_figure(studies: Sequence[PairStudy]) -> Figure:
 
 
 def _sensitivity_table(studies: Sequence[PairStudy]) -> Table:
-    rows = [
-        (study.name, "on" if curves.corner_contact else "off", *row)
-        for study in studies
-        for curves in study.curves
-        for row in chain(
-            _rows(_over_misalignment(study, curves), "misalignment {} µm"),
-            _rows(_over_distance(study, curves), "center distance {} %"),
-        )
-    ]
+    rows = []
+    for study in studies:
+        for curves in study.curves:
+            corner_contact = "on" if curves.corner_contact else "off"
+            by_deviation = _rows(_over_misalignment(study, curves), "misalignment {} µm")
+            by_deviation += _rows(_over_distance(study, curves), "center distance {} %")
+            rows += [(study.name, corner_contact, *row) for row in by_deviation]
     return Table("Peak-to-peak transmission error", _HEAD, tuple(rows))
 
 
@@ -67,7 +64,7 @@ def _over_distance(study: PairStudy, curves: Sensitivity) -> Curve:
 def _panels(
     studies: Sequence[PairStudy], title: str, x: Axis, curve_of: Callable[[PairStudy, Sensitivity], Curve]
 ) -> tuple[Panel, Panel]:
-    """One panel in per cent and one in micrometers over the same deviation."""
+    """Draw one panel in per cent and one in micrometers over the same deviation."""
     relative, absolute = [], []
     for index, study in enumerate(studies):
         for curves in study.curves:
@@ -84,38 +81,37 @@ def _rows(curve: Curve, label: str) -> list[tuple[str, ...]]:
     at, ripple = curve
     changes = 100.0 * ripple.relative_change, 100.0 * ripple.change_error
     columns = (1e6 * ripple.peak_to_peak, 1e6 * ripple.error, *changes)
-    return [
-        (
-            label.format(f"{round(float(x), 9):g}"),
-            to_error(size, error),
-            error_text(size, error),
-            change_text(change, band),
-        )
-        for x, size, error, change, band in zip(at, *columns, strict=True)
-    ]
+    rows: list[tuple[str, ...]] = []
+    for x, size, error, change, band in zip(at, *columns, strict=True):
+        deviation = label.format(f"{round(float(x), 9):g}")
+        texts = (to_error(size, error), error_text(size, error), change_text(change, band))
+        rows.append((deviation, *texts))
+    return rows
 
 
 def _alternative(studies: Sequence[PairStudy]) -> str:
     parts = []
     for study in studies:
         for curves in study.curves:
-            skew, distance = (
-                _change(curve, int(abs(curve.relative_change).argmax()))
-                for curve in (curves.misalignment, curves.center_distance_change)
-            )
+            skew = _largest_change(curves.misalignment)
+            distance = _largest_change(curves.center_distance_change)
             preposition = "with" if curves.corner_contact else "without"
             parts.append(f"{study.name} {preposition} corner contact {skew} and {distance}")
     return f"Largest change with misalignment and with center distance: {'; '.join(parts)}."
 
 
+def _largest_change(curve: RippleCurve) -> str:
+    return _change(curve, int(abs(curve.relative_change).argmax()))
+
+
 def _change(curve: RippleCurve, index: int) -> str:
-    change, error = (100.0 * float(x[index]) for x in (curve.relative_change, curve.change_error))
+    change, error = 100.0 * float(curve.relative_change[index]), 100.0 * float(curve.change_error[index])
     text = change_text(change, error)
     return text if text == NO_CHANGE else f"{text} %"
 
 
 def _reasons(studies: Sequence[PairStudy]) -> list[str]:
-    """Say of each curve why the center distance changes the ripple where it changes most."""
+    """Return for every curve why the center distance changes the ripple where it changes most."""
     return [_reason(study, curves) for study in studies for curves in study.curves]
 
 
@@ -177,8 +173,10 @@ def _largest(
 
 
 def _point(studies: Sequence[PairStudy]) -> str:
-    """Return the load of the curves, of several pairs each by its name."""
-    points = [f"{_load(study)}{f' of {study.name}' if len(studies) > 1 else ''}" for study in studies]
+    """Return the load of the curves, with the name of the pair where there are several."""
+    points = [_load(study) for study in studies]
+    if len(studies) > 1:
+        points = [f"{load} of {study.name}" for load, study in zip(points, studies, strict=True)]
     return f"at {', '.join(points)}; misalignment and center distance one at a time"
 
 

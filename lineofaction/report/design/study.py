@@ -70,19 +70,14 @@ def _map(study: Study, across: int, up: int, response: int) -> Panel:
 
 def _curves(study: Study, axis: int, responses: range) -> Figure:
     """Draw the means over one factor, and the 5 % and 95 % quantiles of sampled runs."""
-    panels = tuple(
-        Panel(
-            Axis(study.factor[axis]),
-            Axis(_unit(study, response)),
-            _lines(study, axis, response),
-            title=study.response[response],
-        )
-        for response in responses
-    )
+    panels = []
+    for response in responses:
+        axes = Axis(study.factor[axis]), Axis(_unit(study, response))
+        panels.append(Panel(*axes, _lines(study, axis, response), title=study.response[response]))
     caption = "Mean over all other factors"
     if study.samples > 1:
         caption += " and samples; dotted: 5 % and 95 % of the runs at a level lie below"
-    return Figure("study_curves", _over(study, [axis]), f"{caption}.", _extreme(study), panels)
+    return Figure("study_curves", _over(study, [axis]), f"{caption}.", _extreme(study), tuple(panels))
 
 
 def _lines(study: Study, axis: int, response: int) -> tuple[Line, ...]:
@@ -99,22 +94,15 @@ def _lines(study: Study, axis: int, response: int) -> tuple[Line, ...]:
 
 
 def _distribution_figure(study: Study) -> Figure:
+    below = Axis("runs below, %", limits=(0.0, 100.0))
     panels = tuple(
-        Panel(
-            Axis(_label(study, response)),
-            Axis("runs below, %", limits=(0.0, 100.0)),
-            tuple(_cumulative(study, response)),
-        )
+        Panel(Axis(_label(study, response)), below, tuple(_cumulative(study, response)))
         for response in range(min(len(study.response), MAX_RESPONSES))
     )
     population = "the samples of a combination" if study.samples > 1 else "all points"
-    return Figure(
-        "study_distribution",
-        "Distribution of the responses",
-        f"Share of {population} that lies below a value.",
-        _extreme(study),
-        panels,
-    )
+    caption = f"Share of {population} that lies below a value."
+    title = "Distribution of the responses"
+    return Figure("study_distribution", title, caption, _extreme(study), panels)
 
 
 def _cumulative(study: Study, response: int) -> list[Line]:
@@ -122,17 +110,16 @@ def _cumulative(study: Study, response: int) -> list[Line]:
     scale = in_boundary_units(study, response)[1]
     rows = study.column(response) if study.samples > 1 else study.figure[:, response][None]
     chosen = np.unique(np.linspace(0, len(rows) - 1, min(len(rows), MAX_CURVES)).round().astype(int))
-    curves = {}
-    for row in chosen:
+    lines = []
+    for count, row in enumerate(chosen.tolist()):
         values = np.sort(rows[row][np.isfinite(rows[row])]) / scale
         share = 100.0 * np.arange(values.size + 1) / max(values.size, 1)
-        # at each value the curve steps from one share up to the next
-        curves[int(row)] = np.repeat(values, 2), np.repeat(share, 2)[1:-1]
-    return [
-        Line(_combination(study, row), *curve, palette.ordered(count, len(chosen)))
-        for count, (row, curve) in enumerate(curves.items())
-        if curve[0].size
-    ]
+        color = palette.ordered(count, len(chosen))
+        if values.size:
+            # at each value the curve steps from one share up to the next
+            steps = np.repeat(values, 2), np.repeat(share, 2)[1:-1]
+            lines.append(Line(_combination(study, row), *steps, color))
+    return lines
 
 
 def _combination(study: Study, row: int) -> str:
@@ -179,10 +166,8 @@ def _by_levels(study: Study) -> list[Panel]:
 
 def _by_samples(study: Study) -> list[Panel]:
     """Draw the rank correlation of each sampled factor as a bar from 0; none where none is known."""
-    known = [
-        (name, float(c)) for name, c in zip(study.factor, study.correlation(0), strict=True) if np.isfinite(c)
-    ]
-    bars = [(min(0.0, c), max(0.0, c), name) for name, c in known]
+    correlations = zip(study.factor, map(float, study.correlation(0)), strict=True)
+    bars = [(min(0.0, c), max(0.0, c), name) for name, c in correlations if np.isfinite(c)]
     return [_bars(bars, f"rank correlation with {study.response[0]}", (-1.0, 1.0))] if bars else []
 
 
@@ -207,9 +192,8 @@ def _extreme(study: Study) -> str:
         return "No run has figures."
     point = int(np.nanargmax(first))
     scale = in_boundary_units(study, 0)[1]
-    levels = ", ".join(
-        f"{name} = {value:.6g}" for name, value in zip(study.factor, study.value[point], strict=True)
-    )
+    values = zip(study.factor, study.value[point], strict=True)
+    levels = ", ".join(f"{name} = {value:.6g}" for name, value in values)
     largest = f"{number(float(first[point]) / scale, 4)} {_unit(study, 0)}"
     return f"Largest {study.response[0]}: {largest} at {levels}."
 
@@ -227,9 +211,9 @@ def _summary_table(study: Study) -> Table:
         scale = in_boundary_units(study, k)[1]
         values = study.figure[:, k][np.isfinite(study.figure[:, k])] / scale
         errors = study.error[:, k][np.isfinite(study.error[:, k])] / scale
-        texts = [
-            number(float(take(values)), 4) if values.size else "none" for take in (np.min, np.mean, np.max)
-        ]
+        texts = ["none"] * 3
+        if values.size:
+            texts = [number(float(figure), 4) for figure in (values.min(), values.mean(), values.max())]
         rows.append((_label(study, k), *texts, number(errors.mean(), 2) if errors.size else "not stated"))
     head = ("response", "least", "mean", "largest", "stated error, mean")
     return Table("Responses of all runs", head, tuple(rows))
@@ -241,17 +225,14 @@ def _extreme_table(study: Study) -> Table:
     points = usable[np.argsort(-first[usable], kind="stable")][:MAX_ROWS]
     varied, responses = _varied(study), range(len(study.response))
     head = (*(_short(study, k) for k in varied), *(_label(study, k) for k in responses))
-    rows = tuple(
-        (
-            str(point),
-            *(f"{study.value[point, k]:.6g}" for k in varied),
-            *(number(float(study.figure[point, k]) / in_boundary_units(study, k)[1], 4) for k in responses),
-            "yes" if point in study.worst else "",
-        )
-        for point in points
-    )
+    units = [in_boundary_units(study, k)[1] for k in responses]
+    rows = []
+    for point in points:
+        levels = (f"{study.value[point, k]:.6g}" for k in varied)
+        figures = (number(float(study.figure[point, k]) / units[k], 4) for k in responses)
+        rows.append((str(point), *levels, *figures, "yes" if point in study.worst else ""))
     caption = f"Worst cases: runs of the largest {study.response[0]}"
-    return Table(caption, ("point", *head, "kept in full"), rows)
+    return Table(caption, ("point", *head, "kept in full"), tuple(rows))
 
 
 def _failed_table(study: Study) -> Table:
@@ -275,21 +256,21 @@ def _page(study: Study) -> Page:
         Headline("largest", largest, study.response[0]),
         Headline("cost of a run", f"{1e3 * float(study.seconds[:, 0].mean()):.0f} ms", "CPU time, mean"),
     )
-    tables = (_extreme_table(study), *((_failed_table(study),) if failed else ()))
-    sections = (
-        Section("Responses", "", tuple(replace(f, table=None) for f in _study_figures(study))),
-        Section("Figures", "", (), (_summary_table(study), *tables)),
-    )
+    tables = [_summary_table(study), _extreme_table(study)]
+    if failed:
+        tables.append(_failed_table(study))
+    figures = tuple(replace(figure, table=None) for figure in _study_figures(study))
+    sections = (Section("Responses", "", figures), Section("Figures", "", (), tuple(tables)))
     without = ", ".join(study.metadata["neglected"])
     samples = f" {study.samples} samples of each combination." if study.samples > 1 else ""
     over = ", ".join(study.factor[k] for k in _varied(study))
     lead = f"{len(study.reason)} runs over {over}.{samples} Neglected in the runs: {without}."
-    lead = " ".join([lead, *(f"{_sentence(line)}." for line in _effect_lines(study))])
-    return Page("Many scenes", lead, heads, sections)
+    sentences = (f"{line[:1].upper()}{line[1:]}." for line in _effect_lines(study))
+    return Page("Many scenes", " ".join([lead, *sentences]), heads, sections)
 
 
 def _effect_lines(study: Study) -> Iterator[str]:
-    """Yield what was decided on effects for all runs; nothing of a file of a version without it."""
+    """Yield lines on the effects of all runs; files of versions without a decision on them have none."""
     effects = study.metadata.get("effects")
     if not effects or not effects["points"]:
         return
@@ -298,10 +279,6 @@ def _effect_lines(study: Study) -> Iterator[str]:
     if largest := effects["largest"]:
         size = f"{engineering(largest['decibels'], 2)} {largest['unit']}"
         yield f"largest influence of an effect that is off: {size} by {largest['effect'].replace('_', ' ')}"
-
-
-def _sentence(line: str) -> str:
-    return line[:1].upper() + line[1:]
 
 
 def _text(study: Study) -> Iterator[Table | str]:

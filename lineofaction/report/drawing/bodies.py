@@ -133,22 +133,17 @@ class _Surface:
 def _surfaces(ring: Ring, eye: FloatArray, ray: FloatArray, light: FloatArray) -> Iterator[_Surface]:
     """Yield the walls and the ends of a ring that the eye sees; the eye counts from the ring's axis."""
     slope = (ring.outer_high - ring.outer) / (ring.high - ring.low)
-    outside = _Cone(ring.low, ring.high, ring.outer, slope)
-    yield outside.met(eye, ray, light, outward=True)
+    yield _Cone(ring.low, ring.high, ring.outer, slope).met(eye, ray, light, outward=True)
     if ring.inner > 0.0:
         yield _Cone(ring.low, ring.high, ring.inner, 0.0).met(eye, ray, light, outward=False)
     for z, way, outer in ((ring.low, -1.0, ring.outer), (ring.high, 1.0, ring.outer_high)):
         if way * (eye[2] - z) > 0.0:
-            yield _end(z, (ring.inner, outer), eye, ray, max(way * light[2], 0.0))
-
-
-def _end(z: float, radii: tuple[float, float], eye: FloatArray, ray: FloatArray, lit: float) -> _Surface:
-    with np.errstate(divide="ignore", invalid="ignore"):
-        distance = (z - eye[2]) / ray[2]
-        radius = np.hypot(eye[0] + distance * ray[0], eye[1] + distance * ray[1])
-    inner, outer = radii
-    on = (distance > 0.0) & (radius <= outer) & (radius >= inner)
-    return _Surface(np.where(on, distance, np.inf), np.full(on.shape, lit))
+            with np.errstate(divide="ignore", invalid="ignore"):
+                distance = (z - eye[2]) / ray[2]
+                radius = np.hypot(eye[0] + distance * ray[0], eye[1] + distance * ray[1])
+            on = (distance > 0.0) & (radius <= outer) & (radius >= ring.inner)
+            lit = max(way * light[2], 0.0)
+            yield _Surface(np.where(on, distance, np.inf), np.full(on.shape, lit))
 
 
 @dataclass(frozen=True)
@@ -177,8 +172,9 @@ class _Cone:
                 normal = self._normals(eye[:, None] + distance[on] * ray[:, on])
                 normal *= -side
                 faces = np.sum(normal * ray[:, on], axis=0) < 0.0
-                on[on] = faces
-                best[on], lit[on] = distance[on], np.maximum(light @ normal[:, faces], 0.0)
+                on[on] = faces  # of these rays only those that meet the visible side
+                best[on] = distance[on]
+                lit[on] = np.maximum(light @ normal[:, faces], 0.0)
         return _Surface(best, lit)
 
     def _normals(self, points: FloatArray) -> FloatArray:
@@ -217,10 +213,12 @@ class _Picture:
 
     def cover(self, hull: Hull, color: Sequence[float]) -> None:
         """Draw the visible outside of a surface over everything behind it."""
-        nearest, lit = np.full(self.distance.shape, np.inf), np.zeros(self.distance.shape)
+        nearest = np.full(self.distance.shape, np.inf)
+        lit = np.zeros(self.distance.shape)
         for corners in hull.points[hull.facets]:
             across = np.cross(corners[1] - corners[0], corners[2] - corners[0])
-            if (height := float(across @ (self.camera.eye - corners[0]))) <= 0.0:
+            height = float(across @ (self.camera.eye - corners[0]))
+            if height <= 0.0:  # the eye is behind the facet
                 continue
             window = _Window.about(self.camera, corners)
             pixels = (window.rows, window.columns)
@@ -267,7 +265,7 @@ def rendered(
 ) -> Rendered:
     """Return the picture of bodies on white, seen through surfaces; colors by kind of body."""
     picture = _Picture.blank(camera.finer())
-    owner = [-1]
+    owner = [-1]  # body by the number of the surface
     for index, body in enumerate(bodies):
         for ring in body.rings:
             picture.add(body, ring, colors[body.kind])

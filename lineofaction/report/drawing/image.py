@@ -82,7 +82,7 @@ _DASH = {"solid": "-", "dash": "--", "dot": ":"}
 def png(figure: Figure, across: int = 1) -> bytes:
     """Draw `figure` with at most `across` panels in a row, and return the bytes of the PNG file.
 
-    A figure that has a picture of its own is returned as that.
+    Of a figure that has a picture, the picture is returned.
     """
     if figure.picture is not None:
         return figure.picture()
@@ -122,9 +122,8 @@ def drawable(text: str) -> str:
     Dollar signs are escaped, as they enclose formulas. Characters that the font lacks become their Unicode
     escapes. Longer words than `_LONGEST_WORD` are cut, with an ellipsis as their last character.
     """
-    known = "".join(
-        c if c == "\n" or ord(c) in _glyphs() else c.encode("unicode_escape").decode() for c in text
-    )
+    glyphs = _glyphs() | {ord("\n")}
+    known = "".join(c if ord(c) in glyphs else c.encode("unicode_escape").decode() for c in text)
     cut = re.sub(rf"(\S{{{_LONGEST_WORD - 1}}})\S+", "\\1\N{HORIZONTAL ELLIPSIS}", known)
     return cut.replace("$", r"\$")
 
@@ -158,21 +157,14 @@ def panel_axes(sheet: Sheet, panels: tuple[Panel, ...], across: int = 1) -> list
     heights = [max(_height(panels[index], len(row)) for index in row) for row in rows]
     sheet.set_size_inches(_WIDTH, sum(heights) + _LEGEND_HEIGHT)
     grid = sheet.add_gridspec(len(rows), max(map(len, rows)), height_ratios=heights)
-    axes: list[Axes] = [
-        sheet.add_subplot(grid[row, :] if len(columns) == 1 else grid[row, column])
-        for row, columns in enumerate(rows)
-        for column in range(len(columns))
-    ]
+    axes: list[Axes] = []
+    for row, columns in enumerate(rows):
+        cells = [grid[row, :]] if len(columns) == 1 else [grid[row, k] for k in range(len(columns))]
+        axes += [sheet.add_subplot(cell) for cell in cells]
     handles = draw_panels(panels, axes, {row[0] for row in rows if len(row) == 1})
     if len(handles) > 1:
-        sheet.legend(
-            handles.values(),
-            handles.keys(),
-            loc="outside lower left",
-            ncols=_legend_columns(list(handles)),
-            frameon=False,
-            fontsize=9,
-        )
+        look: dict[str, Any] = {"loc": "outside lower left", "frameon": False, "fontsize": 9}
+        sheet.legend(handles.values(), handles.keys(), ncols=_legend_columns(list(handles)), **look)
     return axes
 
 
@@ -191,24 +183,19 @@ def draw_panels(panels: Sequence[Panel], axes: Sequence[Axes], wide: Container[i
         _finish(ax, panel)
         if index in wide:
             ax.set_ylabel(fill(panel.y.label, _HIGH_LABEL))
-        else:
-            _label_narrow(ax, panel)
+        else:  # small type and more rows
+            ax.set_xlabel(fill(panel.x.label, _HALF_LABEL), fontsize=_NARROW_TYPE)
+            ax.set_ylabel(fill(panel.y.label, _NARROW_LABEL), fontsize=_NARROW_TYPE)
+            title = fill(panel.title, _HALF_LABEL)
+            ax.set_title(title, loc="left", fontsize=_NARROW_TYPE, fontweight="bold")
         # the panel below, of the same width, has the same label
         if repeats_below(panels, index) and index in wide and index + 1 in wide:
             ax.set_xlabel("")
     return handles
 
 
-def _label_narrow(ax: Axes, panel: Panel) -> None:
-    """Write the labels and the title of a narrow panel, in small type and more rows."""
-    ax.set_xlabel(fill(panel.x.label, _HALF_LABEL), fontsize=_NARROW_TYPE)
-    ax.set_ylabel(fill(panel.y.label, _NARROW_LABEL), fontsize=_NARROW_TYPE)
-    title = fill(panel.title, _HALF_LABEL)
-    ax.set_title(title, loc="left", fontsize=_NARROW_TYPE, fontweight="bold")
-
-
 def _height(panel: Panel, columns: int) -> float:
-    """Return the height in inches of a panel in a row of so many columns."""
+    """Return the height in inches of a panel in a row of some columns."""
     usual = _PANEL_HEIGHT if columns == 1 else _NARROW_HEIGHT
     drawing = _DRAWING_HEIGHT if panel.shade is None else _SHADED_WIDTH * _DRAWING_HEIGHT
     return panel_height(panel, columns) * (drawing if panel.equal else usual)
@@ -322,37 +309,25 @@ def _draw_bars(ax: Axes, bars: Bars) -> Any:
 
 def _label_lines(ax: Axes, panel: Panel) -> None:
     """Write the labels of lines to the right of the panel, each with a leader to the end of its line."""
+    look: dict[str, Any] = {"va": "center", "fontsize": 8, "linespacing": 1.05, "annotation_clip": False}
     for label in line_labels(panel, _LABEL_ROW):
-        ax.annotate(
-            label.text,
-            (1.0, label.end),
-            (1.0 + _LEADER, label.middle),
-            xycoords="axes fraction",
-            va="center",
-            fontsize=8,
-            linespacing=1.05,
-            arrowprops={
-                "arrowstyle": "-",
-                "color": label.color,
-                "lw": 1.2,
-                "relpos": (0, 0.5),
-                "shrinkA": 1,
-                "shrinkB": 0,
-            },
-            annotation_clip=False,
-        )
+        end, middle = (1.0, label.end), (1.0 + _LEADER, label.middle)
+        leader = {"arrowstyle": "-", "color": label.color, "lw": 1.2}
+        leader |= {"relpos": (0, 0.5), "shrinkA": 1, "shrinkB": 0}
+        ax.annotate(label.text, end, middle, xycoords="axes fraction", arrowprops=leader, **look)
 
 
 def _finish(ax: Axes, panel: Panel) -> None:
     """Set scales, limits and ticks of a panel, and write its labels, references, notes and title."""
-    for axis, name in ((panel.x, "x"), (panel.y, "y")):
-        _scale(ax, axis, name)
+    _scale(ax, panel.x, "x")
+    _scale(ax, panel.y, "y")
     if any(line.label for line in panel.lines):
         ax.set_ylim(vertical_limits(panel))
         _label_lines(ax, panel)
-    for ticked, is_integer in ((ax.xaxis, counts(panel, "x")), (ax.yaxis, counts(panel, "y"))):
-        if is_integer:
-            ticked.set_major_locator(MaxNLocator(integer=True))
+    if counts(panel, "x"):
+        ax.xaxis.set_major_locator(MaxNLocator(integer=True))
+    if counts(panel, "y"):
+        ax.yaxis.set_major_locator(MaxNLocator(integer=True))
     for reference in panel.references:
         _refer(ax, reference, boxed=panel.shade is not None)
     for note in panel.notes:
@@ -372,15 +347,9 @@ def _write_note(ax: Axes, note: Note, *, boxed: bool) -> None:
     above = 4 + _NOTE_ROW * note.row
     if note.row < 0:
         above -= 8  # a note below its point keeps clear of it
-    text = ax.annotate(
-        note.text,
-        (note.x, note.y),
-        (right, above),
-        textcoords="offset points",
-        ha="right" if note.left else "left",
-        bbox=_BOX if boxed else None,
-    )
-    text.set_fontsize(8)
+    look: dict[str, Any] = {"ha": "right" if note.left else "left", "bbox": _BOX if boxed else None}
+    place = (note.x, note.y), (right, above)
+    ax.annotate(note.text, *place, textcoords="offset points", fontsize=8, **look)
 
 
 def _scale(ax: Axes, axis: Axis, name: str) -> None:
@@ -414,17 +383,15 @@ def _refer(ax: Axes, reference: Reference, *, boxed: bool) -> None:
     text = f" {reference.label}"
     zorder = 2.5 if boxed else 0.5  # above colors and lines, else below them
     stroke: dict[str, Any] = {"color": palette.MUTED, "ls": "--", "lw": 0.8, "zorder": zorder}
+    value = reference.value
     if reference.direction == "vertical":
-        ax.axvline(reference.value, **stroke)
-        written = ax.text(
-            reference.value, 0.98, text, ha="left", va="top", transform=ax.get_xaxis_transform()
-        )
+        ax.axvline(value, **stroke)
+        written = ax.text(value, 0.98, text, ha="left", va="top", transform=ax.get_xaxis_transform())
     else:
-        ax.axhline(reference.value, **stroke)
+        ax.axhline(value, **stroke)
         anchor = "center" if reference.at == 0.5 else "right"  # the middle of the width, or its end
-        written = ax.text(
-            reference.at, reference.value, text, ha=anchor, va="bottom", transform=ax.get_yaxis_transform()
-        )
+        across = ax.get_yaxis_transform()
+        written = ax.text(reference.at, value, text, ha=anchor, va="bottom", transform=across)
     written.set(fontsize=8, color=palette.MUTED)
     if boxed:
         written.set(color=palette.INK, bbox=_BOX)

@@ -100,22 +100,11 @@ def _strokes(shade: Strokes, domain: list[float]) -> list[Json]:
     step = np.ceil(STEPS * np.clip(shade.value / shade.largest, 0.0, 1.0)).astype(int)
     unit = unit_of(shade.label)
     traces = [_step(shade, step == k, k, unit) for k in range(STEPS + 1) if np.any(step == k)]
-    scale: Json = {
-        "type": "scatter",
-        "mode": "markers",
-        "x": [None],
-        "y": [None],
-        "hoverinfo": "skip",
-        "marker": {
-            "color": [0.0],
-            "cmin": 0.0,
-            "cmax": shade.largest,
-            "colorscale": _color_scale(),
-            "showscale": True,
-            "colorbar": _color_bar(shade.label, domain),
-        },
-    }
-    return [*traces, scale]
+    # a marker that is not drawn has the color bar
+    marker: Json = {"color": [0.0], "cmin": 0.0, "cmax": shade.largest, "colorscale": _color_scale()}
+    marker |= {"showscale": True, "colorbar": _color_bar(shade.label, domain)}
+    scale: Json = {"type": "scatter", "mode": "markers", "x": [None], "y": [None]}
+    return [*traces, scale | {"hoverinfo": "skip", "marker": marker}]
 
 
 def _step(shade: Strokes, chosen: Any, k: int, unit: str) -> Json:
@@ -252,7 +241,8 @@ def _axis(axis: Axis) -> Json:
     if axis.names:
         made |= {"tickvals": [value for value, _ in axis.names], "ticktext": [name for _, name in axis.names]}
     if axis.limits:
-        made["range"] = [float(v) for v in (np.log10(axis.limits) if axis.scale == "log" else axis.limits)]
+        limits = np.log10(axis.limits) if axis.scale == "log" else axis.limits
+        made["range"] = [float(limit) for limit in limits]
     return made
 
 
@@ -271,9 +261,10 @@ def _integer_ticks(panel: Panel, name: Literal["x", "y"]) -> Json:
 def _line(line: Line, suffix: str, show: bool) -> Json:
     """Draw a curve; curves with the same name share a legend entry."""
     filled = {"fill": "toself", "fillcolor": line.color + _TINT, "hoveron": "points"} if line.filled else {}
+    marked = "lines+markers" if line.width else "markers"
     return filled | {
         "type": "scatter",
-        "mode": "lines" if not line.markers else "lines+markers" if line.width else "markers",
+        "mode": marked if line.markers else "lines",
         "name": line.name,
         "x": numbers(line.x),
         "y": numbers(line.y),

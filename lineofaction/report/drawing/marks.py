@@ -10,16 +10,7 @@ import numpy as np
 
 from bounds import engineering, order_name, order_words
 from lineofaction.gearbox.studies.figures import metadata_of
-from lineofaction.report.drawing.figure import (
-    Axis,
-    Figure,
-    FloatArray,
-    Line,
-    Panel,
-    Reference,
-    largest,
-    unit_of,
-)
+from lineofaction.report.drawing.figure import Axis, Figure, FloatArray, Panel, Reference, largest, unit_of
 from lineofaction.report.drawing.page import Page, Section
 
 NAME = "complaint"
@@ -28,7 +19,7 @@ Marks = Mapping[str, Any]
 
 ``axes``: value of the complaint on each axis, by the label of the axis. ``order``: order of the complaint as
 the result counts orders. ``meshes``: order, speed of the driving gear and torque by mesh, for plots whose
-orders count by that mesh. ``bearing``: the bearing complained of. ``words``: the complaint as a sentence.
+orders count by that mesh. ``bearing``: bearing of the complaint. ``words``: the complaint as a sentence.
 """
 DRIVER = "speed of the driving gear, rpm"
 TORQUE = "torque on the driving gear, N m"
@@ -58,10 +49,8 @@ def of_run(marks: Marks, mesh: str) -> Marks:
 
 def order_label(order: float, metadata: Mapping[str, Any]) -> str:
     """Return an order, with its name if it is no harmonic of the first mesh: "0.5789 (pinion 11)"."""
-    text, unit_orders = (
-        f"{order:.4g}",
-        metadata.get("turning"),
-    )  # orders of meshes and of turns of shafts, by name
+    text = f"{order:.4g}"
+    unit_orders = metadata.get("turning")  # orders of meshes and of turns of shafts, by name
     if unit_orders is None or np.isclose(order, round(order), rtol=1e-6):
         return text
     name = order_name(order, unit_orders["mesh"], unit_orders["shaft"])
@@ -85,8 +74,8 @@ def words_of_order(order: float, metadata: Mapping[str, Any]) -> str:
 
 def drawn_orders(order: FloatArray, sizes: FloatArray, count: int, metadata: Mapping[str, Any]) -> list[int]:
     """Return the indices of `count` orders (H,), the largest by sizes (H,), one of them the complaint's."""
-    marked = np.flatnonzero(np.isclose(order, metadata.get(NAME, {}).get("order", np.nan), rtol=1e-6))
-    return largest(np.where(np.isin(np.arange(sizes.size), marked), np.inf, sizes), count)
+    is_marked = np.isclose(order, metadata.get(NAME, {}).get("order", np.nan), rtol=1e-6)
+    return largest(np.where(is_marked, np.inf, sizes), count)
 
 
 def marked_page(page: Page, marks: Marks) -> Page:
@@ -127,8 +116,12 @@ def _marked_panel(panel: Panel, marks: Marks) -> Panel:
     )
     order = f"{marks['order']:.4g}"
     names = f"order {order}", f"{order}×"  # curves of an order are named so, then perhaps " (pinion 11)"
-    lines = tuple(_bold(line) if line.name.partition(" (")[0] in names else line for line in panel.lines)
-    return replace(panel, references=(*panel.references, *references), lines=lines)
+    lines = []
+    for line in panel.lines:
+        is_marked = line.name.partition(" (")[0] in names
+        bold = replace(line, name=f"{line.name} ({NAME})", width=BOLDER * line.width)
+        lines.append(bold if is_marked else line)
+    return replace(panel, references=(*panel.references, *references), lines=tuple(lines))
 
 
 def _value_label(axis: Axis, value: float) -> str:
@@ -138,19 +131,14 @@ def _value_label(axis: Axis, value: float) -> str:
     return f"{size} {unit}" if has_unit else f"{axis.label} {size}"
 
 
-def _bold(line: Line) -> Line:
-    return replace(line, name=f"{line.name} ({NAME})", width=BOLDER * line.width)
-
-
 def _values(panel: Panel, marks: Marks) -> list[tuple[Axis, Literal["vertical", "horizontal"], float]]:
     """Return axis, direction of the line and value of each axis of a panel on which the complaint lies."""
-    axes: tuple[tuple[Axis, Literal["vertical", "horizontal"]], ...]
-    axes = ((panel.x, "vertical"), (panel.y, "horizontal"))
-    return [
-        (axis, direction, marks["axes"][axis.label])
-        for axis, direction in axes
-        if axis.label in marks["axes"]
-    ]
+    values: list[tuple[Axis, Literal["vertical", "horizontal"], float]] = []
+    if panel.x.label in marks["axes"]:
+        values.append((panel.x, "vertical", marks["axes"][panel.x.label]))
+    if panel.y.label in marks["axes"]:
+        values.append((panel.y, "horizontal", marks["axes"][panel.y.label]))
+    return values
 
 
 def _reaches(panel: Panel, axis: Axis, direction: str, value: float) -> bool:
@@ -167,7 +155,7 @@ def _reaches(panel: Panel, axis: Axis, direction: str, value: float) -> bool:
 
 
 def _beyond(panel: Panel, marks: Marks) -> list[str]:
-    """Say which values of the complaint a panel does not reach."""
+    """Return sentences on the values of the complaint that a panel does not reach."""
     return [
         f"The {NAME}, {_value_label(axis, value)}, lies beyond this axis."
         for axis, direction, value in _values(panel, marks)

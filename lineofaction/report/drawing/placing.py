@@ -19,7 +19,7 @@ _CHARACTER, _HEIGHT, _GAP, _RISE = 0.0072, 0.07, 0.008, 0.05
 
 They are those of an 8 point text in a panel of the usual size, over the panel's width and height.
 """
-_POINT_WIDTH, _POINT_HEIGHT = 0.012, 0.05
+_POINT_WIDTH, _POINT_HEIGHT = 0.012, 0.05  # of a marker, over the panel's width and height
 _MARGIN = 0.05
 """Margin over the height of the panel, above its curves, and below them where the axis has no limits. A text
 beyond the margin runs into the title or the axis."""
@@ -31,9 +31,9 @@ Description = TypeVar("Description")
 
 
 def envelope(time: FloatArray, values: FloatArray, columns: int = 1200) -> tuple[FloatArray, FloatArray]:
-    """Keep the lowest and the highest sample of each of `columns` stretches, in their order in time.
+    """Return the lowest and the highest sample of each of `columns` stretches, in their order in time.
 
-    A line through them covers the same pixels as the whole series. A short series comes back whole.
+    A line through them covers the same pixels as the whole series. A short series is returned whole.
     """
     size = len(time)
     if size <= 2 * columns:
@@ -70,12 +70,13 @@ def placed(notes: Sequence[Note], x: Axis, y: Axis, y_range: tuple[float, float]
     """
     across = x.fraction(np.array([note.x for note in notes]), x.limits or (0.0, 1.0))
     along = y.fraction(np.array([note.y for note in notes]), y_range)
-    size = 0.5 * _POINT_WIDTH, 0.5 * _POINT_HEIGHT
+    width, height = 0.5 * _POINT_WIDTH, 0.5 * _POINT_HEIGHT
     taken = [
-        _Box(left=a - size[0], right=a + size[0], low=b - size[1], high=b + size[1])
+        _Box(left=a - width, right=a + width, low=b - height, high=b + height)
         for a, b in zip(across, along, strict=True)
     ]
-    shifted, lowest = list(notes), -_MARGIN if y.limits is None else 0.0
+    shifted = list(notes)
+    lowest = -_MARGIN if y.limits is None else 0.0
     for k in np.argsort(across, kind="stable"):
         boxes = {slot: _text(notes[k].text, across[k], along[k], *slot) for slot in _PLACES}
         slot = next((at for at, box in boxes.items() if _is_free(box, taken, lowest)), _PLACES[0])
@@ -86,7 +87,8 @@ def placed(notes: Sequence[Note], x: Axis, y: Axis, y_range: tuple[float, float]
 
 def _text(text: str, x: float, y: float, row: int, left: bool) -> _Box:
     """Return the box of a text at the point (x, y)."""
-    width, low = _CHARACTER * len(text), y + row * _HEIGHT - 0.5 * _HEIGHT + (_RISE if row >= 0 else 0.0)
+    width = _CHARACTER * len(text)
+    low = y + row * _HEIGHT - 0.5 * _HEIGHT + (_RISE if row >= 0 else 0.0)
     start = x - _GAP - width if left else x + _GAP
     return _Box(left=start, right=start + width, low=low, high=low + _HEIGHT)
 

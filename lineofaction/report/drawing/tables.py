@@ -9,7 +9,7 @@ from typing import Any
 from bounds import engineering, leftover
 from bounds.unit import MIN_LEFTOVER
 from lineofaction.gearbox.convert.effects import trifles_title
-from lineofaction.gearbox.convert.scene_effects import scene_effects
+from lineofaction.gearbox.convert.scene_effects import SceneEffect, scene_effects
 from lineofaction.gearbox.units import UNITS, ending_of
 from lineofaction.report.drawing.figure import Table, number
 from lineofaction.report.drawing.page import Part, Section
@@ -76,7 +76,7 @@ def _column_title(name: str) -> str:
 
 def _cell(value: object) -> str:
     if value is None or isinstance(value, bool):
-        return "none" if value is None else "yes" if value else "no"
+        return {None: "none", True: "yes", False: "no"}[value]
     if isinstance(value, float):
         return leftover(value) if 0.0 < abs(value) < MIN_LEFTOVER else f"{value + 0.0:.6g}"
     if isinstance(value, int) and abs(value) >= LARGE:
@@ -90,14 +90,13 @@ def _cell(value: object) -> str:
 
 def effect_table(caption: str, rows: Iterable[EffectRow]) -> Table:
     """Tabulate effects, by their names in words."""
-    head = ("effect", "in", "simulated", "without it", "because")
-    cells = (
-        (name.replace("_", " "), subject, "yes" if on else "no", *texts) for name, subject, on, *texts in rows
-    )
-    return Table(caption, head, tuple(cells))
+    cells = []
+    for name, part, on, influence, reason in rows:
+        cells.append((name.replace("_", " "), part, "yes" if on else "no", influence, reason))
+    return Table(caption, ("effect", "in", "simulated", "without it", "because"), tuple(cells))
 
 
-def effects_section(text: str, rows: Iterable[EffectRow], folded: tuple[Table, ...] = ()) -> Section:
+def effects_section(text: str, rows: Iterable[EffectRow], folded: tuple[Table, ...]) -> Section:
     """Show effects under a sentence on their influences."""
     return Section("Effects", text, tables=(effect_table("Effects", rows),), folded=folded, part=Part.EFFECTS)
 
@@ -113,7 +112,8 @@ def one_effects_section(sections: Sequence[Section]) -> tuple[Section, ...]:
     if len(effects) < 2:
         return tuple(sections)
     rows: dict[tuple[str, ...], tuple[str, ...]] = {}
-    for row in (row for section in effects for table in section.tables for row in table.rows):
+    tables = [table for section in effects for table in section.tables]
+    for row in (row for table in tables for row in table.rows):
         *decision, size, reason = row
         known = rows.get((*decision, reason))
         if known is None or not (size == "nothing" or size.endswith("at rest")):
@@ -126,29 +126,29 @@ def one_effects_section(sections: Sequence[Section]) -> tuple[Section, ...]:
 
 def ledger_section(ledger: Mapping[str, Any]) -> Section:
     """Tabulate the simulated and the neglected effects by the effect ledger of a scene."""
-    rows, trifles = (
-        [(effect.name, effect.parts, effect.on, effect.size, effect.reason) for effect in effects]
-        for effects in scene_effects(ledger)
-    )
-    small = effect_table(trifles_title({row[0] for row in trifles}), trifles)
-    neglected = settings_table("Not in the model", ledger.get("left_out", {}))
+    main, trifles = scene_effects(ledger)
+    folded = []
+    if trifles:
+        title = trifles_title({effect.name for effect in trifles})
+        folded.append(effect_table(title, map(_effect_row, trifles)))
     phases = tuple((row["part"], row["words"]) for row in ledger.get("assumed", ()))
-    assumed = Table("Assumed of phases", ("part", "assumed"), phases)
-    folded = (*((small,) if trifles else ()), *((assumed,) if phases else ()), neglected)
-    return effects_section("", rows, folded)
+    if phases:
+        folded.append(Table("Assumed of phases", ("part", "assumed"), phases))
+    folded.append(settings_table("Not in the model", ledger.get("left_out", {})))
+    return effects_section("", map(_effect_row, main), tuple(folded))
+
+
+def _effect_row(effect: SceneEffect) -> EffectRow:
+    return effect.name, effect.parts, effect.on, effect.size, effect.reason
 
 
 def cost_tables(metadata: Mapping[str, Any]) -> tuple[Table, ...]:
     """Return the table of predicted and measured cost of the housings; nothing where no cost is known."""
-    rows = tuple(
-        (
-            name,
-            *(amount(cost[clock]) for clock in ("seconds", "predicted_seconds")),
-            *(gigabytes(cost[size]) for size in ("bytes", "predicted_bytes")),
-        )
-        for name, cost in _work(metadata)
-    )
-    return (Table("Cost of the housings, once: results are kept", HEAD, rows),) if rows else ()
+    rows = []
+    for name, cost in _work(metadata):
+        seconds = amount(cost["seconds"]), amount(cost["predicted_seconds"])
+        rows.append((name, *seconds, gigabytes(cost["bytes"]), gigabytes(cost["predicted_bytes"])))
+    return (Table("Cost of the housings, once: results are kept", HEAD, tuple(rows)),) if rows else ()
 
 
 def _work(metadata: Mapping[str, Any]) -> Iterator[tuple[str, Json]]:

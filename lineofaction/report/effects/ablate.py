@@ -88,16 +88,14 @@ def _over_orders(
 
 def _case_table(ablation: Ablation) -> Table:
     """List the changes at the nominal load, trifles in one row."""
-    ordered = _CASE.ordered(ablation)
-    listed = [
-        entry
-        for entry in ordered
-        if not (ablation.measured(entry).trifle and (entry.estimate is None or entry.estimate.trifle))
-    ]
-    rows = [_case_row(ablation, entry) for entry in listed]
-    if len(listed) < len(ordered):
-        names = ", ".join(entry.name for entry in ordered if entry not in listed)
-        folded = f"{len(ordered) - len(listed)} below {100 * TRIFLE:g} %: {names}"
+    rows, trifles = [], []
+    for entry in _CASE.ordered(ablation):
+        if ablation.measured(entry).trifle and (entry.estimate is None or entry.estimate.trifle):
+            trifles.append(entry.name)
+        else:
+            rows.append(_case_row(ablation, entry))
+    if trifles:
+        folded = f"{len(trifles)} below {100 * TRIFLE:g} %: {', '.join(trifles)}"
         rows.append((folded, *[""] * (len(_CASE_HEAD) - 1)))
     caption = f"Change without each effect, computed and estimated, {_where(ablation)}"
     return Table(caption, _CASE_HEAD, tuple(rows))
@@ -137,9 +135,10 @@ def _scatter(ablation: Ablation, title: str, which: str) -> Panel:
     points = []
     for entry in ablation.effects:
         if entry.estimate is not None:
-            influences = (ablation.measured(entry), entry.estimate)
-            sizes = [abs(1e6 * getattr(influence, which)) for influence in influences]
-            points += [(*sizes, entry.name)] if min(sizes) > _SMALLEST else []
+            computed = abs(1e6 * getattr(ablation.measured(entry), which))
+            estimated = abs(1e6 * getattr(entry.estimate, which))
+            if min(computed, estimated) > _SMALLEST:
+                points.append((computed, estimated, entry.name))
     sizes = [value for point in points for value in point[:2]] or [0.1, 10.0]  # um, of an empty plot
     ends = np.array([0.5 * min(sizes), 2.0 * max(sizes)])
     marks: tuple[tuple[str, float, Dash], ...] = (
@@ -149,8 +148,8 @@ def _scatter(ablation: Ablation, title: str, which: str) -> Panel:
     )
     lines = [Line(name, ends, factor * ends, palette.MUTED, dash, 1.0) for name, factor, dash in marks]
     if points:
-        measured, estimated = (np.array([point[k] for point in points]) for k in (0, 1))
-        lines.append(Line("effects", measured, estimated, palette.INK, width=0, markers=True))
+        x, y, _ = map(np.array, zip(*points, strict=True))
+        lines.append(Line("effects", x, y, palette.INK, width=0, markers=True))
     notes = [Note(x, y, name.replace("_", " ")) for x, y, name in points]
     reach = float(ends[0]), float(ends[1])
     axes = Axis("computed change, µm", "log", reach), Axis("estimated change, µm", "log")
@@ -190,26 +189,16 @@ def _scene_table(ablation: SceneAblation) -> Table:
         "effect", "scene has it", "without it", "computed", "mean DTE, µm", "estimated", "peak to peak, µm",
         "estimated", "order 1, µm", "bearing force, N", "estimated", "of order", "cost, x",
     )  # fmt: skip
-    rows = tuple(
-        (
-            entry.name,
-            "on" if entry.on else "off",
-            entry.level.text,
-            entry.level_change.text,
-            _signed(1e6 * _maximum(entry.mean_change)),
-            estimated(entry, "mean"),
-            _signed(1e6 * _maximum(entry.peak_to_peak_change)),
-            estimated(entry, "peak_to_peak"),
-            _signed(1e6 * _maximum(entry.order_change[:, 0])),
-            *_bearing_force(entry),
-            number(entry.cost_ratio, 3),
-        )
-        for entry in _SCENE.ordered(ablation)
-    )
-    caption = (
-        "What leaving an effect out changes, second half of the run, the mesh or bearing with the largest"
-    )
-    return Table(caption, head, rows)
+    rows = []
+    for entry in _SCENE.ordered(ablation):
+        levels = (entry.level.text, entry.level_change.text)
+        mean = _signed(1e6 * _maximum(entry.mean_change)), estimated(entry, "mean")
+        ripple = _signed(1e6 * _maximum(entry.peak_to_peak_change)), estimated(entry, "peak_to_peak")
+        order = _signed(1e6 * _maximum(entry.order_change[:, 0]))
+        forces = (*_bearing_force(entry), number(entry.cost_ratio, 3))
+        rows.append((entry.name, "on" if entry.on else "off", *levels, *mean, *ripple, order, *forces))
+    caption = "What leaving an effect out changes, second half of the run"
+    return Table(f"{caption}, the mesh or bearing with the largest", head, tuple(rows))
 
 
 def _bearing_force(entry: SceneEffect) -> tuple[str, str, str]:
@@ -224,15 +213,16 @@ def _bearing_force(entry: SceneEffect) -> tuple[str, str, str]:
 
 
 def _scene_panels(ablation: SceneAblation) -> tuple[Panel, ...]:
-    error = _over_orders(
-        ablation, lambda figures: np.max(figures.orders, axis=0), "Transmission error", "amplitude, µm", 1e6
-    )
+    def of_error(figures: Any) -> FloatArray:
+        return np.asarray(np.max(figures.orders, axis=0))
+
+    def of_force(figures: Any) -> FloatArray:
+        return np.asarray(np.max(figures.bearing_orders, axis=0))
+
+    error = _over_orders(ablation, of_error, "Transmission error", "amplitude, µm", 1e6)
     if not ablation.bearing:
         return (error,)
-    force = _over_orders(
-        ablation, lambda figures: np.max(figures.bearing_orders, axis=0), "Bearing force", "amplitude, N", 1.0
-    )
-    return error, force
+    return error, _over_orders(ablation, of_force, "Bearing force", "amplitude, N", 1.0)
 
 
 def _maximum(values: FloatArray) -> float:
@@ -261,10 +251,8 @@ _SCENE = _Look(
 
 def _ablation_figure(ablation: Ablation | SceneAblation) -> Figure:
     look = _look(ablation)
-    changes = [
-        f"{entry.name} {look.change_text(ablation, entry)} of peak to peak"
-        for entry in look.ordered(ablation)
-    ]
+    ordered = look.ordered(ablation)
+    changes = [f"{entry.name} {look.change_text(ablation, entry)} of peak to peak" for entry in ordered]
     return Figure(
         key="ablation",
         title=look.title,
@@ -276,16 +264,21 @@ def _ablation_figure(ablation: Ablation | SceneAblation) -> Figure:
 
 
 def _ablation_page(ablation: Ablation | SceneAblation) -> Page:
-    look, heads = _look(ablation), []
+    look = _look(ablation)
+    heads: tuple[Headline, ...] = ()
+    figures: tuple[Figure, ...] = ()
     if ablation.effects:
         entry = look.ordered(ablation)[0]
         name, change = entry.name.replace("_", " "), look.change_text(ablation, entry)
-        heads.append(Headline(f"without {name}", change, "of peak to peak, the largest influence"))
-    left = Table("Effects that were not toggled", ("effect", "because"), tuple(ablation.omitted.items()))
-    tables = (look.table(ablation), *([left] if ablation.omitted else []))
-    figures = (replace(_ablation_figure(ablation), table=None),) if ablation.effects else ()
+        heads = (Headline(f"without {name}", change, "of peak to peak, the largest influence"),)
+        figures = (replace(_ablation_figure(ablation), table=None),)
+    tables = [look.table(ablation)]
+    if ablation.omitted:
+        omitted = tuple(ablation.omitted.items())
+        tables.append(Table("Effects that were not toggled", ("effect", "because"), omitted))
     lead = f"{len(ablation.effects)} effects of the {look.what}, each toggled by itself"
-    return Page("Influence of every effect", lead, tuple(heads), (Section("Effects", "", figures, tables),))
+    section = Section("Effects", "", figures, tuple(tables))
+    return Page("Influence of every effect", lead, heads, (section,))
 
 
 def _look(ablation: Ablation | SceneAblation) -> _Look:

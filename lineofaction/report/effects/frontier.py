@@ -22,6 +22,7 @@ from lineofaction.report.drawing.placing import placed
 from lineofaction.report.presentation import Presentation
 
 RECORDED = "full contact of this pair, recorded"
+_IN_PLANE = ("plane_strain", "corrected_draft", "corrected", "corrected_fine")
 Study = Frontier | SceneFrontier
 
 
@@ -70,8 +71,10 @@ class _Family(NamedTuple):
 
 def _peers(study: Frontier) -> list[_Peer]:
     """Return full contact by its known errors for this pair, and by its recorded curves."""
-    peers, measured = [], study.full_contact
-    if levels := study.known_full_contact:
+    peers = []
+    measured = study.full_contact
+    levels = study.known_full_contact
+    if levels:
         titles = tuple(f"full contact, {level.unknowns // 1000} k unknowns" for level in levels)
         time = np.array([level.seconds(study.solves) for level in levels])
         errors = {"mean_error": np.array([level.relative_error for level in levels])}
@@ -97,9 +100,9 @@ def _peer_caption(study: Frontier) -> str:
     record, plane_error = measured.record, measured.plane_strain_mean
     meshes = record.mesh_error
     plane = ", and hold what plane strain leaves out" if record.solved_in == PLANE else ""
-    remarks = (
-        f" Its own meshes differ by at most {number(100.0 * meshes, 2)} %." if np.isfinite(meshes) else ""
-    )
+    remarks = ""
+    if np.isfinite(meshes):
+        remarks = f" Its own meshes differ by at most {number(100.0 * meshes, 2)} %."
     if np.isfinite(plane_error):
         remarks += f" Our plane strain differs from it by {number(100.0 * plane_error, 2)} % of the mean."
     return (
@@ -169,11 +172,7 @@ _CASE = _Look(
     member="name",
     families=(
         _Family("closed forms", ("iso6336", "thin_slices"), palette.ORANGE),
-        _Family(
-            "2-D finite elements",
-            ("plane_strain", "corrected_draft", "corrected", "corrected_fine"),
-            palette.BLUE,
-        ),
+        _Family("2-D finite elements", _IN_PLANE, palette.BLUE),
         _Family("3-D finite elements", ("3d_draft", "3d_standard", "3d_fine"), palette.GREEN),
     ),
     further=(("memory, MiB", lambda result: number(result.peak_memory_bytes / 2**20, 3)),),
@@ -225,10 +224,8 @@ def _look_of(study: Study) -> _Look:
 def _frontier_figure(study: Study) -> Figure:
     look = _look_of(study)
     peers = look.peers(study)
-    times = [
-        *(result.cpu_seconds for result in study.results),
-        *(time for peer in peers for time in peer.time),
-    ]
+    times = [result.cpu_seconds for result in study.results]
+    times += [time for peer in peers for time in peer.time]
     time_axis = Axis(look.time, "log", (0.5 * min(times), 3.0 * max(times)))  # room for texts beside points
     return Figure(
         key=look.key,
@@ -243,42 +240,34 @@ def _frontier_figure(study: Study) -> Figure:
 def _frontier_table(study: Study) -> Table:
     look = _look_of(study)
     figures = [panel.figure for panel in look.panels]
-    rows = [
-        (
-            result.title,
-            number(result.cpu_seconds, 3),
-            *(_per_cent(getattr(result, figure)) for figure in figures),
-            *(cell(result) for _, cell in look.further),
-            _mark(study, result.name),
-        )
-        for result in study.results
-    ]
-    rows += [
-        (
-            title,
-            number(peer.time[k], 3),
-            *(_per_cent(peer.errors[figure][k]) if figure in peer.errors else "" for figure in figures),
-            *("" for _ in look.further),
-            peer.mark,
-        )
-        for peer in look.peers(study)
-        for k, title in enumerate(peer.titles)
-    ]
+    rows = []
+    for result in study.results:
+        errors = [_per_cent(getattr(result, figure)) for figure in figures]
+        further = [cell(result) for _, cell in look.further]
+        cells = (*errors, *further, _mark(study, result.name))
+        rows.append((result.title, number(result.cpu_seconds, 3), *cells))
+    for peer in look.peers(study):
+        for k, title in enumerate(peer.titles):
+            errors = [_per_cent(peer.errors[name][k]) if name in peer.errors else "" for name in figures]
+            rows.append((title, number(peer.time[k], 3), *errors, *("" for _ in look.further), peer.mark))
     heads = [*(panel.head for panel in look.panels), *(head for head, _ in look.further)]
     return Table(look.table, ("fidelity", "CPU time, s", *heads, "mark"), tuple(rows))
 
 
 def _frontier_page(study: Study) -> Page:
-    look, table, figure = _look_of(study), _frontier_table(study), _frontier_figure(study)
+    look, table = _look_of(study), _frontier_table(study)
     by_name = {result.name: result for result in study.results}
-    heads = [
-        Headline(text, by_name[name].title, f"{number(by_name[name].cpu_seconds, 2)} CPU s")
-        for text, name in ((look.chosen, study.chosen), ("knee", study.knee))
-        if name in by_name and name is not None
-    ]
-    left = Table("Fidelities that were not run", ("fidelity", "because"), tuple(study.omitted.items()))
-    tables = (table, *([left] if study.omitted else []))
-    section = Section(table.caption, "", (replace(figure, table=None),), tables)
+    heads = []
+    for text, name in ((look.chosen, study.chosen), ("knee", study.knee)):
+        result = None if name is None else by_name.get(name)
+        if result is not None:
+            heads.append(Headline(text, result.title, f"{number(result.cpu_seconds, 2)} CPU s"))
+    tables = [table]
+    if study.omitted:
+        omitted = tuple(study.omitted.items())
+        tables.append(Table("Fidelities that were not run", ("fidelity", "because"), omitted))
+    figure = replace(_frontier_figure(study), table=None)
+    section = Section(table.caption, "", (figure,), tuple(tables))
     return Page("Error over CPU time", look.lead(study), tuple(heads), (section,))
 
 
@@ -292,7 +281,10 @@ def _panel(study: Study, look: _Look, peers: Sequence[_Peer], time_axis: Axis, p
         if points:
             time, errors = np.array(points).T
             lines.append(Line(family.name, time, errors, family.color, width=0, markers=True))
-    notes = [Note(r.cpu_seconds, error, _marked_name(study, r.name)) for r, error in drawn]
+    notes = []
+    for result, error in drawn:
+        label, marks = result.name.replace("_", " "), _mark(study, result.name)
+        notes.append(Note(result.cpu_seconds, error, f"{label} ({marks})" if marks else label))
     for peer in peers:
         errors = 100.0 * peer.errors.get(panel.figure, np.zeros(0))
         if np.any(errors > 0.0):
@@ -310,11 +302,6 @@ def _panel(study: Study, look: _Look, peers: Sequence[_Peer], time_axis: Axis, p
 def _mark(study: Study, name: str) -> str:
     marks = (("knee", study.knee), ("chosen", study.chosen), ("reference", study.reference.name))
     return ", ".join(mark for mark, marked in marks if marked == name)
-
-
-def _marked_name(study: Study, name: str) -> str:
-    marks, label = _mark(study, name), name.replace("_", " ")
-    return f"{label} ({marks})" if marks else label
 
 
 def _per_cent(value: float) -> str:

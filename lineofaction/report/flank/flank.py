@@ -70,7 +70,10 @@ def contact_lines(flanks: LoadDistribution) -> Figure:
     load = _strokes(flanks, chosen, 1e-3 * flanks.line_load, "line load, N/mm")
     pressure = _strokes(flanks, np.array([worst]), 1e-6 * flanks.pressure, "Hertz pressure, MPa")
     at = f"{flanks.position[worst]:.3g}"
-    x, y = _axes(flanks)
+    x = _face_axis(flanks)
+    start, *_, end = (1e3 * point for point in flanks.scene.path_of_contact)
+    room = 0.06 * (end - start)
+    y = Axis("roll length of the pinion, mm", limits=(start - room, end + 1.5 * room))
     return Figure(
         key="contact_lines",
         title="Contact lines in the plane of action",
@@ -88,23 +91,15 @@ def contact_lines(flanks: LoadDistribution) -> Figure:
     )
 
 
-def _axes(flanks: LoadDistribution) -> tuple[Axis, Axis]:
-    start, *_, end = (1e3 * point for point in flanks.scene.path_of_contact)
-    room = 0.06 * (end - start)
-    return (
-        _face_axis(flanks),
-        Axis("roll length of the pinion, mm", limits=(start - room, end + 1.5 * room)),
-    )
-
-
 def _marks(flanks: LoadDistribution) -> tuple[Reference, ...]:
     """Mark A, C, E, and B and D where one pair alone can carry."""
     points = dict(zip("ABCDE", flanks.scene.path_of_contact, strict=True))
     single = points["A"] < points["B"] < points["D"] < points["E"]
-    names = "ABCDE" if single else "ACE"
-    return tuple(
-        Reference(name, 1e3 * points[name], "horizontal", 0.99 if name in "ACE" else 0.95) for name in names
-    )
+    marks = []
+    for name in "ABCDE" if single else "ACE":
+        label_end = 0.99 if name in "ACE" else 0.95
+        marks.append(Reference(name, 1e3 * points[name], "horizontal", label_end))
+    return tuple(marks)
 
 
 def _strokes(flanks: LoadDistribution, chosen: IntArray, values: FloatArray, label: str) -> Strokes:
@@ -128,16 +123,13 @@ def _carrying(flanks: LoadDistribution, position: int) -> int:
 
 
 def _table(flanks: LoadDistribution, chosen: IntArray) -> Table:
+    load, pressure = flanks.largest_line_load, flanks.largest_pressure
     columns = {
         "position, base pitches": lambda k: f"{flanks.position[k]:.4g}",
         "pairs that carry": lambda k: str(_carrying(flanks, int(k))),
-        "largest line load, N/mm": lambda k: _as_exact_as(
-            flanks.largest_line_load, float(flanks.line_load[k].max()), N_PER_MM
-        ),
+        "largest line load, N/mm": lambda k: _as_exact_as(load, float(flanks.line_load[k].max()), N_PER_MM),
         "over its mean": lambda k: number(float(flanks.line_load_factor[k]), 3),
-        "largest pressure, MPa": lambda k: _as_exact_as(
-            flanks.largest_pressure, float(flanks.pressure[k].max()), MPA
-        ),
+        "largest pressure, MPa": lambda k: _as_exact_as(pressure, float(flanks.pressure[k].max()), MPA),
     }
     return Table.of("Contact lines by position", chosen, columns)
 
@@ -194,10 +186,11 @@ def _shaded(flanks: LoadDistribution, gear: Gear, pattern: _Map) -> Panel:
 
 def _isolines(largest: float) -> tuple[float, ...]:
     """Return round levels below the largest pressure: multiples of 0.2, 0.5, 1, 2 or 5 powers of ten."""
-    step = 10.0 ** np.floor(np.log10(largest)) if largest > 0.0 else 1.0
-    wide = next(w for w in (0.2, 0.5, 1.0, 2.0, 5.0) if largest / (w * step) <= _MAX_ISOLINES + 1)
-    count = int(_HIGHEST_ISOLINE * largest / (wide * step))
-    return tuple(float(wide * step * k) for k in range(1, count + 1))
+    power = 10.0 ** np.floor(np.log10(largest)) if largest > 0.0 else 1.0
+    steps = [factor * power for factor in (0.2, 0.5, 1.0, 2.0, 5.0)]
+    step = next(step for step in steps if largest / step <= _MAX_ISOLINES + 1)
+    count = int(_HIGHEST_ISOLINE * largest / step)
+    return tuple(float(step * k) for k in range(1, count + 1))
 
 
 def _title(flanks: LoadDistribution, gear: Gear) -> str:
@@ -233,8 +226,8 @@ def _extent(flanks: LoadDistribution, gear: Gear, roll: FloatArray) -> tuple[flo
 
 def _alternative(flanks: LoadDistribution) -> str:
     worst = np.unravel_index(int(flanks.clear_pressure.argmax()), flanks.pressure.shape)
-    _, _, width_slice = worst
-    roll, face = (1e3 * float(v) for v in (flanks.roll_length_1[worst], flanks.face_position[width_slice]))
+    roll = 1e3 * float(flanks.roll_length_1[worst])
+    face = 1e3 * float(flanks.face_position[worst[-1]])  # axes: position, tooth pair, slice
     largest = _as_exact_as(flanks.largest_pressure, float(flanks.pressure[worst]), MPA)
     where = f"at roll length {number(roll, 3)} mm of the pinion"
     if flanks.face_position.size == 1:
@@ -275,10 +268,7 @@ def line_load_figure(flanks: LoadDistribution) -> Figure:
         caption=_line_load_caption(flanks, with_gap=bool(gaps)),
         alternative=f"Averaged over the positions the face carries {number(mean.min(), 4)} to "
         f"{number(mean.max(), 4)} N/mm: K_Hbeta {number(factor, 3)}.",
-        content=(
-            Panel(face, Axis("load per face width, N/mm"), (*loads, cycle)),
-            *gaps,
-        ),
+        content=(Panel(face, Axis("load per face width, N/mm"), (*loads, cycle)), *gaps),
         table=_face_table(flanks, mean),
     )
 
@@ -287,14 +277,16 @@ def _gap_panel(
     flanks: LoadDistribution, face: Axis, chosen: dict[str, int], colors: list[str]
 ) -> tuple[Panel, ...]:
     """Draw the gap left on the pair that carries most; nothing where its flanks touch all along the face."""
-    gaps = {name: _gap(flanks, int(k)) for name, k in chosen.items()}
-    if not any(np.nanmax(gap, initial=0.0) > _VISIBLE_GAP for gap in gaps.values()):
-        return ()
     x = 1e3 * flanks.face_position
-    lines = tuple(
-        Line(name, x, gap, color, label=name) for (name, gap), color in zip(gaps.items(), colors, strict=True)
-    )
-    return (Panel(face, Axis("gap, µm"), lines),)
+    lines = []
+    for (name, position), color in zip(chosen.items(), colors, strict=True):
+        pair = int(flanks.force[position].sum(axis=-1).argmax())
+        gap = 1e6 * flanks.gap[position, pair]
+        can_meet = np.isfinite(gap) & flanks.on_path[position, pair]
+        lines.append(Line(name, x, np.where(can_meet, gap, np.nan), color, label=name))
+    if not any(np.nanmax(line.y, initial=0.0) > _VISIBLE_GAP for line in lines):
+        return ()
+    return (Panel(face, Axis("gap, µm"), tuple(lines)),)
 
 
 def _line_load_caption(flanks: LoadDistribution, *, with_gap: bool) -> str:
@@ -313,7 +305,8 @@ def _line_load_caption(flanks: LoadDistribution, *, with_gap: bool) -> str:
 
 def load_centroid_figure(flanks: LoadDistribution) -> Figure:
     """Draw where along the face the load acts, and how unevenly it lies, over position."""
-    factor, k = flanks.mean_face_load_factor, number(flanks.mean_face_load_factor, 3)
+    factor = flanks.mean_face_load_factor
+    k = number(factor, 3)
     rounding = _ROUNDING * float(np.ptp(flanks.face_position))
     centroid = 1e3 * np.where(np.abs(flanks.load_centroid) > rounding, flanks.load_centroid, 0.0)
     return Figure(
@@ -335,21 +328,18 @@ def _over_position(flanks: LoadDistribution, y: str, values: FloatArray, mark: s
     """Draw a curve over position and a marked value; a curve over a full cycle is closed."""
     step = np.diff(flanks.position)
     is_full_cycle = step.size > 0 and np.allclose(step, 1.0 / flanks.position.size)
-    position = np.append(flanks.position, 1.0 + flanks.position[0]) if is_full_cycle else flanks.position
-    line = Line("", position, np.append(values, values[0]) if is_full_cycle else values, palette.BLUE)
-    x, marks = Axis.over(POSITION_LABEL, position), (Reference(mark, at, "horizontal"),)
-    return Panel(x, Axis(y), (line,), marks)
-
-
-def _gap(flanks: LoadDistribution, position: int) -> FloatArray:
-    """Return the gap of the pair that carries most, um; NaN where the flanks cannot meet."""
-    pair = int(flanks.force[position].sum(axis=-1).argmax())
-    gap = 1e6 * flanks.gap[position, pair]
-    return np.where(np.isfinite(gap) & flanks.on_path[position, pair], gap, np.nan)
+    position = flanks.position
+    if is_full_cycle:
+        position = np.append(position, 1.0 + position[0])
+        values = np.append(values, values[0])
+    line = Line("", position, values, palette.BLUE)
+    marks = (Reference(mark, at, "horizontal"),)
+    return Panel(Axis.over(POSITION_LABEL, position), Axis(y), (line,), marks)
 
 
 def _face_table(flanks: LoadDistribution, mean: FloatArray) -> Table:
-    largest, load = 1e-3 * flanks.line_load.max(axis=(0, 1)), flanks.largest_line_load
+    largest = 1e-3 * flanks.line_load.max(axis=(0, 1))
+    load = flanks.largest_line_load
     columns = {
         "face position, mm": lambda k: number(1e3 * float(flanks.face_position[k]), 4),
         "mean load per face width, N/mm": lambda k: _as_exact_as(load, float(mean[k]) * N_PER_MM, N_PER_MM),
@@ -377,14 +367,13 @@ def _to_error(estimate: Estimate, scale: float = 1.0) -> str:
 def _page(flanks: LoadDistribution, database: SteDatabase | None = None) -> Page:
     """Return the page of flank results; effects and case are left out where their database shows them."""
     pair = flanks.scene.geometry
-    sections = (*_results(flanks), *_making(flanks, alone=database is None))
-    return Page(
-        pair_title(pair), pair_lead(pair), tuple(_headlines(flanks)), sections, _alarms(flanks, database)
-    )
+    sections = (_results(flanks), *_making(flanks, alone=database is None))
+    heads = tuple(_headlines(flanks))
+    return Page(pair_title(pair), pair_lead(pair), heads, sections, _alarms(flanks, database))
 
 
 def _headlines(flanks: LoadDistribution) -> Iterator[Headline]:
-    """Yield the largest pressure and line load, and K_Hbeta, each with its error or why it has none."""
+    """Yield the largest pressure, the largest line load and K_Hbeta, with errors or why there are none."""
     reason = flanks.errors.reason
     pressure, load = flanks.largest_pressure, flanks.largest_line_load
     band = error_or_reason(pressure, "MPa", MPA, reason)
@@ -400,7 +389,7 @@ def _headlines(flanks: LoadDistribution) -> Iterator[Headline]:
 
 
 def _kink_text(flanks: LoadDistribution) -> str:
-    """Say over which length the largest pressure is a mean where a kink makes it infinite; else nothing."""
+    """Return text on the length over which the pressure at a kink is a mean; empty without a kink."""
     length = flanks.errors.kink_length
     if length <= 0.0:
         return ""
@@ -419,13 +408,13 @@ def _edge_load(flanks: LoadDistribution) -> str:
 
 
 def _length_text(flanks: LoadDistribution) -> str:
-    """Say over which length a load is the mean; nothing in the plane."""
+    """Return text on the length over which a load is the mean; empty in the plane."""
     if flanks.face_position.size == 1:
         return ""
     return f", peak over {number(1e3 * flanks.slice_width, 2)} mm of the face"
 
 
-def _results(flanks: LoadDistribution) -> tuple[Section, ...]:
+def _results(flanks: LoadDistribution) -> Section:
     """Return the section of the flanks; a plane model, of one slice, has no plots over the face."""
     figures: tuple[Figure, ...] = (contact_pattern_figure(flanks),)
     text = f"{flanks.position.size} positions of the mesh cycle."
@@ -433,7 +422,7 @@ def _results(flanks: LoadDistribution) -> tuple[Section, ...]:
         figures += (contact_lines(flanks), line_load_figure(flanks), load_centroid_figure(flanks))
     else:
         text += " The model is plane: what is shown is the same over the whole face."
-    return (Section("Flanks", text, figures=figures),)
+    return Section("Flanks", text, figures=figures)
 
 
 def _making(flanks: LoadDistribution, *, alone: bool) -> tuple[Section, ...]:
@@ -456,14 +445,14 @@ def _making(flanks: LoadDistribution, *, alone: bool) -> tuple[Section, ...]:
 
 
 def _alarms(flanks: LoadDistribution, database: SteDatabase | None) -> tuple[str, ...]:
-    """Say loudly if database and flank results are of different pairs."""
+    """Return an alarm if database and flank results are of different pairs."""
     if database is None:
         return ()
     computed, stored = flanks.scene.geometry, database.geometry
-    same = computed.teeth == stored.teeth and all(
-        abs(getattr(computed, name) - getattr(stored, name)) <= 1e-9 * getattr(stored, name)
-        for name in ("base_pitch", "face_width")
-    )
+    same = computed.teeth == stored.teeth
+    for name in ("base_pitch", "face_width"):
+        size = getattr(stored, name)
+        same &= abs(getattr(computed, name) - size) <= 1e-9 * size
     return () if same else ("The flank results and the STE database are of different gear pairs.",)
 
 

@@ -54,7 +54,8 @@ def _passage(gear: str, history: Json) -> Panel:
         Line("at its peak", position, series["at_compression_peak_mpa"], palette.SKY, "dash"),
     )
     references = [Reference(_said(peak), peak["position"])]
-    if (nominal := history["iso_6336_3_mpa"]) is not None:
+    nominal = history["iso_6336_3_mpa"]
+    if nominal is not None:
         references.append(Reference(f"ISO 6336-3: {number(nominal)} MPa", nominal, "horizontal", at=_LABEL))
     return Panel(_POSITION, _STRESS, lines, tuple(references), title=gear)
 
@@ -65,11 +66,10 @@ def _said(peak: Json) -> str:
 
 def _peak_table(stresses: Json) -> Table:
     """Return the stress of every root with its error, and where it is."""
-    peaks = [
-        {"gear": gear, "root": root, **stresses[gear][root]}
-        for gear in GEARS
-        for root in ("tension", "compression")
-    ]
+    peaks = []
+    for gear in GEARS:
+        for root in ("tension", "compression"):
+            peaks.append({"gear": gear, "root": root, **stresses[gear][root]})
     columns = {
         "gear": lambda peak: peak["gear"],
         "root": lambda peak: peak["root"],

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -31,7 +30,8 @@ def _level_figure(audio: HeardRun) -> Figure:
     along = np.interp(time, audio.time, track)
     x = replace(axis, limits=(float(track.min()), float(track.max())))
     unit = "dB re 1 nm/s" if audio.figures is None else "dB(A) re 20 µPa"
-    name, loudest = _noun(audio), int(np.argmax(level))
+    name = _noun(audio)
+    loudest = int(np.argmax(level))
     top = float(level[loudest])
     lowest = min(top - MIN_SPAN, max(float(level.min()), top - DEPTH))
     y = Axis(f"level, {unit}", limits=(lowest - MARGIN, top + MARGIN))
@@ -82,9 +82,8 @@ def _headlines(audio: HeardRun) -> tuple[Headline, ...]:
     if figures is None:
         level = float(vibration_level(audio.recording.rms))
         return (Headline("velocity, rms", f"{engineering(audio.recording.rms, 4)} m/s", f"{level:.1f} dB"),)
-    rows = [
-        Headline("sound pressure level", f"{figures.weighted_level:.1f} dB(A)", f"{figures.level:.1f} dB")
-    ]
+    weighted = f"{figures.weighted_level:.1f} dB(A)"
+    rows = [Headline("sound pressure level", weighted, f"{figures.level:.1f} dB")]
     if figures.loudness is not None:
         name = "loudness" if figures.steady else "loudness N5"
         rows.append(Headline(name, f"{engineering(figures.loudness, 3)} sone", "ISO 532-1, free field"))
@@ -103,15 +102,12 @@ def _page(audio: HeardRun) -> Page:
     return Page("A run heard through its housing", "", _headlines(audio), (section,))
 
 
-def _text(audio: HeardRun) -> Iterator[Table | str]:
-    yield audio.recording.quantity
-    yield audio.remark
-
-
 def _series(audio: HeardRun) -> Table:
     table = _level_figure(audio).table
     assert table is not None
     return table
 
 
-PAGE = Presentation(_level_figure, _page, _text, series=_series)
+PAGE = Presentation(
+    _level_figure, _page, lambda audio: (audio.recording.quantity, audio.remark), series=_series
+)

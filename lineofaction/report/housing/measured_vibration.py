@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from bounds.types import FloatArray
-from dynamics.vibration import vibration_level
+from dynamics.vibration import VibrationAnalysis, vibration_level
 from lineofaction.gearbox.studies.vibration.measured import MeasuredHousingVibration
 from lineofaction.gearbox.studies.vibration.run import MM_PER_S
 from lineofaction.gearbox.units import RPM
@@ -43,7 +43,7 @@ def measured_figure(result: MeasuredHousingVibration) -> Figure:
         title=f"Vibration of {result.housing} by order, by measured responses",
         caption="Root mean square velocity of points under the forces of the bearings, the measured "
         f"directions together. Nothing is drawn outside the measured band, {band}.",
-        alternative=f"Shown in detail: {_where(result)}.",
+        alternative=f"Shown in detail: {where_text(result)}.",
         content=tuple(_panel(result, vibration.point[k], vibration.rms[k] / MM_PER_S) for k in fastest),
         table=_largest_table(result),
     )
@@ -54,20 +54,15 @@ def _panel(result: MeasuredHousingVibration, name: str, rms: FloatArray) -> Pane
     vibration = result.vibration
     x, along = row_axis(vibration.speed, result.metadata)
     sizes = np.nan_to_num(rms).max(axis=0)
-    lines = tuple(
-        Line(
-            f"order {order_label(vibration.order[h], result.metadata)}",
-            along,
-            rms[:, h],
-            palette.category(k),
-            width=1.4,
-        )
-        for k, h in enumerate(drawn_orders(vibration.order, sizes, MAX_ORDERS, result.metadata))
-    )
-    return Panel(x, Axis("rms velocity, mm/s"), lines, title=name)
+    lines = []
+    for k, h in enumerate(drawn_orders(vibration.order, sizes, MAX_ORDERS, result.metadata)):
+        order = f"order {order_label(vibration.order[h], result.metadata)}"
+        lines.append(Line(order, along, rms[:, h], palette.category(k), width=1.4))
+    return Panel(x, Axis("rms velocity, mm/s"), tuple(lines), title=name)
 
 
-def _where(result: MeasuredHousingVibration) -> str:
+def where_text(result: MeasuredHousingVibration | VibrationAnalysis) -> str:
+    """Return the order, the speed and the frequency that are shown in detail, as text."""
     vibration, s, h = result.vibration, result.at_speed, result.at_order
     speed, hertz = number(float(vibration.speed[s]) / RPM, 4), number(vibration.frequency[s, h], 4)
     return f"{words_of_order(vibration.order[h], result.metadata)}, at {speed} rpm, {hertz} Hz"
@@ -79,23 +74,16 @@ def _largest_table(result: MeasuredHousingVibration) -> Table:
     rows = []
     for name, rms in zip(vibration.point, vibration.rms, strict=True):
         s, h = map(int, np.unravel_index(int(np.nanargmax(rms)), rms.shape))
-        rows.append(
-            (
-                name,
-                order_label(vibration.order[h], result.metadata),
-                number(float(vibration.speed[s]) / RPM, 5),
-                number(float(vibration.frequency[s, h]), 5),
-                number(float(rms[s, h]) / MM_PER_S, 4),
-                number(float(vibration_level(rms[s, h])), 4),
-                ", ".join(axes[name]),
-            )
-        )
+        order = order_label(vibration.order[h], result.metadata)
+        speed, hertz = float(vibration.speed[s]) / RPM, float(vibration.frequency[s, h])
+        size = number(float(rms[s, h]) / MM_PER_S, 4), number(float(vibration_level(rms[s, h])), 4)
+        rows.append((name, order, number(speed, 5), number(hertz, 5), *size, ", ".join(axes[name])))
     return Table("Largest velocity of every point", _LARGEST_HEAD, tuple(rows))
 
 
 def _contribution_table(result: MeasuredHousingVibration) -> Table:
     head = ("part", "frequency, Hz", *(f"{point}, %" for point in result.vibration.point))
-    caption = f"Contributions to the mean square velocity at {_where(result)}"
+    caption = f"Contributions to the mean square velocity at {where_text(result)}"
     return Table(caption, head, tuple(share_rows(result.bearing_shares, with_surface=False)))
 
 
@@ -113,7 +101,7 @@ def _contribution_figure(result: MeasuredHousingVibration) -> Figure | None:
     return Figure(
         key="housing_contributions",
         title=f"Contributions to the mean square velocity of {result.vibration.point[point]}",
-        caption=f"At {_where(result)}. Bars add up to 100 %; below zero: against the sum.",
+        caption=f"At {where_text(result)}. Bars add up to 100 %; below zero: against the sum.",
         alternative=f"Most comes from {shares.name[maximum]}, {number(100.0 * float(part[maximum]), 3)} %.",
         content=(share_panel(shares, part),),
         table=_contribution_table(result),
@@ -122,9 +110,12 @@ def _contribution_figure(result: MeasuredHousingVibration) -> Figure | None:
 
 def measured_page(result: MeasuredHousingVibration) -> Page:
     """Return the page of a measured housing, with a table of parts that its responses replace or omit."""
-    figures = (measured_figure(result), _contribution_figure(result))
-    drawn = (*(figure for figure in figures if figure is not None), *excitation_figures(result.metadata))
-    page = dynamics_page("Vibration of the housing", drawn, _headlines(result), result.metadata)
+    contributions = _contribution_figure(result)
+    drawn = [measured_figure(result)]
+    if contributions is not None:
+        drawn.append(contributions)
+    drawn += excitation_figures(result.metadata)
+    page = dynamics_page("Vibration of the housing", tuple(drawn), _headlines(result), result.metadata)
     rests = Table("Forces that move the housing", ("what", "how"), force_rows(result.metadata))
     absent = Table(_OMITTED, (result.file,), tuple((sentence,) for sentence in result.left_out))
     accuracy = Section("Accuracy of the velocities", tables=(absent, rests), part=Part.ACCURACY)
@@ -134,7 +125,7 @@ def measured_page(result: MeasuredHousingVibration) -> Page:
 def _headlines(result: MeasuredHousingVibration) -> tuple[Headline, ...]:
     vibration, point = result.vibration, _fastest(result)
     rms = float(vibration.rms[point, result.at_speed, result.at_order])
-    first = Headline(f"velocity of {vibration.point[point]}", velocity_text(rms), _where(result))
+    first = Headline(f"velocity of {vibration.point[point]}", velocity_text(rms), where_text(result))
     part = result.share[:, point]
     if not np.all(np.isfinite(part)):
         return (first,)
@@ -147,8 +138,7 @@ def measured_text(result: MeasuredHousingVibration) -> Iterator[Table | str]:
     """Yield velocities, contributions, excitations, and sentences on missing parts."""
     yield _largest_table(result)
     yield _contribution_table(result)
-    if (excites := excitation_table(result.metadata)) is not None:
-        yield excites
+    yield from filter(None, (excitation_table(result.metadata),))
     yield from result.left_out
     yield from (f"{what}: {text}" for what, text in force_rows(result.metadata))
     yield from model_text(result.metadata)
@@ -168,8 +158,7 @@ def measured_series(result: MeasuredHousingVibration) -> Table:
         vibration.covered.ravel().astype(float),
         *(size[vibration.point.index(name), axis].ravel() for name, axis in directions),
     ]
-    rows = tuple(
-        tuple(f"{value:.9g}" if np.isfinite(value) else "" for value in row)
-        for row in zip(*columns, strict=True)
-    )
-    return Table("Velocities by speed and order", tuple(head), rows)
+    rows = []
+    for row in zip(*columns, strict=True):
+        rows.append(tuple(f"{value:.9g}" if np.isfinite(value) else "" for value in row))
+    return Table("Velocities by speed and order", tuple(head), tuple(rows))

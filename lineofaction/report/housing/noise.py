@@ -55,7 +55,7 @@ _REGION_POINTS = 3
 
 
 def _sound_map(sound: RadiatedSound) -> Figure:
-    orders, (x, along) = sound.orders, row_axis(sound.speed, sound.metadata)
+    x, along = row_axis(sound.speed, sound.metadata)
     forces = "linear: stiffness varies with position, no loss of contact"
     if of_run(sound.metadata) is not None:
         forces = "with the amplitudes of the run"
@@ -65,7 +65,7 @@ def _sound_map(sound: RadiatedSound) -> Figure:
         caption="A-weighted sound power level re 1 pW of each order as in a steady state, "
         f"{forces}. Colors end {DEPTH:g} dB below the loudest.",
         alternative=" ".join(f"Loudest: {text}." for text in _sentences(sound)) or "Nothing radiates.",
-        content=(Panel(x, Axis("frequency, Hz"), shade=_cells(orders, along)),),
+        content=(Panel(x, Axis("frequency, Hz"), shade=_cells(sound.orders, along)),),
         table=_loudest_table(sound),
     )
 
@@ -75,7 +75,8 @@ def _cells(orders: OrderPower, speed: FloatArray) -> HeatMap:
 
     A cell is at least as tall as an order's rise from one speed to the next, so that no order's line breaks.
     """
-    top, steps = float(orders.frequency.max()), np.abs(np.diff(orders.frequency, axis=1))
+    top = float(orders.frequency.max())
+    steps = np.abs(np.diff(orders.frequency, axis=1))
     height = max(top / LINES, float(steps.max(initial=0.0)))
     edges = np.arange(0.0, top + 2.0 * height, height)
     cell = np.digitize(orders.frequency, edges) - 1
@@ -88,24 +89,24 @@ def _cells(orders: OrderPower, speed: FloatArray) -> HeatMap:
 
 
 def _level_over_speed(sound: RadiatedSound) -> Figure:
-    orders, (x, speed) = sound.orders, row_axis(sound.speed, sound.metadata)
-    level, total = orders.weighted_level, orders.total_weighted_level
+    x, speed = row_axis(sound.speed, sound.metadata)
+    level, total = sound.orders.weighted_level, sound.orders.total_weighted_level
     loudest_orders = drawn_orders(sound.order, level.max(axis=1), MAX_ORDERS, sound.metadata)
     floor = float(total.max()) - DEPTH
     names = [f"order {order_label(sound.order[h], sound.metadata)}" for h in loudest_orders]
-    lines = (
-        Line("total", speed, _above(total, floor), palette.INK, width=2.2),
-        *category_lines(speed, names, _above(level[loudest_orders], floor)),
-    )
-    if (run_sum := total_line(sound.speed, sound.metadata)) is not None:
-        lines += (Line("all of the run", run_sum[0], _above(run_sum[1], floor), palette.MUTED, width=1.4),)
+    lines = [Line("total", speed, _above(total, floor), palette.INK, width=2.2)]
+    lines += category_lines(speed, names, _above(level[loudest_orders], floor))
+    over_time = total_line(sound.speed, sound.metadata)
+    if over_time is not None:
+        along, run_sum = over_time
+        lines.append(Line("all of the run", along, _above(run_sum, floor), palette.MUTED, width=1.4))
     at = int(total.argmax())
     return Figure(
         key="sound_levels",
         title="Sound power of the orders over speed",
         caption=f"Orders add up in power. The {MAX_ORDERS} loudest are shown.",
         alternative=f"The total is largest at {_rpm(sound, at)}: {total[at]:.1f} dB(A).",
-        content=(Panel(x, Axis(LABEL), lines),),
+        content=(Panel(x, Axis(LABEL), tuple(lines)),),
         table=_levels_table(sound, level, total),
     )
 
@@ -119,17 +120,17 @@ def _third_octaves(sound: RadiatedSound) -> Figure:
     floor = float(level.max()) - DEPTH
     edges = np.append(center, center[-1] * 10.0**0.1) * 10.0**-0.05  # a band spans a tenth of a decade
     speed = number(float(sound.speed[at]) / RPM, 4)
-    lines = tuple(
-        step_line(name, edges, np.maximum(values, floor), color)
-        for name, values, color in (
-            ("largest over speed", level.max(axis=1), palette.BLUE),
-            (f"at {speed} rpm, the loudest speed", level[:, at], palette.VERMILLION),
-        )
+    largest, loud = level.max(axis=1), level[:, at]
+    name = f"at {speed} rpm, the loudest speed"
+    lines = (
+        step_line("largest over speed", edges, np.maximum(largest, floor), palette.BLUE),
+        step_line(name, edges, np.maximum(loud, floor), palette.VERMILLION),
     )
-    worst = int(level.max(axis=1).argmax())
+    worst = int(largest.argmax())
     names = tuple((float(value), f"{value:g}") for value in center[:: max(center.size // 8, 1)])
     x = Axis("nominal center of the band, Hz", "log", (float(edges[0]), float(edges[-1])), names)
-    rows = zip(center, level.max(axis=1), level[:, at], strict=True)
+    head = ("band, Hz", "largest over speed, dB(A)", f"at {speed} rpm, dB(A)")
+    rows = zip(center, largest, loud, strict=True)
     return Figure(
         key="sound_third_octaves",
         title="Sound power in third octaves",
@@ -137,16 +138,13 @@ def _third_octaves(sound: RadiatedSound) -> Figure:
         "of the nominal center.",
         alternative=f"The loudest band is that at {center[worst]:g} Hz: {level[worst].max():.1f} dB(A).",
         content=(Panel(x, Axis(LABEL), lines),),
-        table=Table(
-            "Third octaves",
-            ("band, Hz", "largest over speed, dB(A)", f"at {speed} rpm, dB(A)"),
-            tuple((f"{f:g}", f"{a:.1f}", f"{b:.1f}") for f, a, b in rows),
-        ),
+        table=Table("Third octaves", head, tuple((f"{f:g}", f"{a:.1f}", f"{b:.1f}") for f, a, b in rows)),
     )
 
 
 def _bearing_levels(sound: RadiatedSound) -> Figure:
-    (x, speed), total = row_axis(sound.speed, sound.metadata), sound.orders.total_weighted_level
+    x, speed = row_axis(sound.speed, sound.metadata)
+    total = sound.orders.total_weighted_level
     alone = np.stack([_total(sound, power) for power in sound.bearing_alone])
     floor = float(total.max()) - DEPTH
     drawn = np.argsort(-alone.max(axis=1), kind="stable")[:MAX_ORDERS]
@@ -157,6 +155,11 @@ def _bearing_levels(sound: RadiatedSound) -> Figure:
     at = int(total.argmax())
     loud = int(alone[:, at].argmax())
     without = np.stack([_total(sound, power) for power in sound.without_bearing])
+    columns = {
+        "bearing": lambda b: sound.bearing[b],
+        "alone, dB(A)": lambda b: f"{alone[b, at]:.1f}",
+        "all without it, dB(A)": lambda b: f"{without[b, at]:.1f}",
+    }
     return Figure(
         key="sound_bearings",
         title="Sound power by the force of each bearing alone",
@@ -165,15 +168,7 @@ def _bearing_levels(sound: RadiatedSound) -> Figure:
         alternative=f"At {_rpm(sound, at)} bearing {sound.bearing[loud]} alone radiates "
         f"{alone[loud, at]:.1f} dB(A) of {total[at]:.1f} dB(A).",
         content=(Panel(x, Axis(LABEL), lines),),
-        table=Table.of(
-            f"Bearings at {_rpm(sound, at)}",
-            range(len(sound.bearing)),
-            {
-                "bearing": lambda b: sound.bearing[b],
-                "alone, dB(A)": lambda b: f"{alone[b, at]:.1f}",
-                "all without it, dB(A)": lambda b: f"{without[b, at]:.1f}",
-            },
-        ),
+        table=Table.of(f"Bearings at {_rpm(sound, at)}", range(len(sound.bearing)), columns),
     )
 
 
@@ -182,17 +177,16 @@ def _panel_intensity(sound: RadiatedSound) -> Figure | None:
     panels, points = sound.panels, loudest(sound, 1)
     if panels is None or not points:
         return None
-    hull, value = panels.hull, 1e3 * panels.intensity
-    minimum, largest = (number(end, 2) for end in (value.min(), value.max()))
+    hull = panels.hull
+    value = 1e3 * panels.intensity
+    at_rest = np.zeros_like(hull.nodes)
     return Figure(
         key="sound_panels",
         title=f"Sound intensity on the surface: {_where(points[0], sound.metadata)}",
         caption="Active intensity normal to the hull that the radiation model takes: openings are covered, "
         "fine details rounded off. Negative: takes power that other panels radiate.",
-        alternative=f"The intensity is between {minimum} and {largest} mW/m².",
-        content=surface_panels(
-            hull.nodes, hull.triangles, np.zeros_like(hull.nodes), value, "intensity, mW/m²", "outer hull"
-        ),
+        alternative=f"The intensity is between {number(value.min(), 2)} and {number(value.max(), 2)} mW/m².",
+        content=surface_panels(hull.nodes, hull.triangles, at_rest, value, "intensity, mW/m²", "outer hull"),
         table=_region_table(sound),
     )
 
@@ -204,11 +198,10 @@ def _total(sound: RadiatedSound, power: FloatArray) -> FloatArray:
 
 def _levels_table(sound: RadiatedSound, level: FloatArray, total: FloatArray) -> Table:
     rows = [("total", f"{total.max():.1f}", number(float(sound.speed[total.argmax()]) / RPM, 5), "")]
-    for order, peak, row, hertz in zip(
-        sound.order, level.argmax(axis=1), level, sound.frequency.T, strict=True
-    ):
-        speed = number(float(sound.speed[peak]) / RPM, 5)
-        rows.append((order_label(order, sound.metadata), f"{row[peak]:.1f}", speed, number(hertz[peak], 5)))
+    for h, order in enumerate(sound.order):
+        peak = int(level[h].argmax())
+        speed, hertz = number(float(sound.speed[peak]) / RPM, 5), number(sound.frequency[peak, h], 5)
+        rows.append((order_label(order, sound.metadata), f"{level[h, peak]:.1f}", speed, hertz))
     head = ("order", "dB(A)", "speed, rpm", "frequency, Hz")
     return Table("Largest level of each order", head, tuple(rows))
 
@@ -239,13 +232,16 @@ def _loudest_table(sound: RadiatedSound) -> Table:
 
 
 def _sentences(sound: RadiatedSound) -> tuple[str, ...]:
-    """Return a sentence on the loudest point: its mode, bearing and region; empty in silence."""
-    return tuple(
-        f"{_where(point, sound.metadata)}: {point.weighted_level:.1f} dB(A) through mode {point.mode} of "
-        f"{point.mode_housing} ({number(point.natural_frequency, 4)} Hz); bearing {point.bearing} alone "
-        f"{point.bearing_level:.1f} dB(A); {_main_region(sound)}"
-        for point in loudest(sound, 1)
-    )
+    """Return a sentence on the loudest point: its mode, bearing and largest region; empty in silence."""
+    sentences = []
+    for point in loudest(sound, 1):
+        region = sound.metadata["regions"][0][0]  # the largest region of the loudest point
+        sentences.append(
+            f"{_where(point, sound.metadata)}: {point.weighted_level:.1f} dB(A) through mode {point.mode} of "
+            f"{point.mode_housing} ({number(point.natural_frequency, 4)} Hz); bearing {point.bearing} alone "
+            f"{point.bearing_level:.1f} dB(A); {100.0 * region['share']:.0f} % leaves {_region_name(region)}"
+        )
+    return tuple(sentences)
 
 
 def _where(point: LoudPoint, metadata: Json) -> str:
@@ -257,9 +253,11 @@ def _headlines(sound: RadiatedSound) -> tuple[Headline, ...]:
     total, points = sound.orders.total_weighted_level, loudest(sound, 1)
     at = int(total.argmax())
     where = f"at {number(float(sound.speed[at]) / RPM, 4)} rpm, all orders"
-    if (floor := sound.orders.floor_level) is not None and (off := sound.orders.total_error) is not None:
+    floor, off = sound.orders.floor_level, sound.orders.total_error
+    if floor is not None and off is not None:
         where += f", of it {floor[at]:.1f} dB(A) ± {engineering(float(off[at]), 2)} dB in those not listed"
-    if (band := sound.metadata["band"]) is not None:
+    band = sound.metadata["band"]
+    if band is not None:
         where += f"; {ends(band['largest_total'])} over the ranges of guesses"
         where += "".join(f"; {text}" for text in narrowest(sound.metadata))
     headlines = [Headline("sound power level", f"{total[at]:.1f} dB(A)", where)]
@@ -267,11 +265,10 @@ def _headlines(sound: RadiatedSound) -> tuple[Headline, ...]:
         mean = band["mean_total"]
         level = f"{mean['level_db_a']:.1f} dB(A)"
         headlines.append(Headline("mean over the speeds", level, f"of the power, all orders; {ends(mean)}"))
-    headlines += [
-        Headline("loudest order", f"{point.weighted_level:.1f} dB(A)", text)
-        for point, text in zip(points, _sentences(sound), strict=True)
-    ]
-    if (pressure := sound.metadata.get("pressure")) is not None:
+    for point, text in zip(points, _sentences(sound), strict=True):
+        headlines.append(Headline("loudest order", f"{point.weighted_level:.1f} dB(A)", text))
+    pressure = sound.metadata.get("pressure")
+    if pressure is not None:
         headlines.append(_pressure_headline(pressure, sound.metadata))
     parting = sound.speed[~sound.in_contact] / RPM
     if parting.size:
@@ -297,7 +294,8 @@ def _microphone(pressure: Json) -> str:
 
 
 def _pressure_table(pressure: Json, metadata: Json) -> Table:
-    """List the orders, each where it is loudest."""
+    """List the orders at the speeds at which they are loudest."""
+    caption = f"Largest sound pressure level of each order at {_microphone(pressure)}"
     columns = {
         "order": lambda row: order_label(row["order"], metadata),
         "dB(A)": lambda row: f"{row['level_db_a']:.1f}",
@@ -305,19 +303,17 @@ def _pressure_table(pressure: Json, metadata: Json) -> Table:
         "to": lambda row: "" if row["high_db_a"] is None else f"{row['high_db_a']:.1f}",
         "speed, rpm": lambda row: number(row["speed_rpm"], 5),
     }
-    return Table.of(
-        f"Largest sound pressure level of each order at {_microphone(pressure)}", pressure["orders"], columns
-    )
+    return Table.of(caption, pressure["orders"], columns)
 
 
 def _model_tables(sound: RadiatedSound) -> Iterator[Table]:
     for housing in sound.housing:
         compared = sound.metadata["models"][housing]
         if compared.get("predicted"):
-            order, speed = order_label(compared["order"], sound.metadata), number(compared["speed"] / RPM, 4)
+            order = order_label(compared["order"], sound.metadata)
+            speed = number(compared["speed"] / RPM, 4)
             rows = tuple(_model(name, compared) for name in compared["predicted"])
-            title = f"Radiation models of {housing} at order {order}, {speed} rpm"
-            yield Table(title, _MODEL_HEAD, rows)
+            yield Table(f"Radiation models of {housing} at order {order}, {speed} rpm", _MODEL_HEAD, rows)
 
 
 def _model(name: str, compared: Json) -> tuple[str, ...]:
@@ -340,18 +336,11 @@ def _region_name(region: Mapping[str, Any]) -> str:
     return f"{region['housing']} at {region['facing']}{named}"
 
 
-def _main_region(sound: RadiatedSound) -> str:
-    """Say through which region most of the loudest point leaves."""
-    region = sound.metadata["regions"][0][0]  # the largest region of the loudest point
-    return f"{100.0 * region['share']:.0f} % leaves {_region_name(region)}"
-
-
 def _region_table(sound: RadiatedSound) -> Table:
-    listed = [
-        {"point": point, **region}
-        for point, regions in zip(loudest(sound, _REGION_POINTS), sound.metadata["regions"], strict=False)
-        for region in regions
-    ]
+    listed = []
+    points = loudest(sound, _REGION_POINTS)
+    for point, regions in zip(points, sound.metadata["regions"], strict=False):
+        listed += [{"point": point, **region} for region in regions]
     columns = {
         "order": lambda region: order_label(region["point"].order, sound.metadata),
         "speed, rpm": lambda region: number(region["point"].speed / RPM, 5),
@@ -366,12 +355,12 @@ def _region_table(sound: RadiatedSound) -> Table:
 
 
 def _figures(sound: RadiatedSound) -> tuple[Figure, ...]:
-    draws = (_sound_map, _level_over_speed, _third_octaves, _bearing_levels, _panel_intensity)
-    figures = tuple(figure for draw in draws if (figure := draw(sound)) is not None)
+    figures = [_sound_map(sound), _level_over_speed(sound), _third_octaves(sound), _bearing_levels(sound)]
+    figures += filter(None, (_panel_intensity(sound),))
     figures += excitation_figures(sound.metadata)
-    if sound.metadata.get("over_time") is None:
-        return figures
-    return (*figures, third_octaves_over_time(sound.metadata))
+    if sound.metadata.get("over_time") is not None:
+        figures.append(third_octaves_over_time(sound.metadata))
+    return tuple(figures)
 
 
 def _limits(sound: RadiatedSound) -> Iterator[tuple[str, str]]:
@@ -388,7 +377,8 @@ def _limits(sound: RadiatedSound) -> Iterator[tuple[str, str]]:
 
 def _radiation_limits(sound: RadiatedSound, housing: str) -> Iterator[tuple[str, str]]:
     about, compared = sound.metadata["radiation"][housing], sound.metadata["models"][housing]
-    resolved, valid, highest = about["resolved_frequency"], about["valid_frequency"], sound.frequency.max()
+    resolved, valid = about["resolved_frequency"], about["valid_frequency"]
+    highest = sound.frequency.max()
     yield (
         housing,
         f"{about['model_name'].replace('_', ' ')}, outer hull {number(about['area'], 3)} m², "
@@ -400,18 +390,16 @@ def _radiation_limits(sound: RadiatedSound, housing: str) -> Iterator[tuple[str,
     if highest > valid:
         limitation = "0.7 of the highest mode kept, modes are missing: keep more"
         yield f"above {number(valid, 3)} Hz", limitation
-    if lines := compared.get("lines"):
-        where = (
-            f"{number(line['frequency'], 4)} Hz ({line['level'] - line['estimate']:+.1f} dB)"
-            for line in lines
-        )
-        yield "boundary elements", f"at {', '.join(where)} in the place of the estimate"
-    if replaced := compared.get("replaced"):
-        modes = ", ".join(number(hertz, 4) for hertz in replaced)
-        yield (
-            f"modes at {modes} Hz",
-            "near interior resonances of the monopoles' surface: by the velocity alone",
-        )
+    places = []
+    for line in compared.get("lines") or ():
+        change = line["level"] - line["estimate"]
+        places.append(f"{number(line['frequency'], 4)} Hz ({change:+.1f} dB)")
+    if places:
+        yield "boundary elements", f"at {', '.join(places)} in the place of the estimate"
+    replaced = ", ".join(number(hertz, 4) for hertz in compared.get("replaced") or ())
+    if replaced:
+        reason = "near interior resonances of the monopoles' surface: by the velocity alone"
+        yield f"modes at {replaced} Hz", reason
     for model, reason in compared.get("left_out", {}).items():
         yield f"without {model.replace('_', ' ')}", reason
 
@@ -420,14 +408,13 @@ def _text(sound: RadiatedSound) -> Iterator[Table | str]:
     yield _loudest_table(sound)
     yield _region_table(sound)
     yield from _sentences(sound)
-    if (excites := excitation_table(sound.metadata)) is not None:
-        yield excites
+    yield from filter(None, (excitation_table(sound.metadata),))
     yield from (f"{what}: {text}" for what, text in _limits(sound))
     yield from _model_tables(sound)
     yield from uncertainty_tables(sound.metadata)
     yield from narrowest(sound.metadata)
-    if (pressure := sound.metadata.get("pressure")) is not None:
-        yield _pressure_table(pressure, sound.metadata)
+    if sound.metadata.get("pressure") is not None:
+        yield _pressure_table(sound.metadata["pressure"], sound.metadata)
     omitted = sound.metadata["sensitivities_left_out"]
     yield from (f"no sensitivity to {name}: {why}" for name, why in omitted.items())
     yield from model_text(sound.metadata)
@@ -435,16 +422,19 @@ def _text(sound: RadiatedSound) -> Iterator[Table | str]:
 
 def _page(sound: RadiatedSound) -> Page:
     page = dynamics_page("Sound power", _figures(sound), _headlines(sound), sound.metadata)
-    tables = tuple(uncertainty_tables(sound.metadata))
-    if missing := sound.metadata["sensitivities_left_out"]:
-        tables += (Table("No sensitivity", ("to", "because"), tuple(missing.items())),)
-    bands = (Section("Bands, and what 1 dB costs", tables=tables),) if tables else ()
-    if (pressure := sound.metadata.get("pressure")) is not None:
-        pressure_section = Section("Sound pressure", tables=(_pressure_table(pressure, sound.metadata),))
-        bands = (pressure_section, *bands)
+    sections = [*page.sections]
+    if sound.metadata.get("pressure") is not None:
+        table = _pressure_table(sound.metadata["pressure"], sound.metadata)
+        sections.append(Section("Sound pressure", tables=(table,)))
+    tables = [*uncertainty_tables(sound.metadata)]
+    omitted = sound.metadata["sensitivities_left_out"]
+    if omitted:
+        tables.append(Table("No sensitivity", ("to", "because"), tuple(omitted.items())))
+    if tables:
+        sections.append(Section("Bands, and what 1 dB costs", tables=tuple(tables)))
     rests = Table("Radiation models, and what the levels do not hold", ("what", "how"), tuple(_limits(sound)))
     accuracy = Section("Accuracy of the levels", tables=(rests, *_model_tables(sound)), part=Part.ACCURACY)
-    return replace(page, sections=(*page.sections, *bands, accuracy))
+    return replace(page, sections=(*sections, accuracy))
 
 
 PAGE = Presentation(_sound_map, _page, _text)

@@ -90,9 +90,8 @@ def _unit(row: Json) -> str:
 def _needed(row: Json) -> str:
     if row["for_one_db_less"] is None:
         return "nothing does"
-    return f"{row['for_one_db_less']:+.3g}{_unit(row)}" + (
-        "" if row["linear"] else " (beyond the linear range)"
-    )
+    beyond = "" if row["linear"] else " (beyond the linear range)"
+    return f"{row['for_one_db_less']:+.3g}{_unit(row)}{beyond}"
 
 
 def ends(level: Json) -> str:

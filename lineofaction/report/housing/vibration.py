@@ -28,7 +28,7 @@ from lineofaction.report.drawing.figure import (
     category_lines,
     number,
 )
-from lineofaction.report.drawing.marks import drawn_orders, order_label, words_of_order
+from lineofaction.report.drawing.marks import drawn_orders, order_label
 from lineofaction.report.drawing.page import Headline, Page, Part, Section
 from lineofaction.report.drawing.surface_view import shape_figure
 from lineofaction.report.housing.forces import force_rows, row_axis
@@ -37,6 +37,7 @@ from lineofaction.report.housing.measured_vibration import (
     measured_page,
     measured_series,
     measured_text,
+    where_text,
 )
 from lineofaction.report.housing.shares import share_panel, share_rows, velocity_text
 from lineofaction.report.presentation import Presentation, dynamics_page, model_text
@@ -49,12 +50,6 @@ _LARGEST_HEAD = (
 )  # fmt: skip
 MAX_ORDERS, MAX_POINTS, MAX_SEATS = 6, 3, 4
 """Most orders in a panel, panels of points, and seats in a panel of transfer functions."""
-
-
-def _where(analysis: VibrationAnalysis) -> str:
-    vibration, s, h = analysis.vibration, analysis.at_speed, analysis.at_order
-    speed, hertz = number(float(vibration.speed[s]) / RPM, 4), number(vibration.frequency[s, h], 4)
-    return f"{words_of_order(vibration.order[h], analysis.metadata)}, at {speed} rpm, {hertz} Hz"
 
 
 def _largest_table(result: HousingVibrationResult) -> Table:
@@ -83,7 +78,9 @@ def _contribution_table(result: HousingVibrationResult) -> Table:
     rows = [*share_rows(analysis.bearings, with_surface), *share_rows(analysis.modes, with_surface)]
     if with_surface:
         head.append("outer hull, %")
-    return Table(f"Contributions to the mean square velocity at {_where(analysis)}", tuple(head), tuple(rows))
+    return Table(
+        f"Contributions to the mean square velocity at {where_text(analysis)}", tuple(head), tuple(rows)
+    )
 
 
 def _series(result: HousingVibrationResult) -> Table:
@@ -152,7 +149,8 @@ def _transfer_figure(result: HousingVibrationResult) -> Figure:
     marks = tuple(Reference(name, value) for name, value in named if value <= hertz[-1])
     nearest = int(np.argmin(np.abs(hertz - at)))
     per_force = Axis("velocity per force, m/(N s)", "log")
-    panels, title = [], "surface"
+    panels = []
+    title = "surface"
 
     def curves(gain: FloatArray, seats: IntArray) -> tuple[Line, ...]:
         return category_lines(hertz, [mobilities.seat[s] for s in seats], gain.T[seats], width=1.2)
@@ -191,19 +189,18 @@ def _contribution_figure(result: HousingVibrationResult) -> Figure:
     of_surface = analysis.deflection is not None
     point = 0 if of_surface else _fastest(analysis)[0]
     what = "of the outer hull" if of_surface else f"of {analysis.vibration.point[point]}"
-    contributions = [
-        (shares, shares.surface if of_surface else shares.point[point])
-        for shares in (analysis.bearings, analysis.modes)
-    ]
+    texts, panels = [], []
+    for shares in (analysis.bearings, analysis.modes):
+        part = shares.surface if of_surface else shares.point[point]
+        largest = f"{number(100.0 * float(part.max()), 3)} %"
+        texts.append(f"Most comes from {shares.name[int(np.argmax(part))]}, {largest}.")
+        panels.append(share_panel(shares, part))
     return Figure(
         key="housing_contributions",
         title=f"Contributions to the mean square velocity {what}",
-        caption=f"At {_where(analysis)}. Bars of a panel add up to 100 %; below zero: against the sum.",
-        alternative=" ".join(
-            f"Most comes from {shares.name[int(np.argmax(part))]}, {number(100.0 * float(part.max()), 3)} %."
-            for shares, part in contributions
-        ),
-        content=tuple(share_panel(shares, part) for shares, part in contributions),
+        caption=f"At {where_text(analysis)}. Bars of a panel add up to 100 %; below zero: against the sum.",
+        alternative=" ".join(texts),
+        content=tuple(panels),
         table=_contribution_table(result),
     )
 
@@ -213,19 +210,17 @@ def _shape_figure(result: HousingVibrationResult) -> Figure | None:
     shape = result.shape
     if shape is None:
         return None
-    if result.mode:
+    if result.mode:  # a mode has no unit
         what = f"Mode {result.mode}, {number(result.natural_frequency[result.mode - 1], 4)} Hz"
-        unit = None
-    else:
-        what = f"Operating deflection at {_where(result.analysis)}"
-        unit = MM_PER_S, "mm/s"
-    return shape_figure("housing_shape", what, shape, unit)
+        return shape_figure("housing_shape", what, shape, None)
+    what = f"Operating deflection at {where_text(result.analysis)}"
+    return shape_figure("housing_shape", what, shape, (MM_PER_S, "mm/s"))
 
 
 def _alternative(result: HousingVibrationResult) -> str:
     analysis, vibration = result.analysis, result.analysis.vibration
     beyond = vibration.order[~np.all(vibration.valid, axis=0)]
-    text = f"Shown in detail: {_where(analysis)}."
+    text = f"Shown in detail: {where_text(analysis)}."
     if beyond.size:
         orders = ", ".join(order_label(order, analysis.metadata) for order in beyond[:MAX_ORDERS])
         text += f" Orders {orders} reach above what the modes kept carry."
@@ -233,12 +228,11 @@ def _alternative(result: HousingVibrationResult) -> str:
 
 
 def _page(result: HousingVibrationResult) -> Page:
-    shape = _shape_figure(result)
-    first, *others = (_velocity_figure(result), _contribution_figure(result), _transfer_figure(result))
-    shapes = () if shape is None else (shape,)
-    drawn = (first, *shapes, *others, *excitation_figures(result.analysis.metadata))
-    page = dynamics_page("Vibration of the housing", drawn, _headlines(result), result.analysis.metadata)
-    forces = Table("Forces that move the housing", ("what", "how"), force_rows(result.analysis.metadata))
+    metadata = result.analysis.metadata
+    drawn = [_velocity_figure(result), *filter(None, (_shape_figure(result),))]
+    drawn += [_contribution_figure(result), _transfer_figure(result), *excitation_figures(metadata)]
+    page = dynamics_page("Vibration of the housing", tuple(drawn), _headlines(result), metadata)
+    forces = Table("Forces that move the housing", ("what", "how"), force_rows(metadata))
     accuracy = Section("Accuracy of the velocities", tables=(forces,), part=Part.ACCURACY)
     return replace(page, sections=(*page.sections, accuracy))
 
@@ -251,7 +245,7 @@ def _headlines(result: HousingVibrationResult) -> tuple[Headline, ...]:
         rms = vibration.rms[(slice(None), *at)]
         fastest = int(np.argmax(rms))
         name = f"velocity of {vibration.point[fastest]}"
-        first = Headline(name, velocity_text(float(rms[fastest])), _where(analysis))
+        first = Headline(name, velocity_text(float(rms[fastest])), where_text(analysis))
     else:
         rms_of_hull = float(vibration.mean_square_velocity[at]) ** 0.5
         first = Headline("velocity of the outer hull", velocity_text(rms_of_hull))
@@ -269,8 +263,7 @@ def _text(result: HousingVibrationResult) -> Iterator[Table | str]:
     analysis, vibration = result.analysis, result.analysis.vibration
     yield _largest_table(result)
     yield _contribution_table(result)
-    if (excites := excitation_table(analysis.metadata)) is not None:
-        yield excites
+    yield from filter(None, (excitation_table(analysis.metadata),))
     beyond = vibration.order[~np.all(vibration.valid, axis=0)]
     if beyond.size:
         orders = ", ".join(order_label(order, analysis.metadata) for order in beyond)
@@ -278,10 +271,6 @@ def _text(result: HousingVibrationResult) -> Iterator[Table | str]:
         yield f"orders {orders} go beyond {limit} Hz, 0.7 of the highest mode kept: keep more modes"
     yield from (f"{what}: {text}" for what, text in force_rows(analysis.metadata))
     yield from model_text(analysis.metadata)
-
-
-def _first_figure(result: HousingVibrationResult) -> Figure:
-    return _shape_figure(result) or _velocity_figure(result)
 
 
 def _by_kind(
@@ -296,7 +285,7 @@ def _by_kind(
 
 
 PAGE = Presentation(
-    _by_kind(_first_figure, measured_figure),
+    _by_kind(lambda result: _shape_figure(result) or _velocity_figure(result), measured_figure),
     _by_kind(_page, measured_page),
     _by_kind(_text, measured_text),
     series=_by_kind(_series, measured_series),

@@ -26,16 +26,7 @@ from lineofaction.gearbox.convert.complaint import (
 from lineofaction.gearbox.studies.complaint.run import AnsweredComplaint
 from lineofaction.gearbox.units import RPM
 from lineofaction.report.drawing import palette
-from lineofaction.report.drawing.figure import (
-    Axis,
-    Dash,
-    Figure,
-    Line,
-    Panel,
-    Reference,
-    Table,
-    number,
-)
+from lineofaction.report.drawing.figure import Axis, Dash, Figure, Line, Panel, Reference, Table, number
 from lineofaction.report.drawing.page import Headline
 from lineofaction.report.presentation import dynamics_presentation
 
@@ -62,6 +53,10 @@ def _figure(answer: AnsweredComplaint) -> Figure:
         panel = _by_order(complaint)
     else:
         panel = _over_speed(complaint, complaint.speed, complaint.frequency)
+    references = [*panel.references]
+    for mode, share in zip(answer.modes, MODE_LABELS, strict=False):  # fewer modes, or fewer labels
+        name = f"mode {number(mode.frequency)} Hz"
+        references.append(Reference(name, mode.frequency, "horizontal", share))
     return Figure(
         key="complaint",
         title="Complaint, and what passes there",
@@ -69,7 +64,7 @@ def _figure(answer: AnsweredComplaint) -> Figure:
         f"{engineering(100.0 * complaint.tolerance, 3)} % of the complaint. Dashed: speed and frequency of "
         "the complaint, and the modes within reach.",
         alternative=f"{sentence(complaint)}.",
-        content=(replace(panel, references=(*panel.references, *_mode_references(answer))),),
+        content=(replace(panel, references=tuple(references)),),
         table=_passing_table(answer),
     )
 
@@ -95,45 +90,24 @@ def _over_speed(complaint: Complaint, speed: float, frequency: float) -> Panel:
     """Draw frequencies over the shaft's speed about a complaint at `speed`, rad/s, and `frequency`, Hz."""
     ends = np.array(AXIS_ENDS)
     rpm = ends * speed / RPM
-    lines = tuple(
-        Line(
-            harmonic_label(line.group),
-            rpm,
-            line.group[0].order * rpm / 60.0,
-            line.color,
-            line.dash,
-            line.width,
-        )
-        for line in _group_lines(complaint)
-    )
+    lines = []
+    for line in _group_lines(complaint):
+        hertz = line.group[0].order * rpm / 60.0
+        lines.append(Line(harmonic_label(line.group), rpm, hertz, line.color, line.dash, line.width))
     low, high = ends * frequency
     x = Axis.over(f"speed of {complaint.shaft}, rpm", rpm)
-    return Panel(x, Axis("frequency, Hz", limits=(float(low), float(high))), lines)
+    return Panel(x, Axis("frequency, Hz", limits=(float(low), float(high))), tuple(lines))
 
 
 def _by_order(complaint: Complaint) -> Panel:
     """Draw the groups as points at their order and their distance from the complaint."""
-    lines = tuple(
-        Line(
-            harmonic_label(line.group),
-            np.array([line.group[0].order]),
-            np.array([100.0 * line.group[0].distance]),
-            line.color,
-            line.dash,
-            width=0.0,  # points
-            markers=True,
-        )
-        for line in _group_lines(complaint)
-    )
-    x, y = Axis(f"order of {complaint.shaft}"), Axis("distance from the complaint, %")
-    return Panel(x, y, lines, (Reference("complaint", complaint.order),))
-
-
-def _mode_references(answer: AnsweredComplaint) -> tuple[Reference, ...]:
-    return tuple(
-        Reference(f"mode {number(mode.frequency)} Hz", mode.frequency, "horizontal", share)
-        for mode, share in zip(answer.modes, MODE_LABELS, strict=False)  # fewer modes, or fewer labels
-    )
+    points = []
+    for line in _group_lines(complaint):
+        order, distance = np.array([line.group[0].order]), np.array([100.0 * line.group[0].distance])
+        look = line.color, line.dash
+        points.append(Line(harmonic_label(line.group), order, distance, *look, width=0.0, markers=True))
+    axes = Axis(f"order of {complaint.shaft}"), Axis("distance from the complaint, %")
+    return Panel(*axes, tuple(points), (Reference("complaint", complaint.order),))
 
 
 def _passing_table(answer: AnsweredComplaint) -> Table:
@@ -179,25 +153,17 @@ def _headlines(answer: AnsweredComplaint) -> tuple[Headline, ...]:
     first, *others = grouped(complaint.within)
     several = any(group[0].excitation.kind == MESH for group in others)
     ranked = f"; the likeliest by distance and {complaint.ranked_by}" if several else ""
-    headlines = [
-        Headline("complaint", cause_words(complaint, first), offset_text(complaint, first[0]) + ranked)
-    ]
+    offset = f"{offset_text(complaint, first[0])}{ranked}"
+    headlines = [Headline("complaint", cause_words(complaint, first), offset)]
     if others:
-        names = "; ".join(
-            f"{cause_words(complaint, group)}, {offset_text(complaint, group[0])}" for group in others
-        )
-        headlines.append(
-            Headline("passes there too", names, _resolution(first[0], [group[0] for group in others]))
-        )
-    nearest = grouped(candidate for candidate in complaint.passing if candidate.excitation.kind == MESH)
-    if first[0].excitation.kind != MESH and nearest:
-        headlines.append(
-            Headline(
-                "nearest mesh order",
-                cause_words(complaint, nearest[0]),
-                offset_text(complaint, nearest[0][0]),
-            )
-        )
+        causes = [f"{cause_words(complaint, group)}, {offset_text(complaint, group[0])}" for group in others]
+        resolution = _resolution(first[0], [group[0] for group in others])
+        headlines.append(Headline("passes there too", "; ".join(causes), resolution))
+    meshes = grouped(candidate for candidate in complaint.passing if candidate.excitation.kind == MESH)
+    if first[0].excitation.kind != MESH and meshes:
+        nearest = meshes[0]
+        offset = offset_text(complaint, nearest[0])
+        headlines.append(Headline("nearest mesh order", cause_words(complaint, nearest), offset))
     if answer.modes:
         mode = answer.modes[0]
         remark = f"{mode.kind}, {20.0 * np.log10(mode.amplification):+.1f} dB"

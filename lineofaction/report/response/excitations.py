@@ -50,17 +50,14 @@ def excitation_table(metadata: Mapping[str, Any]) -> Table | None:
     if not rows:
         return None
     head = "mesh", "load, N m", "harmonic", "order", *(quantity.label for quantity in _QUANTITIES)
-    cells = tuple(
-        (
-            row.mesh,
-            engineering(row.torque, 4),
-            "" if row.harmonic is None else str(row.harmonic),
-            order_label(row.order, metadata),
-            *(quantity.cell(row) for quantity in _QUANTITIES),
-        )
-        for row in rows
-    )
-    return Table("What excites: amplitudes at the static mesh forces, each with its error", head, cells)
+    cells = []
+    for row in rows:
+        harmonic = "" if row.harmonic is None else str(row.harmonic)
+        amplitudes = (quantity.cell(row) for quantity in _QUANTITIES)
+        order = order_label(row.order, metadata)
+        cells.append((row.mesh, engineering(row.torque, 4), harmonic, order, *amplitudes))
+    caption = "What excites: amplitudes at the static mesh forces, each with its error"
+    return Table(caption, head, tuple(cells))
 
 
 def omitted_orders(metadata: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
@@ -68,7 +65,8 @@ def omitted_orders(metadata: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
 
     Metadata ``lines_left_out``: count, share of the force (rms), whether totals include them.
     """
-    if not (omitted := metadata.get("lines_left_out")):
+    omitted = metadata.get("lines_left_out")
+    if not omitted:
         return ()
     share = engineering(100.0 * omitted["force"], 2)
     part = f"up to {share} % of the exciting force of a mesh order (rms)"
@@ -104,7 +102,8 @@ def _low_harmonics(metadata: Mapping[str, Any]) -> list[Excitation]:
 
 
 def _panel(rows: list[Excitation], quantity: _Quantity, meshes: list[str]) -> Panel:
-    width, bars = _WIDTH / len(meshes), []
+    width = _WIDTH / len(meshes)
+    bars = []
     for index, mesh in enumerate(meshes):
         mesh_rows = [row for row in rows if row.mesh == mesh and row.harmonic]
         # the bars of all meshes stand side by side, centered on the harmonic
@@ -114,17 +113,8 @@ def _panel(rows: list[Excitation], quantity: _Quantity, meshes: list[str]) -> Pa
         error = quantity.scale * np.array([error or 0.0 for _, error in amplitudes])
         bars.append(Bars(name=mesh, x=at, top=size, base=0.0, width=width, color=palette.category(index)))
         # the error bar is narrower, and drawn pale over the end of the amplitude's bar
-        bars.append(
-            Bars(
-                name="error",
-                x=at,
-                top=size + error,
-                base=np.maximum(size - error, 0.0),
-                width=0.4 * width,
-                color=palette.INK,
-                veiled=True,
-            )
-        )
+        ends = size + error, np.maximum(size - error, 0.0)
+        bars.append(Bars("error", at, *ends, 0.4 * width, palette.INK, veiled=True))
     names = tuple((float(k), str(k)) for k in range(1, MAX_HARMONIC + 1))
     x = Axis("harmonic of the mesh", limits=(0.4, MAX_HARMONIC + 0.6), names=names)
     return Panel(x, Axis(quantity.label), bars=tuple(bars))

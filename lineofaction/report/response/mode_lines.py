@@ -31,7 +31,7 @@ _COLORS = {
     "whirl in a plane": palette.ORANGE,
 }
 OTHERS = "others"
-_WIDTH = 0.62
+_WIDTH = 0.62  # of a bar
 
 
 @dataclass(frozen=True)
@@ -92,19 +92,21 @@ def mode_table(run: RunResult, top: float, orders: int) -> Table | None:
     if not run.modes:
         return None
     low, high = float(run.mesh_frequency[0].min()), float(run.mesh_frequency[0].max())
-    modes, whirls = run.modes["over_speed"] if whirling(run) else run.modes, whirling(run)
+    whirls = whirling(run)
+    modes = run.modes["over_speed"] if whirls else run.modes
     rows = []
     for index, (frequency, ratio) in enumerate(zip(modes["frequency"], modes["damping_ratio"], strict=True)):
         line, damping = np.atleast_1d(frequency), np.atleast_1d(ratio)
         if not 0.0 < line[0] < top:
             continue
-        frequencies = [number(end, 4) for end in ((line[0], line[-1]) if whirls else line)]
+        ends = (line[0], line[-1]) if whirls else line
+        frequencies = [number(end, 4) for end in ends]
         whirl = (whirl_name(modes["whirl"][index][-1]),) if whirls else ()
         met = _met(modes["mesh_frequency"][0] if whirls else None, line, orders, (low, high))
         rows.append((*frequencies, number(100.0 * float(damping[-1]), 2), *whirl, _moves(modes, index), met))
     if whirls:
-        ends = ("at rest, Hz", "at the highest speed, Hz", "damping ratio there, %", "whirl")
-        return Table("Whirl modes in the range of the diagram", (*ends, MOVES, MET), tuple(rows))
+        over_speed = ("at rest, Hz", "at the highest speed, Hz", "damping ratio there, %", "whirl")
+        return Table("Whirl modes in the range of the diagram", (*over_speed, MOVES, MET), tuple(rows))
     head = ("natural frequency, Hz", "damping ratio, %", MOVES, MET)
     return Table("Natural modes in the range of the diagram", head, tuple(rows))
 
@@ -161,9 +163,8 @@ def mode_bars(modes: Sequence[str], shares: Sequence[Mapping[str, float]], energ
     rest = np.where(base > 0.0, 100.0, 0.0)
     if np.any(rest > base + 0.5):  # half a per cent is not drawn
         bars.append(Bars(OTHERS, position, rest, base, _WIDTH, palette.GRID))
-    return Panel(
-        Axis.of_names(modes, "mode"), Axis(f"share of the {energy}, %", limits=(0.0, 100.0)), bars=tuple(bars)
-    )
+    share = Axis(f"share of the {energy}, %", limits=(0.0, 100.0))
+    return Panel(Axis.of_names(modes, "mode"), share, bars=tuple(bars))
 
 
 def _largest_parts(shares: Sequence[Mapping[str, float]]) -> list[str]:

@@ -32,9 +32,7 @@ from lineofaction.report.response.mode_lines import mode_bars, whirl_name
 ALIKE = 1e-3  # relative difference of frequencies or speeds that share a line of the tables
 MAX_PARTS = 2
 MAX_MODES, PRINTED_MODES = 10, 20
-HEADROOM = (
-    1.15  # top of the plot over the highest mode or order; modes that no order reaches are left to the table
-)
+HEADROOM = 1.15  # top of the plot over the highest mode or order; modes that no order reaches are not drawn
 MIN_TOP = 1.0  # least top of the plot, Hz
 ROOM = 0.03  # share of the width for the name of an order; orders that end closer have no name
 NOTE_TOP = 0.97  # height up to which the name of an order stands, over that of the plot
@@ -56,17 +54,13 @@ def _housing(modes: ModalAnalysis) -> tuple[Figure, ...]:
     of_housing = [move == "housing" for _, move in freedom_parts(modes.freedom)]
     share = modes.natural_kinetic_energy[:, of_housing].sum(axis=1)
     lowest = np.flatnonzero((modes.natural_frequency > 0.0) & (share > LARGE))[:1]
-    shapes = [surface_shape(modes, modes.natural_shape[mode]) for mode in lowest]
-    return tuple(
-        shape_figure(
-            "modal_housing",
-            f"The housing in mode {mode + 1} at rest, {number(modes.natural_frequency[mode], 4)} Hz",
-            shape,
-            unit=None,  # a mode has no size
-        )
-        for mode, shape in zip(lowest, shapes, strict=True)
-        if shape is not None
-    )
+    figures = []
+    for mode in lowest:
+        shape = surface_shape(modes, modes.natural_shape[mode])
+        title = f"The housing in mode {mode + 1} at rest, {number(modes.natural_frequency[mode], 4)} Hz"
+        if shape is not None:
+            figures.append(shape_figure("modal_housing", title, shape, unit=None))  # a mode has no size
+    return tuple(figures)
 
 
 def _campbell(modes: ModalAnalysis) -> Figure:
@@ -75,10 +69,8 @@ def _campbell(modes: ModalAnalysis) -> Figure:
     top = min(HEADROOM * float(np.nanmax(modes.frequency)), max(HEADROOM * reach, MIN_TOP))
     lines = [*_orders(modes, speed, top), *_modes(modes, speed)]
     if modes.critical_speed.size:
-        speeds = modes.critical_speed / RPM
-        lines.append(
-            Line("critical speeds", speeds, modes.critical_frequency, palette.INK, width=0.0, markers=True)
-        )
+        points = modes.critical_speed / RPM, modes.critical_frequency
+        lines.append(Line("critical speeds", *points, palette.INK, width=0.0, markers=True))
     x = Axis.over(f"speed of {modes.metadata['leading_shaft']}, rpm", speed)
     y = Axis("frequency, Hz", limits=(0.0, top))
     return Figure(
@@ -93,32 +85,35 @@ def _campbell(modes: ModalAnalysis) -> Figure:
 
 
 def _orders(modes: ModalAnalysis, speed: FloatArray, top: float) -> Iterator[Line]:
-    """Multiples of every mesh frequency, each once."""
+    """Yield the lines of the multiples of every mesh frequency; equal meshes have them once."""
     for mesh in _different(modes):
         for order in range(1, int(modes.metadata["orders"]) + 1):
             height = order * modes.mesh_frequency[mesh]
-            yield Line(
-                "mesh orders", speed, np.where(height <= top, height, np.nan), palette.PURPLE, "dot", 1.0
-            )
+            drawn = np.where(height <= top, height, np.nan)
+            yield Line("mesh orders", speed, drawn, palette.PURPLE, "dot", 1.0)
 
 
 def _different(modes: ModalAnalysis) -> list[int]:
-    """Meshes whose frequency no earlier one has."""
+    """Return the indices of the turning meshes whose frequency no earlier mesh has."""
+    different = []
     last = modes.mesh_frequency[:, -1]
-    return [
-        m for m in range(last.size) if last[m] > 0.0 and not np.any(np.isclose(last[:m], last[m], rtol=1e-9))
-    ]
+    for mesh in np.flatnonzero(last > 0.0).tolist():
+        if not np.any(np.isclose(last[:mesh], last[mesh], rtol=1e-9)):
+            different.append(mesh)
+    return different
 
 
 def _order_notes(modes: ModalAnalysis, speed: FloatArray, top: float) -> Iterator[Note]:
-    several, width = len(_different(modes)) > 1, float(np.ptp(speed))
-    for mesh in _different(modes):
-        rate, last = float(modes.mesh_frequency[mesh, -1] / speed[-1]), np.inf
+    meshes, width = _different(modes), float(np.ptp(speed))
+    for mesh in meshes:
+        rate = float(modes.mesh_frequency[mesh, -1] / speed[-1])
+        last = np.inf
         for order in range(1, int(modes.metadata["orders"]) + 1):
             end = min(float(speed[-1]), NOTE_TOP * top / (order * rate))
             if end <= speed[0] or last - end < ROOM * width:
                 continue
-            last, name = end, f"{order}x {modes.mesh[mesh]}" if several else f"{order}x"
+            last = end
+            name = f"{order}x {modes.mesh[mesh]}" if len(meshes) > 1 else f"{order}x"
             yield Note(end - ROOM * width, NOTE_DROP * order * rate * end, name)
 
 
@@ -213,6 +208,7 @@ def _critical_table(modes: ModalAnalysis) -> Table:
 
 
 def _together(modes: ModalAnalysis, first: int, other: int, speed: float) -> bool:
+    """Whether an order of a mesh meets two modes at speeds that share a line of the table."""
     same = modes.critical_order[first] == modes.critical_order[other]
     same = same and modes.critical_mesh[first] == modes.critical_mesh[other]
     return bool(same and abs(modes.critical_speed[first] - speed) <= ALIKE * speed)
@@ -231,13 +227,12 @@ def _alternative(modes: ModalAnalysis) -> str:
     if not modes.critical_speed.size:
         return "No mesh order meets a mode in this range."
     minimum = int(np.argmin(modes.critical_damping_ratio))
-    return (
-        f"{modes.critical_speed.size} crossings; the least damped, with "
-        f"{number(100.0 * float(modes.critical_damping_ratio[minimum]), 3)} %, at "
-        f"{number(float(modes.critical_speed[minimum]) / RPM, 4)} rpm and "
-        f"{number(modes.critical_frequency[minimum], 4)} Hz, mesh order "
-        f"{int(modes.critical_order[minimum])}."
-    )
+    damping = f"{number(100.0 * float(modes.critical_damping_ratio[minimum]), 3)} %"
+    speed = f"{number(float(modes.critical_speed[minimum]) / RPM, 4)} rpm"
+    place = f"{speed} and {number(modes.critical_frequency[minimum], 4)} Hz"
+    order = f"mesh order {int(modes.critical_order[minimum])}"
+    count = modes.critical_speed.size
+    return f"{count} crossings; the least damped, with {damping}, at {place}, {order}."
 
 
 def _headlines(modes: ModalAnalysis) -> tuple[Headline, ...]:
@@ -267,7 +262,8 @@ def _text(modes: ModalAnalysis) -> Iterator[Table | str]:
     forces = ", ".join(f"{name} {engineering(force, 4)} N" for name, force in start["mesh_force"].items())
     yield f"static equilibrium {start['status'].lower()}: {forces}"
     yield _modes_table(modes, PRINTED_MODES)
-    if (more := modes.natural_frequency.size - PRINTED_MODES) > 0:
+    more = modes.natural_frequency.size - PRINTED_MODES
+    if more > 0:
         highest = number(1e-3 * float(modes.natural_frequency[-1]), 3)
         yield f"{more} more up to {highest} kHz: in the report, with --json"
     if modes.speed.size:

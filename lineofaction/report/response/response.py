@@ -66,11 +66,8 @@ def _power_figure(response: ForcedResponse) -> Figure:
     kinds = {row[0] for row in table.rows}
     losses = response.power.by_kind()
     # lines are made for all kinds, so that a kind keeps its color whichever others are drawn
-    lines = tuple(
-        line
-        for line in category_lines(response.speed / RPM, list(losses), losses.values())
-        if line.name in kinds
-    )
+    of_all = category_lines(response.speed / RPM, list(losses), losses.values())
+    lines = tuple(line for line in of_all if line.name in kinds)
     maximum = max(losses, key=lambda kind: float(np.max(losses[kind])))
     return Figure(
         key="power",
@@ -92,18 +89,20 @@ def _total(response: ForcedResponse) -> FloatArray:
     return np.asarray(np.sum(response.power.loss, axis=(0, 2)))
 
 
-def _response_figure(response: ForcedResponse, mesh: int = 0) -> Figure:
-    x, speed, quantities = _speed_axis(response), response.speed / RPM, _quantities(response, mesh)
+def _response_figure(response: ForcedResponse) -> Figure:
+    x, speed = _speed_axis(response), response.speed / RPM
+    quantities = _quantities(response)
     largest = np.empty(0)  # amplitude of each order
     if quantities:
         _, amplitude = quantities[1 if response.mesh else 0]  # the mesh force, or else the bearing force
         largest = np.max(amplitude, axis=0)
     drawn = drawn_orders(response.order[: largest.size], largest, MAX_ORDERS, response.metadata)
-    names, panels = [f"order {order_label(response.order[h], response.metadata)}" for h in drawn], []
+    names = [f"order {order_label(response.order[h], response.metadata)}" for h in drawn]
+    panels = []
     for label, amplitude in quantities:
         panels.append(Panel(x, Axis(label), category_lines(speed, names, amplitude[:, drawn].T)))
     if response.mesh:
-        line = Line("least mesh force", speed, response.least_mesh_force[mesh], palette.INK, width=1.4)
+        line = Line("least mesh force", speed, response.least_mesh_force[0], palette.INK, width=1.4)
         lift_off = Reference("flanks part", 0.0, "horizontal", at=0.12)
         panels.append(Panel(x, Axis("least mesh force, N"), (line,), (lift_off,)))
     return Figure(
@@ -116,15 +115,14 @@ def _response_figure(response: ForcedResponse, mesh: int = 0) -> Figure:
     )
 
 
-def _quantities(response: ForcedResponse, mesh: int) -> list[tuple[str, FloatArray]]:
-    """Return the shown quantities by name, (S, H) each."""
+def _quantities(response: ForcedResponse) -> list[tuple[str, FloatArray]]:
+    """Return the shown quantities by name, (S, H) each: those of the first mesh, and a bearing force."""
     quantities = []
     if response.mesh:
-        name = f" of {response.mesh[mesh]}" if len(response.mesh) > 1 else ""
-        quantities += [
-            (f"transmission error{name}, µm", 1e6 * np.abs(response.dynamic_transmission_error[mesh])),
-            (f"mesh force{name}, N", np.abs(response.mesh_force[mesh])),
-        ]
+        name = f" of {response.mesh[0]}" if len(response.mesh) > 1 else ""
+        error = 1e6 * np.abs(response.dynamic_transmission_error[0])
+        quantities.append((f"transmission error{name}, µm", error))
+        quantities.append((f"mesh force{name}, N", np.abs(response.mesh_force[0])))
     force = _bearing_force(response)
     if force.size:
         name = response.metadata.get("complaint", {}).get("bearing")
@@ -139,12 +137,9 @@ def _bearing_force(response: ForcedResponse) -> FloatArray:
 
 
 def _peak_table(response: ForcedResponse, maximum: int = MAX_PEAKS) -> Table:
-    every = peaks(response)
-    listed = [
-        peak
-        for quantity in ("mesh_force", "bearing_force")
-        for peak in [peak for peak in every if peak.quantity == quantity][:maximum]
-    ]
+    listed = []
+    for quantity in ("mesh_force", "bearing_force"):
+        listed += [peak for peak in peaks(response) if peak.quantity == quantity][:maximum]
     columns = {
         "force of": lambda peak: f"{peak.quantity.removesuffix('_force')} {peak.name}",
         "order": lambda peak: order_label(peak.order, response.metadata),
@@ -171,10 +166,13 @@ def _alternative(response: ForcedResponse) -> str:
 
 
 def _headlines(response: ForcedResponse) -> tuple[Headline, ...]:
-    parting, force = response.speed[~response.in_contact] / RPM, _bearing_force(response)
-    forces = [("mesh force of", response.mesh, np.abs(response.mesh_force))]
-    forces += [("force on bearing", response.bearing, force)]
-    headlines = [_largest(quantity, names, size, response) for quantity, names, size in forces if size.size]
+    parting = response.speed[~response.in_contact] / RPM
+    on_meshes, on_bearings = np.abs(response.mesh_force), _bearing_force(response)
+    headlines = []
+    if on_meshes.size:
+        headlines.append(_largest("mesh force of", response.mesh, on_meshes, response))
+    if on_bearings.size:
+        headlines.append(_largest("force on bearing", response.bearing, on_bearings, response))
     if not parting.size:
         return tuple(headlines)
     at = f"{parting.size} of {response.speed.size} speeds"
@@ -200,17 +198,13 @@ def _figures(response: ForcedResponse) -> tuple[Figure, ...]:
 
 def _text(response: ForcedResponse) -> Iterator[Table | str]:
     yield _peak_table(response, PRINTED_PEAKS)
-    if (excites := excitation_table(response.metadata)) is not None:
-        yield excites
+    yield from filter(None, (excitation_table(response.metadata),))
     parting = response.speed[~response.in_contact] / RPM
     if parting.size:
         where = f"{parting[0]:.5g} to {parting[-1]:.5g} rpm"
         yield f"flanks lift off at {parting.size} of {response.speed.size} speeds, {where}: see loa steady"
-    worst = 100.0 * float(response.excitation_difference.max(initial=0.0))
-    yield (
-        "first-order theory: the other excitation changes "
-        f"amplitudes by up to {engineering(worst, 2)} % of the largest"
-    )
+    worst = f"{engineering(100.0 * float(response.excitation_difference.max(initial=0.0)), 2)} %"
+    yield f"first-order theory: the other excitation changes amplitudes by up to {worst} of the largest"
     yield from (f"{name}: {text}" for name, text in omitted_orders(response.metadata))
     yield from _omission_text(response)
     if _loses_power(response):

@@ -17,7 +17,6 @@ from lineofaction.gearbox.units import RPM
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (
     Axis,
-    Dash,
     Figure,
     FloatArray,
     Line,
@@ -41,51 +40,49 @@ _MESH_HEAD = (
 _SWEEPS = ((UP, "rising speed", palette.BLUE), (DOWN, "falling speed", palette.ORANGE))
 
 
-def _steady_figure(states: SteadyStates, mesh: int = 0) -> Figure:
-    """Draw one mesh: stable motions of the branch solid, unstable ones dashed, both sweeps as points."""
+def _steady_figure(states: SteadyStates) -> Figure:
+    """Draw the first mesh: stable motions of the branch solid, unstable ones dashed, sweeps as points."""
     swept = states.speed[states.curve != BRANCH] / RPM
     ends = (float(swept.min()), float(swept.max()))
     x = Axis(f"speed of {states.metadata['leading_shaft']}, rpm", limits=ends)
-    quantities = _quantities(states, mesh)
     marks = tuple(Reference(f"fold {number(speed, 5)}", speed) for speed in _folds(states, ends))
-    panels = tuple(
-        Panel(x, Axis(label), tuple(_lines(states, values)), marks) for label, values in quantities
-    )
+    panels = []
+    for label, values in _quantities(states):
+        panels.append(Panel(x, Axis(label), tuple(_lines(states, values)), marks))
     return Figure(
         key="steady",
         title="Periodic steady states over speed",
         caption="Motions at constant speed by shooting. Line: the branch, solid where stable, dashed where "
         "not. Points: steady states at slowly rising and falling speeds. Error: alternating part.",
         alternative=_alternative(states),
-        content=panels,
+        content=tuple(panels),
         table=_steady_table(states),
     )
 
 
-def _quantities(states: SteadyStates, mesh: int) -> list[tuple[str, FloatArray]]:
+def _quantities(states: SteadyStates) -> list[tuple[str, FloatArray]]:
     """Return the shown quantities by name, (P,) each; without meshes the bearing with the largest force."""
     if not states.mesh:
         if not states.bearing:
             return []
         loudest = int(np.argmax(np.nan_to_num(np.fmax.reduce(states.rms_bearing_force, axis=0))))
         return [(f"rms force on {states.bearing[loudest]}, N", states.rms_bearing_force[:, loudest])]
-    name = f" of {states.mesh[mesh]}" if len(states.mesh) > 1 else ""
+    name = f" of {states.mesh[0]}" if len(states.mesh) > 1 else ""
     quantities = [
-        (f"rms of the transmission error{name}, µm", 1e6 * states.rms_error[:, mesh]),
-        (f"peak to peak{name}, µm", 1e6 * states.peak_to_peak_error[:, mesh]),
-        (f"largest mesh force{name}, N", states.largest_force[:, mesh]),
+        (f"rms of the transmission error{name}, µm", 1e6 * states.rms_error[:, 0]),
+        (f"peak to peak{name}, µm", 1e6 * states.peak_to_peak_error[:, 0]),
+        (f"largest mesh force{name}, N", states.largest_force[:, 0]),
     ]
-    if np.nanmax(states.parted[:, mesh], initial=0.0) > 0.0:
-        quantities.append(
-            (f"driving flank lifted off{name}, % of the period", 100.0 * states.parted[:, mesh])
-        )
-    if np.nanmax(states.coasting[:, mesh], initial=0.0) > 0.0:
-        quantities.append((f"coast flank touching{name}, % of the period", 100.0 * states.coasting[:, mesh]))
+    parted, coasting = states.parted[:, 0], states.coasting[:, 0]
+    if np.nanmax(parted, initial=0.0) > 0.0:
+        quantities.append((f"driving flank lifted off{name}, % of the period", 100.0 * parted))
+    if np.nanmax(coasting, initial=0.0) > 0.0:
+        quantities.append((f"coast flank touching{name}, % of the period", 100.0 * coasting))
     return quantities
 
 
 def _folds(states: SteadyStates, ends: tuple[float, float]) -> list[float]:
-    """Return the speeds of folds to be labelled, rpm; of folds close together only the outermost."""
+    """Return the speeds of folds to be labelled, rpm; of neighboring folds the outermost has a label."""
     folds = states.bifurcation_speed[states.bifurcation_kind == KINDS.index("fold")] / RPM
     separate: list[float] = []
     if folds.size:
@@ -99,43 +96,34 @@ def _folds(states: SteadyStates, ends: tuple[float, float]) -> list[float]:
 def _lines(states: SteadyStates, values: FloatArray) -> Iterator[Line]:
     """Yield the branch in its stable and unstable parts, and the sweeps."""
     on = np.flatnonzero(states.curve == BRANCH)
+    speed = states.speed[on] / RPM
     stable = states.instability[on] == 0
-    # stable motions next to unstable ones: the dashed line begins and ends at them, so that no gap is left
-    boundary = np.append(~stable[1:], False) | np.append(False, ~stable[:-1])
-    looks: tuple[tuple[str, Dash], ...] = (("branch, stable", "solid"), ("branch, unstable", "dash"))
-    for (name, dash), in_part, joined in zip(looks, (stable, ~stable), (False, boundary), strict=True):
-        if np.any(in_part):
-            line = np.where(in_part | joined, values[on], np.nan)
-            yield Line(name, states.speed[on] / RPM, line, palette.INK, dash, 1.3)
+    if np.any(stable):
+        solid = np.where(stable, values[on], np.nan)
+        yield Line("branch, stable", speed, solid, palette.INK, width=1.3)
+    if np.any(~stable):
+        # the dashed line begins and ends at stable motions next to unstable ones, so that no gap is left
+        boundary = np.append(~stable[1:], False) | np.append(False, ~stable[:-1])
+        dashed = np.where(~stable | boundary, values[on], np.nan)
+        yield Line("branch, unstable", speed, dashed, palette.INK, "dash", 1.3)
     for curve, name, color in _SWEEPS:
         rows = np.flatnonzero(states.curve == curve)
         if rows.size:
             few = rows.size <= MARKED
-            yield Line(
-                name, states.speed[rows] / RPM, values[rows], color, width=0.0 if few else 1.4, markers=few
-            )
+            width = 0.0 if few else 1.4
+            yield Line(name, states.speed[rows] / RPM, values[rows], color, width=width, markers=few)
 
 
 def _steady_table(states: SteadyStates) -> Table:
     """List both sweeps, one line per speed and mesh, or without meshes per speed and bearing."""
-    parts = states.mesh or states.bearing
-    entries = [
-        (int(index), part)
-        for curve in (UP, DOWN)
-        for index in np.flatnonzero(states.curve == curve)
-        for part in range(len(parts))
-    ]
     head = ("sweep", "speed, rpm", *(_MESH_HEAD if states.mesh else _BEARING_HEAD))
     cells = _mesh_cells if states.mesh else _bearing_cells
-    rows = [
-        (
-            "up" if states.curve[index] == UP else "down",
-            number(float(states.speed[index]) / RPM, 5),
-            parts[part],
-            *cells(states, index, part),
-        )
-        for index, part in entries
-    ]
+    rows = []
+    for curve, sweep in ((UP, "up"), (DOWN, "down")):
+        for index in np.flatnonzero(states.curve == curve).tolist():
+            speed = number(float(states.speed[index]) / RPM, 5)
+            for part, name in enumerate(states.mesh or states.bearing):
+                rows.append((sweep, speed, name, *cells(states, index, part)))
     return Table("Periodic steady states", head, tuple(rows))
 
 
@@ -174,10 +162,8 @@ def _alternative(states: SteadyStates) -> str:
     if not states.mesh:
         return " ".join(f"{part.name}: {part.value}, {part.remark}." for part in _headlines(states))
     index, mesh = np.unravel_index(int(np.nanargmax(states.rms_error)), states.rms_error.shape)
-    text = (
-        f"Largest rms: {number(1e6 * float(states.rms_error[index, mesh]), 3)} µm at "
-        f"{number(float(states.speed[index]) / RPM, 4)} rpm."
-    )
+    size = f"{number(1e6 * float(states.rms_error[index, mesh]), 3)} µm"
+    text = f"Largest rms: {size} at {number(float(states.speed[index]) / RPM, 4)} rpm."
     for curve, (before, behind) in zip(states.jump_curve, states.jump_speed / RPM, strict=True):
         sweep = "Rising" if curve == UP else "Falling"
         text += f" {sweep} speeds jump between {number(before, 5)} and {number(behind, 5)} rpm."

@@ -76,7 +76,7 @@ def level_map(along: FloatArray, line: FloatArray, amplitude: FloatArray, top: f
     return HeatMap(even, height, z, f"level above −{MAP_DEPTH:g} dB of the largest, dB", MAP_DEPTH)
 
 
-def _pitches_passed(run: RunResult, mesh: int = 0) -> float:
+def _pitches_passed(run: RunResult, mesh: int) -> float:
     """Return the number of base pitches that a mesh passes; 0: the run has no meshes."""
     return float(np.ptp(np.unwrap(run.position[mesh], period=1.0))) if run.mesh else 0.0
 
@@ -98,10 +98,8 @@ def order_blocks(run: RunResult, signal: Signal) -> Waterfall:
 def levels_over_speed(run: RunResult, signal: Signal, blocks: Waterfall) -> Figure:
     """Draw the overall level and the levels of mesh orders over speed or time, in dB re one unit."""
     axis, abscissa = run_axis(run, blocks.time, signal.mesh)
-    cuts = {
-        order: signal.amplitude(blocks.cut(order))
-        for order in signal.orders or largest_orders(signal, blocks)
-    }
+    orders = signal.orders or largest_orders(signal, blocks)
+    cuts = {order: signal.amplitude(blocks.cut(order)) for order in orders}
     overall = signal.magnitude(blocks.rms)
     largest = max(float(overall.max()), *(float(cut.max()) for cut in cuts.values()))
     floor = largest * 10.0 ** (-DEPTH / 20.0)
@@ -121,7 +119,7 @@ def levels_over_speed(run: RunResult, signal: Signal, blocks: Waterfall) -> Figu
         f"position. {validity(valid, top)}",
         alternative=_alternative(signal, blocks, abscissa, unit_of(axis.label)),
         content=(Panel(axis, level, lines),),
-        table=_table(signal, blocks, overall, cuts, (axis, abscissa)),
+        table=_table(signal, blocks, overall, cuts, axis.label, abscissa),
     )
 
 
@@ -150,19 +148,17 @@ def _table(
     blocks: Waterfall,
     overall: FloatArray,
     cuts: dict[int, FloatArray],
-    along: tuple[Axis, FloatArray],
+    label: str,
+    abscissa: FloatArray,
 ) -> Table:
-    axis, abscissa = along
     rows = []
-    for name, values, order in [
-        ("overall, rms", overall, 0),
-        *((f"{k}×", cut, k) for k, cut in cuts.items()),
-    ]:
+    for order, values in ({0: overall} | cuts).items():  # 0: all orders together
         at = int(np.argmax(values))
+        name = f"{order}×" if order else "overall, rms"
         level = f"{20.0 * np.log10(max(float(values[at]), 1e-300)):.1f}"
         hertz = number(order * blocks.mesh_frequency[at], 4) if order else ""
         rows.append((name, number(values[at], 4), level, number(abscissa[at], 4), hertz))
-    head = ("mesh order", f"largest, {signal.unit}", "dB", axis.label, "frequency, Hz")
+    head = ("mesh order", f"largest, {signal.unit}", "dB", label, "frequency, Hz")
     return Table("Largest value of each line", head, tuple(rows))
 
 
@@ -229,26 +225,22 @@ def _panel(
     visible = (np.where(height <= top, height, np.nan) for height in heights)
     lines = [Line("mesh orders", along, height, ORDER_COLOUR, "dot", 1.0) for height in visible]
     lines += [Line(mode.name, along, mode.frequency, mode.color, "dash", 1.4) for mode in modes]
-    notes = [*_order_notes(blocks, along, top), *_mode_notes(along, modes)]
+    notes = list(_order_notes(blocks, along, top))
+    slowest = int(np.argmin(along))
+    for mode in modes:
+        hertz = float(mode.frequency[slowest])
+        notes.append(Note(float(along[slowest]), hertz, f"{mode.moves} {number(hertz, 4)} Hz"))
     x, y = Axis.over(axis.label, shade.x), Axis("frequency, Hz", limits=(0.0, top))
     return Panel(x, y, tuple(lines), shade=shade, notes=placed(notes, x, y, (0.0, top)))
 
 
 def _order_notes(blocks: Waterfall, along: FloatArray, top: float) -> Iterator[Note]:
-    """Name every order where it ends."""
+    """Yield the names of the orders at their ends."""
     for order in range(1, ORDERS + 1):
         height = order * blocks.mesh_frequency
         last = int(np.argmax(np.where(height <= 0.97 * top, height, -1.0)))
         if 0.0 < height[last] <= top:
             yield Note(float(along[last]), float(height[last]), f"{order}×", left=True)
-
-
-def _mode_notes(along: FloatArray, modes: list[ModeLine]) -> Iterator[Note]:
-    """Return a note on every mode where the run is slowest: the part that moves most, and its frequency."""
-    start = int(np.argmin(along))
-    for mode in modes:
-        at = float(mode.frequency[start])
-        yield Note(float(along[start]), at, f"{mode.moves} {number(at, 4)} Hz")
 
 
 def _campbell_text(
@@ -327,8 +319,7 @@ def loudest(run: RunResult, signal: Signal) -> Loudest | None:
     axis, along = run_axis(component, blocks.time, signal.mesh)
     overall = signal.magnitude(blocks.rms)
     worst = int(np.argmax(overall))
-    rms = {
-        order: SCALES["rms"] * float(signal.magnitude(blocks.cut(order))[worst])
-        for order in signal.orders or largest_orders(signal, blocks)
-    }
+    orders = signal.orders or largest_orders(signal, blocks)
+    cuts = {order: float(signal.magnitude(blocks.cut(order))[worst]) for order in orders}
+    rms = {order: SCALES["rms"] * cut for order, cut in cuts.items()}
     return Loudest(axis, float(along[worst]), float(blocks.time[worst]), float(overall[worst]), rms)

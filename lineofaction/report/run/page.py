@@ -49,12 +49,8 @@ SHARE = 1e-3
 """Least amplitude of a sideband in the table, over the largest amplitude of a mesh order."""
 ROWS = 12
 """Most rows of the table of sidebands."""
-_ERRORS = {
-    "time_step": ("step error", "nm rms"),
-    "table_interpolation": ("table error", "nm rms"),
-}
-"""Sources of error in the receipt: the title of each, and the unit in which its effect on the transmission
-error is shown. The receipt itself has metres."""
+_ERRORS = {"time_step": "step error", "table_interpolation": "table error"}
+"""Titles of the sources of error in the receipt."""
 
 
 def _planet_sharing(run: RunResult) -> Figure | None:
@@ -62,11 +58,11 @@ def _planet_sharing(run: RunResult) -> Figure | None:
     sharings = planet_load_sharing(run)
     if not sharings:
         return None
-    rows = tuple(
-        (sharing.central, mesh, *(number(v) for v in (mean, np.nanmin(ratio), np.nanmax(ratio))))
-        for sharing in sharings
-        for mesh, mean, ratio in zip(sharing.mesh, sharing.mean, sharing.ratio, strict=True)
-    )
+    rows = []
+    for sharing in sharings:
+        for mesh, mean, ratio in zip(sharing.mesh, sharing.mean, sharing.ratio, strict=True):
+            shares = map(number, (mean, np.nanmin(ratio), np.nanmax(ratio)))
+            rows.append((sharing.central, mesh, *shares))
     factors = "; ".join(f"{s.central} {number(s.mesh_load_factor)}" for s in sharings)
     return Figure(
         key="planet_sharing",
@@ -75,15 +71,15 @@ def _planet_sharing(run: RunResult) -> Figure | None:
         "for equal loads.",
         alternative=f"Largest share in the mean (K_gamma): {factors}.",
         content=tuple(_panel(run, sharing) for sharing in sharings),
-        table=Table("Load sharing", ("gear", "mesh", "of means", "least", "largest"), rows),
+        table=Table("Load sharing", ("gear", "mesh", "of means", "least", "largest"), tuple(rows)),
     )
 
 
 def _panel(run: RunResult, sharing: PlanetLoadSharing) -> Panel:
     lines = []
     for index, ratio in enumerate(sharing.ratio):
-        envelope_of = envelope(run.time, ratio)
-        lines.append(Line(f"planet {index + 1}", *envelope_of, palette.category(index), width=1.0))
+        decimated = envelope(run.time, ratio)
+        lines.append(Line(f"planet {index + 1}", *decimated, palette.category(index), width=1.0))
     time = Axis.over("time, s", run.time)
     return Panel(time, Axis("load sharing ratio"), tuple(lines), title=sharing.central)
 
@@ -133,15 +129,14 @@ def _sideband_tables(run: RunResult, signal: Signal) -> tuple[Table, ...]:
 
 
 def dynamic_headlines(run: RunResult) -> tuple[Headline, ...]:
-    """Mean mesh force, and the balance of energy."""
+    """Return the mean mesh force, and the balance of energy."""
     headlines = []
     if run.mesh:
-        force, nominal = (number(v) for v in (np.mean(run.mesh_force[0]), run.nominal_force[0]))
+        force, nominal = number(np.mean(run.mesh_force[0])), number(run.nominal_force[0])
         headlines.append(Headline("mean mesh force", f"{force} N", f"nominal {nominal} N"))
     if run.energy is not None:
-        headlines.append(
-            Headline("energy balance", f"{leftover(100 * run.energy.relative, 2)} %", "unaccounted for")
-        )
+        share = f"{leftover(100 * run.energy.relative, 2)} %"
+        headlines.append(Headline("energy balance", share, "unaccounted for"))
     return tuple(headlines)
 
 
@@ -175,27 +170,23 @@ def dynamic_results(run: RunResult, view: RunView) -> tuple[Section, ...]:
 def dynamic_making(run: RunResult) -> tuple[Section, ...]:
     """Show the errors of the run, its cost, and its inputs."""
     audit = {} if run.energy is None else run.energy.to_json()
+    joules = {name: value for name, value in audit.items() if "relative" not in name}
     accuracy = Section(
         "Accuracy of the run",
         tables=(_accuracy(run), _sampling(run), _peaks(run)),
-        folded=(
-            settings_table(
-                "Energy audit, J", {name: value for name, value in audit.items() if "relative" not in name}
-            ),
-        ),
+        folded=(settings_table("Energy audit, J", joules),),
         part=Part.ACCURACY,
     )
     text = "The scene with all defaults, in SI."
     scene = Section("Scene", text, folded=(settings_table("Scene", run.case),), part=Part.INPUT)
     steps = settings_table("Step statistics", vars(run.statistics))
     elapsed = run.receipt.get("wall_seconds", {})
-    rows = tuple(
-        (name.replace("_", " "), number(spent, 3), number(elapsed.get(name, np.nan), 3))
-        for name, spent in run.receipt.get("seconds", {}).items()
-    )
+    rows = []
+    for name, spent in run.receipt.get("seconds", {}).items():
+        rows.append((name.replace("_", " "), number(spent, 3), number(elapsed.get(name, np.nan), 3)))
     receipt = Section(
         "Receipt of the run",
-        tables=(Table("Time of the run by stage", ("stage", "CPU s", "wall s"), rows),),
+        tables=(Table("Time of the run by stage", ("stage", "CPU s", "wall s"), tuple(rows)),),
         folded=(steps,),
         part=Part.RECEIPT,
     )
@@ -224,39 +215,37 @@ def _forces(run: RunResult) -> tuple[Section, ...]:
     drawn = tuple(figure for figure in (factor, _planet_sharing(run)) if figure is not None)
     shares = contact_shares(run)
     states = tuple(shares[0])
-    rows = tuple(
-        (mesh, *(number(100.0 * share[state], 3) for state in states))
-        for mesh, share in zip(run.mesh, shares, strict=True)
-    )
+    rows = []
+    for mesh, share in zip(run.mesh, shares, strict=True):
+        rows.append((mesh, *(number(100.0 * share[state], 3) for state in states)))
     flanks = {"off": "apart, %", "both": "both flanks, %"}
     head = ("mesh", *(flanks.get(state, f"{state} flank, %") for state in states))
-    contact = Table("Contact state, share of the samples", head, rows)
+    contact = Table("Contact state, share of the samples", head, tuple(rows))
     return (Section("Mesh forces", figures=drawn, tables=(contact,)),)
 
 
 def _accuracy(run: RunResult) -> Table:
     rows = [("status", run.status.name.lower().replace("_", " "))]
-    for name, (title, unit) in _ERRORS.items():
-        rows += _errors(title, unit, run.receipt.get("error", {}).get(name, {}))
-    rows += _tolerance(run.receipt.get("error", {}).get("time_step", {}))
-    neglected = run.receipt.get("error", {}).get("left_out_effects", {})
+    errors = run.receipt.get("error", {})
+    for name, title in _ERRORS.items():
+        rows += _errors(title, errors.get(name, {}))
+    rows += _tolerance(errors.get("time_step", {}))
+    neglected = errors.get("left_out_effects", {})
     if "decibels" in neglected:
         size = number(neglected["decibels"], 2)
         rows.append((f"neglected effects, {neglected['unit']} ({neglected['source']})", size))
     if run.energy is not None:
-        rows.append(
-            ("energy unaccounted for, % of the turnover of vibration", leftover(100 * run.energy.relative, 2))
-        )
-        through = run.energy.relative_to_throughput
-        rows.append(("energy unaccounted for, % of the drive's work", leftover(100 * through, 2)))
+        turnover, work = 100 * run.energy.relative, 100 * run.energy.relative_to_throughput
+        rows.append(("energy unaccounted for, % of the turnover of vibration", leftover(turnover, 2)))
+        rows.append(("energy unaccounted for, % of the drive's work", leftover(work, 2)))
     return Table("Accuracy of the run", ("quantity", "value"), tuple(rows))
 
 
-def _errors(title: str, unit: str, error: dict[str, Any]) -> list[tuple[str, str]]:
+def _errors(title: str, error: dict[str, Any]) -> list[tuple[str, str]]:
     """Return rows on one source: its error in the transmission error, and in bearing forces at worst."""
     rows = []
     if "rms" in error:
-        rows.append((f"{title}, {unit} ({error.get('source', '')})", number(1e9 * float(error["rms"]), 3)))
+        rows.append((f"{title}, nm rms ({error.get('source', '')})", number(1e9 * float(error["rms"]), 3)))
     if error.get("bearing_force_orders"):
         worst = max(float(value) for value in error["bearing_force_orders"])
         rows.append((f"{title}, N at the worst mesh order of a bearing force", number(worst, 2)))
@@ -271,13 +260,12 @@ def _tolerance(steps: dict[str, Any]) -> list[tuple[str, str]]:
     rows = []
     if "met" in steps:
         met = "met" if steps["met"] else "not met"
-        rows.append(
-            ("tolerance of the steps, nm rms", f"{number(1e9 * float(steps['tolerance']), 3)}, {met}")
-        )
-    if levels := steps.get("levels"):
-        rows.append(
-            ("chaotic motion: traces differ by, nm rms", number(1e9 * float(steps["trace_rms"]), 3)),
-        )
+        tolerance = number(1e9 * float(steps["tolerance"]), 3)
+        rows.append(("tolerance of the steps, nm rms", f"{tolerance}, {met}"))
+    levels = steps.get("levels")
+    if levels:
+        traces = number(1e9 * float(steps["trace_rms"]), 3)
+        rows.append(("chaotic motion: traces differ by, nm rms", traces))
         rows.append(("chaotic motion: error of the level, dB", number(float(levels["rms"]), 2)))
         rows.append(("chaotic motion: error of the peak force, dB", number(float(levels["peak_force"]), 2)))
     return rows
@@ -285,30 +273,26 @@ def _tolerance(steps: dict[str, Any]) -> list[tuple[str, str]]:
 
 def _sampling(run: RunResult) -> Table:
     """Tabulate rate, filter, highest valid order and the sampling error of the mesh forces."""
-    sampling, error = run.receipt["sampling"], run.receipt["error"].get("sampling", {})
-    of = "mesh" if run.mesh else "shaft"
+    sampling = run.receipt["sampling"]
     rows = [
         ("rate, samples per second", number(sampling["rate"], 6)),
         ("chosen by", str(sampling["chosen"])),
         ("passed up to, Hz", number(sampling["pass_frequency"], 6)),
-        *_filter(sampling),
-        (f"highest valid {of} order at the highest speed", str(highest_valid_order(run))),
     ]
+    if sampling["stop_band"]:
+        stop = f"{number(sampling['stop_band'], 3)} dB from {number(sampling['stop_frequency'], 6)} Hz"
+        edge = f"{number(1e3 * float(sampling['edge']), 3)} ms"
+        rows.append(("anti-alias filter stops", stop))
+        rows.append(("continued beyond start and end for the filter", edge))
+    else:
+        rows.append(("anti-alias filter", "none: unfiltered samples"))
+    base = "mesh" if run.mesh else "shaft"
+    rows.append((f"highest valid {base} order at the highest speed", str(highest_valid_order(run))))
+    error = run.receipt["error"].get("sampling", {})
     for mesh, part in error.get("mesh_force", {}).items():
         rows.append((f"mesh force of {mesh} above the pass band, N rms", number(part["removed"], 3)))
         rows.append((f"mesh force of {mesh} that may have folded, N rms", number(part["folded"], 3)))
     return Table("Sampling of the output", ("quantity", "value"), tuple(rows))
-
-
-def _filter(sampling: dict[str, Any]) -> list[tuple[str, str]]:
-    if not sampling["stop_band"]:
-        return [("anti-alias filter", "none: unfiltered samples")]
-    stop = f"{number(sampling['stop_band'], 3)} dB from {number(sampling['stop_frequency'], 6)} Hz"
-    edge = f"{number(1e3 * float(sampling['edge']), 3)} ms"
-    return [
-        ("anti-alias filter stops", stop),
-        ("continued beyond start and end for the filter", edge),
-    ]
 
 
 def _peaks(run: RunResult) -> Table:
@@ -318,8 +302,7 @@ def _peaks(run: RunResult) -> Table:
         for name, part in parts.items():
             peaks, rms = np.atleast_1d(part["peak"]), np.atleast_1d(part["rms"])
             axes = ("",) if peaks.size == 1 else (" x", " y", " z")[: peaks.size]
-            rows += [
-                (f"{title.replace('_', ' ')}, {name}{axis}", number(p, 5), number(r, 5))
-                for axis, p, r in zip(axes, peaks, rms, strict=True)
-            ]
+            for axis, *sizes in zip(axes, peaks, rms, strict=True):
+                force = f"{title.replace('_', ' ')}, {name}{axis}"
+                rows.append((force, *(number(size, 5) for size in sizes)))
     return Table("Peaks of the whole run, unfiltered", ("force", "peak, N", "rms, N"), tuple(rows))

@@ -82,24 +82,24 @@ def _panel(
     lines = []
     for index, (component, values) in enumerate(signal.components(run).items()):
         selected = values[window]
-        time, decimated = envelope(run.time[window], selected - selected.mean() if about_mean else selected)
+        if about_mean:
+            selected = selected - selected.mean()
+        time, decimated = envelope(run.time[window], selected)
         name = component or signal.quantity.noun
         lines.append(Line(name, time, decimated, palette.category(index), width=1.2))
     return Panel(Axis.over("time, s", run.time[window]), Axis(label), tuple(lines), title=title)
 
 
 def _table(run: RunResult, signal: Signal) -> Table:
-    unit, values = signal.quantity.unit, signal.quantity.factor * getattr(run, signal.quantity.series)
+    unit = signal.quantity.unit
+    values = signal.quantity.factor * getattr(run, signal.quantity.series)
     names = run.bearing if values.ndim == 3 else run.mesh
     parts = ("x", "y", "z") if values.ndim == 3 else ("",)
     # a row for each part: first the means of its components, then the deviations
     moments = np.stack([values.mean(axis=-1), values.std(axis=-1)], axis=1).reshape(len(names), -1)
     rows = [(name, *(number(v, 4) for v in row)) for name, row in zip(names, moments, strict=True)]
-    head = (
-        signal.quantity.part,
-        *(f"mean {part}, {unit}".replace(" ,", ",") for part in parts),
-        *(f"deviation {part}, {unit}".replace(" ,", ",") for part in parts),
-    )
+    titles = [f"{moment} {part}".rstrip() for moment in ("mean", "deviation") for part in parts]
+    head = (signal.quantity.part, *(f"{title}, {unit}" for title in titles))
     return Table("Mean and standard deviation over the run", head, tuple(rows))
 
 
@@ -110,7 +110,7 @@ def signal_spectrum(run: RunResult, signal: Signal) -> Figure:
     mesh_frequency, base = order_frequency(run, signal.mesh), counted_by(run)  # base: "mesh" or the shaft
     mesh = mesh_frequency[window]
     valid = highest_valid_order(run, signal.mesh)
-    first, last = (number(run.time[at], 3) for at in (window.start, window.stop - 1))
+    first, last = number(run.time[window.start], 3), number(run.time[window.stop - 1], 3)
     return Figure(
         key="spectrum",
         title=f"Spectrum of the {signal.name}",
@@ -120,7 +120,7 @@ def signal_spectrum(run: RunResult, signal: Signal) -> Figure:
         f"{validity(valid, float(mesh_frequency.max()), base)}",
         alternative=_spectrum_text(signal, frequency, amplitude, mesh, base),
         content=(_spectrum_panel(signal, frequency, amplitude, float(np.median(mesh)), valid),),
-        table=_spectrum_table(signal, frequency, amplitude, mesh, (base, valid)),
+        table=_spectrum_table(signal, order_amplitudes(frequency, amplitude, mesh)[:valid], base),
     )
 
 
@@ -185,14 +185,9 @@ def _spectrum_text(
     )
 
 
-def _spectrum_table(
-    signal: Signal, frequency: FloatArray, amplitude: FloatArray, mesh: FloatArray, orders: tuple[str, int]
-) -> Table:
-    base, valid = orders
-    rows = tuple(
-        (str(order), number(where, 4), number(size, 3))
-        for order, (where, size) in enumerate(order_amplitudes(frequency, amplitude, mesh)[:valid], start=1)
-    )
+def _spectrum_table(signal: Signal, peaks: list[tuple[float, float]], base: str) -> Table:
+    orders = enumerate(peaks, start=1)
+    rows = tuple((str(order), number(hertz, 4), number(size, 3)) for order, (hertz, size) in orders)
     head = ("order", "frequency, Hz", f"amplitude, {signal.unit}")
     return Table(f"Largest line in the band of each {base} order", head, rows)
 
@@ -204,13 +199,15 @@ def octave_bands(run: RunResult, signal: Signal, blocks: Waterfall) -> Figure | 
     except InputError:  # the run is too short for a band
         return None
     rms = signal.magnitude(bands.rms)
-    mean, maximum = np.sqrt(np.mean(rms**2, axis=0)), np.max(rms, axis=0)
+    mean = np.sqrt(np.mean(rms**2, axis=0))
+    maximum = np.max(rms, axis=0)
     floor = float(maximum.max()) * 10.0 ** (-DEPTH / 20.0)
     lines = (
         step_line("loudest block", bands.edges, decibels(maximum, floor), palette.VERMILLION),
         step_line("whole run", bands.edges, decibels(mean, floor), palette.BLUE),
     )
-    unit, worst = signal.quantity.unit, int(np.argmax(mean))
+    unit = signal.quantity.unit
+    worst = int(np.argmax(mean))
     names = tuple((float(at), _nominal(at)) for at in bands.nominal[bands.band % 3 == 0])
     x = Axis("nominal center of the band, Hz", "log", (float(bands.edges[0]), float(bands.edges[-1])), names)
     return Figure(
@@ -231,9 +228,8 @@ def _nominal(frequency: float) -> str:
 
 
 def _band_table(bands: ThirdOctaves, mean: FloatArray, maximum: FloatArray, unit: str) -> Table:
-    rows = tuple(
-        (f"{at:g}", number(a, 3), number(b, 3)) for at, a, b in zip(bands.nominal, mean, maximum, strict=True)
-    )
+    levels = zip(bands.nominal, mean, maximum, strict=True)
+    rows = tuple((f"{hertz:g}", number(a, 3), number(b, 3)) for hertz, a, b in levels)
     head = ("band, Hz", f"whole run, {unit} rms", f"loudest block, {unit} rms")
     return Table("One-third-octave bands", head, rows)
 
@@ -243,10 +239,10 @@ def dynamic_error(run: RunResult, mesh: int = 0) -> Figure:
     way = travel(run, mesh)
     windows = {speed: way.window(speed) for speed in window_speeds(way.speed_rpm)}
     errors = run.dynamic_transmission_error[mesh], run.static_transmission_error[mesh]
-    swings = [
-        f"{um(np.ptp(errors[0][window]))} (static {um(np.ptp(errors[1][window]))}) at {speed:g} rpm"
-        for speed, window in windows.items()
-    ]
+    swings = []
+    for speed, window in windows.items():
+        dynamic, static = (um(np.ptp(error[window])) for error in errors)
+        swings.append(f"{dynamic} (static {static}) at {speed:g} rpm")
     return Figure(
         key="dynamic_error",
         title="Dynamic and static transmission error",
@@ -277,10 +273,12 @@ def _error_table(
     """List mean and peak-to-peak of both errors, and the extremes of the mesh force, by speed."""
     rows = []
     for speed, window in windows.items():
-        cells = [um(float(take(error[window]))) for error in errors for take in (np.mean, np.ptp)]
-        mean = run.mesh_force[mesh, window].mean()
-        ends = run.least_mesh_force[mesh, window].min(), run.largest_mesh_force[mesh, window].max()
-        rows.append((number(speed, 3), *cells, *(number(v, 4) for v in (ends[0], mean, ends[1]))))
+        cells = []
+        for error in errors:
+            cells += [um(float(np.mean(error[window]))), um(float(np.ptp(error[window])))]
+        least, largest = run.least_mesh_force[mesh, window].min(), run.largest_mesh_force[mesh, window].max()
+        forces = (least, run.mesh_force[mesh, window].mean(), largest)
+        rows.append((number(speed, 3), *cells, *(number(force, 4) for force in forces)))
     head = (
         "speed, rpm", "DTE mean, µm", "DTE peak to peak, µm", "STE mean, µm", "STE peak to peak, µm",
         "least mesh force, N", "mean mesh force, N", "largest mesh force, N",

@@ -12,12 +12,7 @@ from fe_contact.types import Estimate
 from lineofaction.gearbox.units import UM
 from lineofaction.report.drawing.figure import number
 from lineofaction.report.drawing.page import Headline
-from lineofaction.report.ste.curves import (
-    aligned_index,
-    headline_load,
-    load_curve,
-    load_labels,
-)
+from lineofaction.report.ste.curves import aligned_index, headline_load, load_curve, load_labels
 from lineofaction.report.ste.teeth import UNBOUNDED, tooth_headlines
 
 
@@ -29,13 +24,11 @@ def static_headlines(database: SteDatabase, force: float | None = None) -> tuple
     edge = float(np.nanmax(database.edge_pressure[cycle])) if database.edge_pressure.size else 0.0
     remark = f"{UNBOUNDED}{edge_text(edge)}"
     curve, label = load_curve(database, load), load_labels(database)[load]
-    figures = {"mean": curve.mean, "peak-to-peak": curve.peak_to_peak}
-    biases = _over_face(curve)
+    mean, ripple = curve.mean, curve.peak_to_peak
+    mean_bias, ripple_bias = _over_face(curve)
     return (
-        *(
-            Headline(f"{name} STE at {label}", f"{_to_error(estimate)} µm", f"{_band(estimate)}{bias}")
-            for (name, estimate), bias in zip(figures.items(), biases, strict=True)
-        ),
+        Headline(f"mean STE at {label}", f"{_to_error(mean)} µm", f"{_band(mean)}{mean_bias}"),
+        Headline(f"peak-to-peak STE at {label}", f"{_to_error(ripple)} µm", f"{_band(ripple)}{ripple_bias}"),
         Headline(f"largest pressure at {label}", f"{number(1e-6 * pressure, 4)} MPa", remark),
         *tooth_headlines(database, load),
     )

@@ -48,7 +48,8 @@ _ROOM = 0.02  # margin at both ends of the axis over the range of torques
 def ripple_over_torque(database: SteDatabase) -> Figure:
     """Draw over torque: peak-to-peak with its error, and the mesh harmonics in um and in dB."""
     curves = {load: load_curve(database, load) for load in drawn_loads(database)}
-    across, torque = _torque_axis(np.array([curve.torque for curve in curves.values()]))
+    torque = np.array([curve.torque for curve in curves.values()])
+    across = _torque_axis(torque)
     value, error = np.stack([um_of(curve.harmonics[:HARMONICS]) for curve in curves.values()], axis=1)
     known = ~(error >= value)  # true also for an error of NaN, which was not estimated
     level = 20.0 * np.log10(np.maximum(value, _DEPTH * value.max()))
@@ -69,9 +70,9 @@ def ripple_over_torque(database: SteDatabase) -> Figure:
     )
 
 
-def _torque_axis(torque: FloatArray) -> tuple[Axis, FloatArray]:
+def _torque_axis(torque: FloatArray) -> Axis:
     room = _ROOM * float(np.ptp(torque))
-    return Axis("torque on the driving gear, N m", limits=(torque[0] - room, torque[-1] + room)), torque
+    return Axis("torque on the driving gear, N m", limits=(torque[0] - room, torque[-1] + room))
 
 
 def _harmonics(across: Axis, torque: FloatArray, values: FloatArray, known: BoolArray, label: str) -> Panel:
@@ -89,7 +90,8 @@ def _harmonics(across: Axis, torque: FloatArray, values: FloatArray, known: Bool
 def _ripple_text(curves: dict[str, Curve]) -> str:
     """Return a sentence on the curves of the least and of the largest ripple, by name."""
     ripple = {name: curve.peak_to_peak for name, curve in curves.items()}
-    lowest, highest = (end(ripple, key=lambda name: ripple[name].value) for end in (min, max))
+    lowest = min(ripple, key=lambda name: ripple[name].value)
+    highest = max(ripple, key=lambda name: ripple[name].value)
     minimum, maximum = ripple[lowest], ripple[highest]
     least, largest = f"{um(minimum.value, 3)} µm {lowest}", f"{um(maximum.value, 3)} µm {highest}"
     if maximum.value - minimum.value <= minimum.error + maximum.error:
@@ -99,12 +101,11 @@ def _ripple_text(curves: dict[str, Curve]) -> str:
 
 def _table(database: SteDatabase, curves: dict[int, Curve]) -> Table:
     labels = load_labels(database)
-    rows = tuple(
-        (labels[load], *(um(harmonic.value, 3) for harmonic in curve.harmonics[:HARMONICS]))
-        for load, curve in curves.items()
-    )
+    rows = []
+    for load, curve in curves.items():
+        rows.append((labels[load], *(um(harmonic.value, 3) for harmonic in curve.harmonics[:HARMONICS])))
     head = ("torque", *(f"harmonic {k}, µm" for k in range(1, HARMONICS + 1)))
-    return Table("Mesh harmonics by load", head, rows)
+    return Table("Mesh harmonics by load", head, tuple(rows))
 
 
 @dataclass(frozen=True)
@@ -135,6 +136,12 @@ def deviation_curves(database: SteDatabase) -> Figure:
     Either is drawn if the table has more than one value of it, the other at its value nearest to zero.
     """
     deviations = _deviations(database)
+    panels = []
+    for deviation in deviations:
+        ripples = [um_of([curve.peak_to_peak for curve in curves]) for curves in deviation.curves]
+        value, error = np.stack(ripples, axis=1)
+        lines = load_lines(database, deviation.values, value, bands=error)
+        panels.append(ripple_panel(deviation.axis, lines))
     return Figure(
         key="deviations",
         title=f"Peak-to-peak transmission error over {' and '.join(d.name for d in deviations)}",
@@ -142,14 +149,15 @@ def deviation_curves(database: SteDatabase) -> Figure:
         "Misalignment > 0: the gap grows towards the +z end of the face, and the load moves to the −z end. "
         "Seen from +z, the driving gear turns clockwise.",
         alternative=" ".join(_deviation_text(database, deviation) for deviation in deviations),
-        content=tuple(_panel(database, deviation) for deviation in deviations),
+        content=tuple(panels),
         table=_deviation_table(database, deviations),
     )
 
 
 def _deviations(database: SteDatabase) -> list[_Deviation]:
     misalignment, change = aligned(database)
-    misalignments, distance = (database.requested_nodes(axis) for axis in (MISALIGNMENT, CENTER_DISTANCE))
+    misalignments = database.requested_nodes(MISALIGNMENT)
+    distance = database.requested_nodes(CENTER_DISTANCE)
     deviations = []
     if misalignments.size > 1:
         axis = Axis("misalignment over the common face width, µm")
@@ -167,12 +175,6 @@ def _curves(database: SteDatabase, misalignment: float, change: float) -> tuple[
     return tuple(database.curve(force=float(force), **point, allow_failed=True) for force in database.force)
 
 
-def _panel(database: SteDatabase, deviation: _Deviation) -> Panel:
-    value, error = np.stack([um_of([c.peak_to_peak for c in row]) for row in deviation.curves], axis=1)
-    lines = load_lines(database, deviation.values, value, bands=error)
-    return ripple_panel(deviation.axis, lines)
-
-
 def _deviation_text(database: SteDatabase, deviation: _Deviation) -> str:
     names = [f"at {name}" for name in deviation.value_names]
     text = _ripple_text(dict(zip(names, (row[-1] for row in deviation.curves), strict=True)))
@@ -181,12 +183,11 @@ def _deviation_text(database: SteDatabase, deviation: _Deviation) -> str:
 
 def _deviation_table(database: SteDatabase, deviations: list[_Deviation]) -> Table:
     loads, labels = drawn_loads(database), load_labels(database)
-    rows = tuple(
-        (name, *(um(row[k].peak_to_peak.value) for k in loads))
-        for deviation in deviations
-        for name, row in zip(deviation.value_names, deviation.curves, strict=True)
-    )
-    return Table("Peak to peak, µm", ("deviation", *(labels[k] for k in loads)), rows)
+    rows = []
+    for deviation in deviations:
+        for name, curves in zip(deviation.value_names, deviation.curves, strict=True):
+            rows.append((name, *(um(curves[k].peak_to_peak.value) for k in loads)))
+    return Table("Peak to peak, µm", ("deviation", *(labels[k] for k in loads)), tuple(rows))
 
 
 def has_face_load(database: SteDatabase) -> bool:
@@ -197,12 +198,16 @@ def has_face_load(database: SteDatabase) -> bool:
 
 def face_load(database: SteDatabase) -> Figure:
     """Draw load centroid and peak pressure at the middle load, one line per misalignment."""
-    load, (_, d) = middle_load(database), aligned_index(database)
+    load = middle_load(database)
+    _, d = aligned_index(database)
     misalignments = database.requested_rows(MISALIGNMENT)
     centroid = 1e3 * database.face_centroid[:, load, misalignments, d]
     pressure = 1e-6 * database.max_pressure[:, load, misalignments, d]
-    label, oblique = load_labels(database)[load], database.geometry.base_helix_angle
-    waves = ", which fluctuates as the contact lines pass from slice to slice of the model" if oblique else ""
+    label = load_labels(database)[load]
+    waves = ""
+    if database.geometry.base_helix_angle:
+        waves = ", which fluctuates as the contact lines pass from slice to slice of the model"
+    position, mid_face = position_axis(database), (Reference("mid-face", 0.0, "horizontal"),)
     return Figure(
         key="face_load",
         title="Load along the face",
@@ -212,14 +217,8 @@ def face_load(database: SteDatabase) -> Figure:
         f"{number(np.nanmax(centroid), 3)} mm from mid-face; the largest pressure is "
         f"{number(np.nanmax(pressure), 3)} MPa.",
         content=(
-            Panel(
-                position_axis(database),
-                Axis("load centroid, mm"),
-                _lines(database, centroid),
-                (Reference("mid-face", 0.0, "horizontal"),),
-                title=label,
-            ),
-            Panel(position_axis(database), Axis("largest pressure, MPa"), _lines(database, pressure)),
+            Panel(position, Axis("load centroid, mm"), _lines(database, centroid), mid_face, title=label),
+            Panel(position, Axis("largest pressure, MPa"), _lines(database, pressure)),
         ),
     )
 
@@ -235,33 +234,36 @@ def flanks_over_torque(database: SteDatabase) -> Figure:
     """Draw the largest pressure over torque, and where the load moves along the face, its range."""
     loads = list(drawn_loads(database))
     m, d = aligned_index(database)
-    across, torque = _torque_axis(database.torque[loads])
+    torque = database.torque[loads]
+    across = _torque_axis(torque)
     pressure = 1e-6 * np.nanmax(database.max_pressure[:, loads, m, d], axis=0)
     centroid = 1e3 * database.face_centroid[:, loads, m, d]
     ends = np.stack([np.nanmin(centroid, axis=0), np.nanmean(centroid, axis=0), np.nanmax(centroid, axis=0)])
     y = Axis("largest pressure, MPa", limits=(0.0, 1.05 * float(pressure.max())))
     line = Line("largest pressure", torque, pressure, palette.BLUE, markers=True)
-    panels: tuple[Panel, ...] = (Panel(across, y, (line,), title="Flank pressure"),)
-    panels += (_centroid(across, torque, ends),) if has_face_load(database) else ()
+    panels = [Panel(across, y, (line,), title="Flank pressure")]
+    title = "Flank pressure over torque"
+    caption = "The largest Hertz pressure of the mesh cycle at every stored load"
+    if has_face_load(database):
+        panels.append(_centroid(across, torque, ends))
+        title = "Flank pressure and load centroid over torque"
+        caption += "; then how far the load's centroid is from the pinion's mid-face"
     return Figure(
         key="flanks_over_torque",
-        title="Flank pressure over torque"
-        if len(panels) == 1
-        else "Flank pressure and load centroid over torque",
-        caption="The largest Hertz pressure of the mesh cycle at every stored load"
-        + ("; then how far the load's centroid is from the pinion's mid-face." if len(panels) > 1 else "."),
+        title=title,
+        caption=f"{caption}.",
         alternative=_flanks_text(database, loads, pressure),
-        content=panels,
+        content=tuple(panels),
         table=_flanks_table(database, loads, pressure, ends),
     )
 
 
 def _centroid(across: Axis, torque: FloatArray, ends: FloatArray) -> Panel:
-    names = ("least", "mean", "largest")
-    colors = (palette.SKY, palette.BLUE, palette.VERMILLION)
-    lines = tuple(
-        Line(name, torque, values, color, markers=True, label=name)
-        for name, values, color in zip(names, ends, colors, strict=True)
+    least, mean, largest = ends
+    lines = (
+        Line("least", torque, least, palette.SKY, markers=True, label="least"),
+        Line("mean", torque, mean, palette.BLUE, markers=True, label="mean"),
+        Line("largest", torque, largest, palette.VERMILLION, markers=True, label="largest"),
     )
     mark = Reference("mid-face", 0.0, "horizontal")
     return Panel(across, Axis("load centroid, mm"), lines, (mark,), title="Load along the face")
@@ -280,9 +282,8 @@ def _flanks_text(database: SteDatabase, loads: list[int], pressure: FloatArray) 
 
 def _flanks_table(database: SteDatabase, loads: list[int], pressure: FloatArray, ends: FloatArray) -> Table:
     labels = load_labels(database)
-    rows = tuple(
-        (labels[k], number(p, 4), *(number(end, 3) for end in column))
-        for k, p, column in zip(loads, pressure, ends.T, strict=True)
-    )
+    rows = []
+    for k, largest, centroids in zip(loads, pressure, ends.T, strict=True):
+        rows.append((labels[k], number(largest, 4), *(number(end, 3) for end in centroids)))
     heads = (f"{name} centroid, mm" for name in ("least", "mean", "largest"))
-    return Table("Flanks by load", ("torque", "largest pressure, MPa", *heads), rows)
+    return Table("Flanks by load", ("torque", "largest pressure, MPa", *heads), tuple(rows))

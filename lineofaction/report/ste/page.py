@@ -24,12 +24,7 @@ from lineofaction.report.drawing.tables import (
     side_by_side,
 )
 from lineofaction.report.pair import data_sheet_section, pair_of, tolerance_class_of
-from lineofaction.report.ste.curves import (
-    drawn_loads,
-    headline_load,
-    load_labels,
-    ste_curves,
-)
+from lineofaction.report.ste.curves import drawn_loads, headline_load, load_labels, ste_curves
 from lineofaction.report.ste.over_torque import (
     deviation_curves,
     face_load,
@@ -73,11 +68,12 @@ def static_results(database: SteDatabase, force: float | None = None) -> tuple[S
 
 
 def _transmission_error(database: SteDatabase) -> Section:
-    figures = [ste_curves(database)]
-    figures += [ripple_over_torque(database)] if len(drawn_loads(database)) > 1 else []
-    figures += [ste_spectrum(database)]
-    figures += [ste_waterfall(database)] if len(drawn_loads(database)) > 1 else []
-    figures += [deviation_curves(database)] if has_deviations(database) else []
+    figures = [ste_curves(database), ste_spectrum(database)]
+    if len(drawn_loads(database)) > 1:
+        figures.insert(1, ripple_over_torque(database))
+        figures.append(ste_waterfall(database))
+    if has_deviations(database):
+        figures.append(deviation_curves(database))
     return Section("Static transmission error", figures=tuple(figures))
 
 
@@ -88,7 +84,8 @@ def _stiffness(database: SteDatabase, force: float | None) -> tuple[Section, ...
     """
     if database.period > 1:
         return ()
-    text, figures = "", [mesh_stiffness(database)]
+    text = ""
+    figures = [mesh_stiffness(database)]
     budget = budget_figure(database, headline_load(database, force))
     if budget is None:
         text = "The table does not contain its pair, so its deflection is not split into parts."
@@ -98,8 +95,11 @@ def _stiffness(database: SteDatabase, force: float | None) -> tuple[Section, ...
 
 
 def _flanks(database: SteDatabase) -> tuple[Section, ...]:
-    figures: list[Figure] = [flanks_over_torque(database)] if len(drawn_loads(database)) > 1 else []
-    figures += [face_load(database)] if has_face_load(database) else []
+    figures: list[Figure] = []
+    if len(drawn_loads(database)) > 1:
+        figures.append(flanks_over_torque(database))
+    if has_face_load(database):
+        figures.append(face_load(database))
     return (Section("Flank pressure and load along the face", figures=tuple(figures)),) if figures else ()
 
 
@@ -107,7 +107,8 @@ def static_making(database: SteDatabase) -> tuple[Section, ...]:
     """Return the sections on effects, errors, inputs and cost of the database."""
     metadata = database.metadata
     text = "Errors are half-widths of the band around each number."
-    if bias := metadata.receipt.get("bias"):
+    bias = metadata.receipt.get("bias")
+    if bias:
         text += f" {bias['words'][0].upper()}{bias['words'][1:]}."
     tables = _accuracy(database), _by_source(database)
     accuracy = Section("Accuracy of the table", text, tables=tables, part=Part.ACCURACY)
@@ -115,14 +116,13 @@ def static_making(database: SteDatabase) -> tuple[Section, ...]:
     case = Section("Case", text, folded=case_tables(metadata.case), part=Part.INPUT)
     versions = {**metadata.software_versions, "content_hash": metadata.content_hash}
     stages = metadata.receipt.get("stages")
-    entries = stages.items() if isinstance(stages, dict) else ()
-    rows = tuple(
-        (name, *(number(float(times.get(clock, math.nan)), 3) for clock in ("cpu_seconds", "wall_seconds")))
-        for name, times in entries
-    )
+    rows = []
+    for name, times in stages.items() if isinstance(stages, dict) else ():
+        cpu, wall = times.get("cpu_seconds", math.nan), times.get("wall_seconds", math.nan)
+        rows.append((name, number(float(cpu), 3), number(float(wall), 3)))
     receipt = Section(
         "Receipt of the table",
-        tables=(Table("Time by stage", ("stage", "CPU s", "wall s"), rows),),
+        tables=(Table("Time by stage", ("stage", "CPU s", "wall s"), tuple(rows)),),
         folded=(
             settings_table("Receipt", _without(metadata.receipt, "stages")),
             settings_table("Made with", versions),
@@ -138,12 +138,10 @@ def contact_effects(ledger: Any) -> Section:
     large, trifles = by_size(entries)
     point = influence_point(entries)
     text = f"Effects in the contact: estimated change without each, {point}." if point else ""
-    folded: tuple[Table, ...] = (
-        (effect_table(trifles_title(trifles), map(_effect_row, trifles)),) if trifles else ()
-    )
+    folded = [effect_table(trifles_title(trifles), map(_effect_row, trifles))] if trifles else []
     decision = [{title: entry.get(field) for field, title in _DECISIONS.items()} for entry in entries]
-    folded += (records("Decisions on the effects in the contact", decision),)
-    return effects_section(text, map(_effect_row, large), folded)
+    folded.append(records("Decisions on the effects in the contact", decision))
+    return effects_section(text, map(_effect_row, large), tuple(folded))
 
 
 def _effect_row(entry: Mapping[str, Any]) -> EffectRow:
@@ -170,28 +168,24 @@ def _accuracy(database: SteDatabase) -> Table:
     relative = database.error_estimate[good] / database.static_transmission_error[good]
     rows = [("points", f"{database.status.size}, {database.n_failed} failed")]
     if np.isnan(relative).any():
-        rows += [("error estimate", "not estimated")]
+        rows.append(("error estimate", "not estimated"))
     else:
-        rows += [
-            ("largest error estimate, µm", um(np.max(database.error_estimate[good]), 2)),
-            ("median error estimate, % of STE", number(100.0 * float(np.median(relative)), 2)),
-        ]
+        rows.append(("largest error estimate, µm", um(np.max(database.error_estimate[good]), 2)))
+        rows.append(("median error estimate, % of STE", number(100.0 * float(np.median(relative)), 2)))
     worst = np.nanmax(np.abs(database.residuals[good]), axis=0)  # NaN: base pitches by derivatives
-    rows += [
-        (f"largest residual, {name}", leftover(float(value), 2))
-        for name, value in zip(_RESIDUALS, worst, strict=True)
-    ]
-    rows += [
-        (f"inserted to meet the tolerance, {_INSERTED[axis]}", ", ".join(number(x, 4) for x in nodes))
-        for axis, nodes in inserted_json(database).items()
-        if axis in _INSERTED
-    ]
+    for name, value in zip(_RESIDUALS, worst, strict=True):
+        rows.append((f"largest residual, {name}", leftover(float(value), 2)))
+    for axis, nodes in inserted_json(database).items():
+        if axis in _INSERTED:
+            inserted = ", ".join(number(node, 4) for node in nodes)
+            rows.append((f"inserted to meet the tolerance, {_INSERTED[axis]}", inserted))
     return Table("Accuracy", ("quantity", "value"), tuple(rows))
 
 
 def _by_source(database: SteDatabase) -> Table:
     """Tabulate the errors of the figures at the highest load by source."""
-    rows = source_rows(database.metadata.receipt, -1)
+    rows = []
+    for name, *errors in source_rows(database.metadata.receipt, -1):
+        rows.append((name, *(um(error, 2) for error in errors)))
     head = ("source", "mean, µm", "peak to peak, µm", "harmonic 1, µm")
-    title = f"Errors by source at {load_labels(database)[-1]}"
-    return Table(title, head, tuple((name, *(um(error, 2) for error in errors)) for name, *errors in rows))
+    return Table(f"Errors by source at {load_labels(database)[-1]}", head, tuple(rows))

@@ -43,16 +43,13 @@ def ste_spectrum(database: SteDatabase) -> Figure:
     names = _order_names(curve, order)
     drawn = np.sort(np.argsort(-amplitude, kind="stable")[:ORDERS])
     rows = tuple((names[k].removeprefix("order "), um(amplitude[k], 3), um(error[k], 2)) for k in drawn)
+    caption = "Order 1 is the mesh frequency. Amplitudes in the gray are below their stated error."
+    if database.period > 1:
+        caption += " Orders between the whole ones come from deviations of single teeth, run-out or waves."
     return Figure(
         key="ste_spectrum",
         title=f"Spectrum of the transmission error at {label}",
-        caption="Order 1 is the mesh frequency. Amplitudes in the gray are below their stated "
-        "error."
-        + (
-            " Orders between the whole ones come from deviations of single teeth, run-out or waves."
-            if database.period > 1
-            else ""
-        ),
+        caption=caption,
         alternative=_spectrum_text(label, names, amplitude, error),
         content=(_panel(order, amplitude, error),),
         table=Table("Orders of the transmission error", ("mesh order", "amplitude, µm", "error, µm"), rows),
@@ -102,8 +99,8 @@ def ste_waterfall(database: SteDatabase) -> Figure:
     """Draw the level of every order at every load; a level below its error stays blank."""
     loads = drawn_loads(database)
     curves = [load_curve(database, load) for load in loads]
-    order = _spectrum_of(curves[0])[0]
-    amplitude, error = (np.stack([_spectrum_of(curve)[k] for curve in curves]) for k in (1, 2))
+    orders, amplitudes, errors = zip(*map(_spectrum_of, curves), strict=True)
+    order, amplitude, error = orders[0], np.stack(amplitudes), np.stack(errors)
     known = ~(error >= amplitude) & (amplitude > 0.0)  # also where no error was estimated
     level = np.where(known, _level(amplitude), np.nan)
     names = _order_names(curves[0], order)
@@ -137,12 +134,12 @@ def _in_cells(order: FloatArray, level: FloatArray) -> tuple[FloatArray, FloatAr
 
 def _waterfall_caption(order: FloatArray, cells: FloatArray, error: FloatArray) -> str:
     unknown = "their errors were not estimated" if np.isnan(error).all() else "blank: below the stated error"
-    shared = -(-order.size // cells.size)
-    return (
+    shared = -(-order.size // cells.size)  # orders to a cell, rounded up
+    caption = (
         f"Colors: amplitudes of the orders, {unknown}; the darkest are {_RANGE:g} dB and more below the "
         "largest. The color of a stored load reaches half the way to the next."
-        + (f" A cell is as wide as {shared} orders and shows the largest." if shared > 1 else "")
     )
+    return f"{caption} A cell is as wide as {shared} orders and shows the largest." if shared > 1 else caption
 
 
 def _waterfall_text(database: SteDatabase, names: Sequence[str], level: FloatArray) -> str:
@@ -159,9 +156,9 @@ def _waterfall_table(database: SteDatabase, names: Sequence[str], level: FloatAr
     maximum = np.nan_to_num(np.fmax.reduce(level, axis=0), nan=-np.inf)
     columns = [k for k in largest(maximum, _COLUMNS) if np.isfinite(maximum[k])]
     labels = load_labels(database)
-    rows = tuple(
-        (labels[load], *("below its error" if np.isnan(row[k]) else f"{row[k]:.1f}" for k in columns))
-        for load, row in zip(drawn_loads(database), level, strict=True)
-    )
-    head = ("torque", *(f"{names[k]}" for k in columns))
-    return Table("Levels of the largest orders, dB re 1 µm", head, rows)
+    rows = []
+    for load, row in zip(drawn_loads(database), level[:, columns], strict=True):
+        cells = ("below its error" if np.isnan(value) else f"{value:.1f}" for value in row)
+        rows.append((labels[load], *cells))
+    head = ("torque", *(names[k] for k in columns))
+    return Table("Levels of the largest orders, dB re 1 µm", head, tuple(rows))

@@ -118,33 +118,26 @@ def load_sharing(database: SteDatabase) -> Figure:
     heaviest = loads[-1]
     m, d = aligned_index(database)
     share = float(np.nanmax(database.load_share[:, heaviest, m, d]))
-    force = (
-        f"{number(share * float(database.force[heaviest]), 3)} N, {number(100.0 * share, 3)} % of the load"
-    )
+    force = f"{number(share * float(database.force[heaviest]), 3)} N"
+    pitches, period = drawn_pitches(database), database.period
+    truncated = f" Shown are the first {pitches} of {period} base pitches." if pitches < period else ""
     return Figure(
         key="load_sharing",
         title="Load sharing between tooth pairs",
         caption="One line is one pair of teeth from entering the mesh to leaving it; at every position the "
         "normal forces sum to that of the torque. Pair 0 touches at the pitch point at position 0; pair +1 "
-        f"is one pitch ahead.{_truncation_text(database)}",
-        alternative=f"A pair carries at most {force}, at {load_labels(database)[heaviest]}. "
-        f"{_alone(database, loads)}",
+        f"is one pitch ahead.{truncated}",
+        alternative=f"A pair carries at most {force}, {number(100.0 * share, 3)} % of the load, at "
+        f"{load_labels(database)[heaviest]}. {_alone(database, loads)}",
         content=tuple(_sharing_panel(database, load) for load in loads),
         table=_sharing_table(database),
     )
 
 
-def _truncation_text(database: SteDatabase) -> str:
-    """Return a sentence if a period is longer than its plot."""
-    pitches, period = drawn_pitches(database), database.period
-    return f" Shown are the first {pitches} of {period} base pitches." if pitches < period else ""
-
-
 def pair_shares(database: SteDatabase, load: int) -> tuple[FloatArray, dict[int, FloatArray]]:
-    """Follow each pair over the pitches shown.
+    """Return the positions shown (n,), and the shares there of each pair that carries load at any of them.
 
     The database counts pairs anew at every whole pitch: its pair j is the pair j + 1 seen one pitch earlier.
-    Returns the positions (n,) and, per pair that carries load somewhere, its share there.
     """
     m, d = aligned_index(database)
     position, rows = drawn_rows(database)
@@ -161,23 +154,24 @@ def pair_shares(database: SteDatabase, load: int) -> tuple[FloatArray, dict[int,
 
 
 def _sharing_panel(database: SteDatabase, load: int) -> Panel:
-    """One load's forces, each pair named at the middle of its way."""
+    """Draw the forces of one load, each pair named at the middle of its way."""
     position, followed = pair_shares(database, load)
-    names = {pair: _name(pair, short=len(followed) > _MAX_NAMES) for pair in followed}
     force = float(database.force[load])
-    lines = tuple(
-        Line(names[pair], position, force * _in_mesh(share), palette.tooth_pair(pair))
-        for pair, share in followed.items()
-    )
+    lines = []
+    for pair, share in followed.items():
+        name = _name(pair, short=len(followed) > _MAX_NAMES)
+        lines.append(Line(name, position, force * _in_mesh(share), palette.tooth_pair(pair)))
     top = _SHARING_MARGIN * max(float(np.nanmax(share)) for share in followed.values())
-    notes = tuple(_note(line) for line in lines)
-    marks = tuple(
-        (force * share, f"{number(force * share, 3)} N, {100.0 * share:.0f} %")
-        for share in (0.0, 0.25, 0.5, 0.75, 1.0)
-        if share <= top
+    marks = []
+    for part in (0.0, 0.25, 0.5, 0.75, 1.0):
+        if part <= top:
+            marks.append((force * part, f"{number(force * part, 3)} N, {100.0 * part:.0f} %"))
+    axes = (
+        position_axis(database),
+        Axis("normal force on a pair, N and %", limits=(0.0, force * top), names=tuple(marks)),
     )
-    y = Axis("normal force on a pair, N and %", limits=(0.0, force * top), names=marks)
-    return Panel(position_axis(database), y, lines, title=load_labels(database)[load], notes=notes)
+    title, notes = load_labels(database)[load], tuple(map(_note, lines))
+    return Panel(*axes, tuple(lines), title=title, notes=notes)
 
 
 def _name(pair: int, *, short: bool = False) -> str:
@@ -191,31 +185,31 @@ def _note(line: Line) -> Note:
     high = drawn[line.y[drawn] > 0.98 * np.nanmax(line.y)]
     at_end = np.ptp(line.x[high]) < _END * np.ptp(line.x) and {high[0], high[-1]} & {0, line.x.size - 1}
     among = drawn if at_end else high
-    middle = int(among[np.abs(line.x[among] - 0.5 * (line.x[among[0]] + line.x[among[-1]])).argmin()])
-    return Note(
-        float(line.x[middle]), float(line.y[middle]), line.name, left=bool(high[-1] == line.x.size - 1)
-    )
+    center = 0.5 * (line.x[among[0]] + line.x[among[-1]])
+    middle = int(among[np.abs(line.x[among] - center).argmin()])
+    left = bool(high[-1] == line.x.size - 1)
+    return Note(float(line.x[middle]), float(line.y[middle]), line.name, left=left)
 
 
 def _in_mesh(share: FloatArray) -> FloatArray:
-    """Leave out where the pair is far from carrying load; its line starts and ends at zero."""
+    """Return a share without the positions far from load; its line begins and ends at zero."""
     carries = np.concatenate([[False], share > 0.0, [False]])
     near = carries[:-2] | carries[1:-1] | carries[2:]
     return np.where(near, share, np.nan)
 
 
 def _alone(database: SteDatabase, loads: list[int]) -> str:
+    labels = load_labels(database)
     if all(pair_range(database, load)[0] > 1 for load in loads):
-        return (
-            "; ".join(f"{pair_count_text(database, load)} at {load_labels(database)[load]}" for load in loads)
-            + ": no pair is ever alone."
-        )
+        counts = "; ".join(f"{pair_count_text(database, load)} at {labels[load]}" for load in loads)
+        return f"{counts}: no pair is ever alone."
     m, d = aligned_index(database)
-    position, parts = np.append(database.position, database.period), []
+    position = np.append(database.position, database.period)
+    parts = []
     for load in loads:
         alone = np.nanmax(database.load_share[:, load, m, d, :], axis=-1) > 1 - _CARRIES
         part = 100.0 * mean_over(position, np.append(alone, alone[0]).astype(float))
-        parts.append(f"{number(part, 2)} % of the mesh cycle at {load_labels(database)[load]}")
+        parts.append(f"{number(part, 2)} % of the mesh cycle at {labels[load]}")
     return f"One pair carries the whole load in {', '.join(parts)}; otherwise two or more pairs share it."
 
 
@@ -224,15 +218,13 @@ def _sharing_table(database: SteDatabase) -> Table:
     load = middle_load(database)
     steps = np.linspace(0, len(database.position), 8, endpoint=False).astype(int)
     force = float(database.force[load])
-    rows = tuple(
-        (
-            number(database.position[p], 3),
-            *(f"{number(force * v, 3)} ({100.0 * v:.1f} %)" for v in database.load_share[p, load, m, d, :]),
-        )
-        for p in steps
-    )
+    rows = []
+    for p in steps:
+        shares = database.load_share[p, load, m, d, :]
+        forces = (f"{number(force * share, 3)} ({100.0 * share:.1f} %)" for share in shares)
+        rows.append((number(database.position[p], 3), *forces))
     head = ("position, base pitches", *(_name(int(j)) for j in database.pair))
-    return Table(f"Normal force on each pair at {load_labels(database)[load]}, N", head, rows)
+    return Table(f"Normal force on each pair at {load_labels(database)[load]}, N", head, tuple(rows))
 
 
 def budget_figure(database: SteDatabase, load: int) -> Figure | None:
@@ -256,19 +248,18 @@ def budget_figure(database: SteDatabase, load: int) -> Figure | None:
 
 
 def _budget(database: SteDatabase, load: int) -> DeflectionBudget | None:
-    pair, ledger = pair_of(database), database.metadata.effect_ledger
-    entries: list[Json] = (
-        [{"name": k, **v} for k, v in ledger.items()] if isinstance(ledger, dict) else ledger
-    )
+    pair = pair_of(database)
     if pair is None:
         return None
     skew, change = (np.array([value]) for value in aligned(database))
     scene = ContactScene(pair, database.torque[load : load + 1], EFFECTS, skew, change)
+    ledger = database.metadata.effect_ledger
+    entries: list[Json] = (
+        [{"name": k, **v} for k, v in ledger.items()] if isinstance(ledger, dict) else ledger
+    )
+    choices = {str(entry["name"]): "on" if entry["on"] else "off" for entry in entries}
     known = {effect.name for effect in EFFECTS}
-    choices = {
-        str(entry["name"]): "on" if entry["on"] else "off" for entry in entries if entry["name"] in known
-    }
-    return deflection_budget(scene, choices)
+    return deflection_budget(scene, {name: choices[name] for name in choices if name in known})
 
 
 def _parts(budget: DeflectionBudget) -> dict[str, tuple[float, ...]]:
@@ -289,19 +280,16 @@ def _parts(budget: DeflectionBudget) -> dict[str, tuple[float, ...]]:
 
 
 def _budget_panel(parts: dict[str, tuple[float, ...]], mean: float) -> Panel:
-    position, sizes = np.arange(float(len(parts))), np.array([sum(sides) for sides in parts.values()])
-    notes = tuple(
-        Note(
-            float(x) - 0.2,
-            max(float(size), 0.0),
-            f"{number(size, 3)} µm, {number(100.0 * float(size) / mean, 2)} %",
-        )
-        for x, size in zip(position, sizes, strict=True)
-    )
+    position = np.arange(float(len(parts)))
+    sizes = np.array([sum(sides) for sides in parts.values()])
+    notes = []
+    for x, size in zip(position, sizes, strict=True):
+        text = f"{number(size, 3)} µm, {number(100.0 * float(size) / mean, 2)} %"
+        notes.append(Note(float(x) - 0.2, max(float(size), 0.0), text))
     ends = (min(0.0, _BUDGET_MARGIN * float(sizes.min())), _BUDGET_MARGIN * float(sizes.max()))
     bars = Bars("part of the mean STE", position, sizes, 0.0, 0.6, palette.BLUE)
-    x, y = Axis.of_names(tuple(parts), beyond=_NOTE), Axis("part of the mean STE, µm", limits=ends)
-    return Panel(x, y, notes=notes, bars=(bars,))
+    axes = Axis.of_names(tuple(parts), beyond=_NOTE), Axis("part of the mean STE, µm", limits=ends)
+    return Panel(*axes, notes=tuple(notes), bars=(bars,))
 
 
 def _budget_text(parts: dict[str, tuple[float, ...]], mean: float, label: str) -> str:
@@ -312,14 +300,9 @@ def _budget_text(parts: dict[str, tuple[float, ...]], mean: float, label: str) -
 
 
 def _budget_table(parts: dict[str, tuple[float, ...]], mean: float) -> Table:
-    rows = tuple(
-        (
-            name,
-            *(number(side, 3) if len(sides) > 1 else "" for side in (sides * 2)[:2]),
-            number(sum(sides), 3),
-            f"{100.0 * sum(sides) / mean:.1f}",
-        )
-        for name, sides in parts.items()
-    )
+    rows = []
+    for name, sides in parts.items():
+        gears = [number(side, 3) for side in sides] if len(sides) > 1 else ["", ""]
+        rows.append((name, *gears, number(sum(sides), 3), f"{100.0 * sum(sides) / mean:.1f}"))
     head = ("part", "pinion, µm", "wheel, µm", "both, µm", "% of the mean")
-    return Table("Parts of the mean transmission error", head, rows)
+    return Table("Parts of the mean transmission error", head, tuple(rows))

@@ -137,9 +137,10 @@ def _common_depth(pair: GearPair) -> float:
 
 
 def _active_root_diameters(listing: Listing) -> list[float]:
+    # the pinion is active down to the start of the path, gear 0 at end 0, the wheel to its end
     return [
-        2.0 * math.hypot(gear.base_radius, listing.rolls[end][end]) / MM
-        for end, gear in enumerate(listing.gears)
+        2.0 * math.hypot(gear.base_radius, listing.rolls[index][index]) / MM
+        for index, gear in enumerate(listing.gears)
     ]
 
 
@@ -154,7 +155,8 @@ def _addendum_paths(listing: Listing) -> list[float]:
 
 
 def _tip_sliding_factors(listing: Listing) -> list[float]:
-    return [abs(float(sliding_factor(listing.upper, listing.rolls[end][0]))) for end in (1, 0)]
+    tips = (1, 0)  # the path of contact ends at the pinion's tip and starts at the wheel's
+    return [abs(float(sliding_factor(listing.upper, listing.rolls[end][0]))) for end in tips]
 
 
 def _rack_addendum(gear: Gear) -> float:

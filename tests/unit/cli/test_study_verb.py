@@ -38,7 +38,7 @@ from lineofaction.gearbox.studies.study import Inputs, QuantityName
 from lineofaction.gearbox.studies.study.design import design_of
 from lineofaction.gearbox.studies.study.request import factor_places, names_with_planets
 from lineofaction.gearbox.studies.study.run import RUN
-from lineofaction.gearbox.studies.study.scenes import VariedScene, _part_name, places_of, with_value
+from lineofaction.gearbox.studies.study.scenes import VariedScene, places_of, with_value
 from lineofaction.gearbox.subjects import scene_of, with_inline_cases
 from lineofaction.report.document import write_report
 
@@ -201,7 +201,6 @@ def test_a_path_names_parts_entries_and_what_is_left_out(scene: Path) -> None:
     assert table["meshes"][0]["coast_flank"] == {"backlash_um": 30.0}
     with_value(table, ("drives", 0, "speed_rpm"), 5.0)
     assert table["drives"][0]["speed_rpm"] == [5.0] * len(inputs.drives[0].speed_rpm or ())
-    assert _part_name(inputs.loads[0], 0) == "brake"
 
 
 def test_the_quantities_are_those_of_the_library() -> None:

@@ -18,7 +18,7 @@ from service.access.holder import Holder
 from service.access.key_file import KeyFile
 from service.app import create_app
 from service.queue.job import Job
-from service.queue.terms import ANYBODY, Terms, cost_limit, refuse_beyond
+from service.queue.terms import KEYLESS_CALLER, Terms, cost_limit, refuse_beyond
 from service.schemas.examples import CASE
 from service.settings import Settings
 
@@ -66,8 +66,8 @@ def test_work_may_cost_what_the_most_generous_of_its_jobs_allows(machine: Bench)
 
 def test_the_lower_of_both_limits_holds() -> None:
     bounded = Holder(name="ann", max_cost_s=60)
-    assert cost_limit(None, ANYBODY) is None
-    assert cost_limit(5.0, ANYBODY) == cost_limit(5.0, bounded) == 5.0
+    assert cost_limit(None, KEYLESS_CALLER) is None
+    assert cost_limit(5.0, KEYLESS_CALLER) == cost_limit(5.0, bounded) == 5.0
     assert cost_limit(None, bounded) == cost_limit(100.0, bounded) == 60
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import math
+import re
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
@@ -10,7 +12,7 @@ from typing import Any
 
 import pytest
 from command_line import loa
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from bounds import (
     Bound,
@@ -32,8 +34,11 @@ from fe_contact.errors import InputError, MeshError
 from lineofaction.gearbox.convert.errors import translated
 from lineofaction.gearbox.input_file import InputFile, Override
 from lineofaction.gearbox.problems import BadInput, Fault, JobFailed
+from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas import Case, read_model
 from lineofaction.gearbox.schemas.fault_lines import line_of_field
+from lineofaction.gearbox.schemas.faults import model_in
+from lineofaction.gearbox.schemas.gear import GearInput
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
@@ -184,6 +189,8 @@ def test_texts_and_lists_of_several_lines_hide_what_looks_like_a_field() -> None
         "[c]\nb = 4\n[[g.h]]\nx = 1\n[[g.h]]\nx = 2\n"
     )
     expected = {"a": 1, "d": 5, "c.b": 11, "g.h[0].x": 13, "g.h[1].x": 15, "c.missing": 10, "b": None}
+    # names in quotes may end like an index or a path
+    expected |= {"c.x]": 10, "c.x[": 10, "c.x.": 10, "c.x\n": 10, "c.[0]": 10, "]": None}
     assert {path: line_of_field(text, path) for path in expected} == expected
 
 
@@ -216,6 +223,76 @@ def test_a_value_out_of_bounds_a_wrong_name_and_an_impossible_gear_name_their_li
         (line,) = errors(verb, impossible)
         assert line.startswith("error: pair.pinion.bore_diameter_mm = 75.0"), verb
         assert line.endswith(f" ({impossible}:13)"), verb
+
+
+def suggestion(model: type[BoundaryModel], table: dict[str, Any], *path: str | int) -> str:
+    """Return the suggestion on an unknown field of a valid table; `path` leads to the field."""
+    spoiled = json.loads(json.dumps(table))  # in which no two gears are one object
+    place = spoiled
+    for part in path[:-1]:
+        place = place[part]
+    place[path[-1]] = 1.0
+    with pytest.raises(BadInput) as error:
+        validated(model, spoiled)
+    (fault,) = error.value.faults
+    assert fault.bound == "left out: there is no such field here"
+    return fault.suggestion
+
+
+@pytest.mark.parametrize(
+    ("path", "said"),
+    [
+        (("pair", "pinion", "helix_angle_deg"), "helix_angle_deg is a field of [pair]."),
+        (("load", "teeth"), "teeth is a field of [pair.pinion] and [pair.wheel]."),
+        (("load", "pair"), "pair is a field of the top level, outside of all tables."),
+        (("pair", "pinion", "tip_releif_um"), "Did you mean tip_relief_um?"),
+        (("load", "xyzzy"), "Known here: torque_n_m, normal_force_n."),
+    ],
+)
+def test_an_unknown_field_of_a_case_is_said_to_be_where_it_is_known(path: tuple[str, ...], said: str) -> None:
+    assert suggestion(Case, CASE, *path) == said
+
+
+@pytest.mark.parametrize(
+    ("path", "said"),
+    [
+        (("shafts", 0, "driver"), "driver is a field of [[meshes]]."),
+        (("meshes", 0, "case", "pair", "wheel", "helix_angle_deg"), "... of [meshes.case.pair]."),
+        (("outputs", "shaft"), "Known here: sample_rate_hz, "),  # too many tables have a shaft
+    ],
+)
+def test_an_unknown_field_of_a_scene_is_said_to_be_where_it_is_known(
+    path: tuple[str | int, ...], said: str
+) -> None:
+    assert said.removeprefix("...") in suggestion(SceneInput, SCENE, *path)
+
+
+def test_of_many_fields_the_nearest_are_listed_and_where_all_are() -> None:
+    text = suggestion(Case, CASE, "pair", "pinion", "number_of_teeth")
+    nearest = re.fullmatch(r"Nearest of \d+ here: (.*)\. All are in docs/case-file\.md\.", text)
+    assert nearest and len(names := nearest[1].split(", ")) == 12
+    assert "teeth" in names and set(names) < set(GearInput.model_fields)
+
+
+def tables(model: type[BaseModel]) -> Iterator[type[BaseModel]]:
+    yield model
+    for info in model.model_fields.values():
+        if (inner := model_in(info.annotation)) is not None:
+            yield from tables(inner)
+
+
+def test_the_manual_that_a_table_names_has_all_its_fields() -> None:
+    wide = {
+        table
+        for model in (Case, SceneInput, *(study.inputs for study in STUDIES.values()))
+        for table in tables(model)
+        if len(table.model_fields) > 12
+    }
+    for table in wide:
+        manual = (EXAMPLES.parent / table.MANUAL).read_text(encoding="utf-8")  # type: ignore[attr-defined]
+        missing = [name for name in table.model_fields if not re.search(rf"\b{name}\b", manual)]
+        assert not missing, table
+    assert len(wide) > 8
 
 
 def test_a_line_that_is_no_toml_is_shown_with_what_is_expected(tmp_path: Path) -> None:

@@ -19,7 +19,7 @@ from lineofaction.gearbox.problems import NoSuchJob, QueueFull
 from service.access.holder import Holder
 from service.queue.claims import Claims
 from service.queue.job import Job
-from service.queue.terms import ANYBODY, Terms
+from service.queue.terms import KEYLESS_CALLER, Terms
 from service.store.database import instant, now
 from service.store.results import Mark
 
@@ -41,7 +41,7 @@ def test_equal_work_submitted_at_once_from_many_threads_is_one_computation(machi
     assert machine.claims.claim() is None
 
 
-def reused(machine: Bench, stated: str = "{}", caller: Holder = ANYBODY, key: str = "ab" * 32) -> Job:
+def reused(machine: Bench, stated: str = "{}", caller: Holder = KEYLESS_CALLER, key: str = "ab" * 32) -> Job:
     terms = Terms(stated=stated, reuse=True)
     stored = machine.store.find(key, "database") is not None
     return machine.submissions.submit("fake", key, {"wish": {}}, stored=stored, caller=caller, terms=terms)

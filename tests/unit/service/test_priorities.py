@@ -11,7 +11,7 @@ from lineofaction.gearbox.problems import BadInput
 from service.access.holder import Holder
 from service.access.key_file import KeyFile
 from service.queue.job import Job
-from service.queue.terms import ANYBODY, Terms, check_priority
+from service.queue.terms import KEYLESS_CALLER, Terms, check_priority
 
 
 def entered(machine: Bench, text: str, priority: int = 0) -> Job:
@@ -54,6 +54,6 @@ def test_a_key_bounds_the_priority(tmp_path: Path) -> None:
     (key,) = file.read()
     caller = Holder(name=key.name, highest_priority=key.highest_priority)
     check_priority(-2, caller)
-    check_priority(9, ANYBODY)
+    check_priority(9, KEYLESS_CALLER)
     with pytest.raises(BadInput, match="at most -2, the limit of key 'ann'"):
         check_priority(-1, caller)

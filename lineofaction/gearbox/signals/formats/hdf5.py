@@ -17,7 +17,7 @@ EXTRA = ""
 TIMES = ("time_s", "time", "t")
 RATES = ("sample_rate_hz", "sample_rate", "fs")
 _UNIT_ATTRIBUTES = ("unit", "units")
-_DEPTH, _MAX_ENTRIES = 4, 4096
+_DEPTH, _MAX_ENTRIES = 4, 4096  # largest depth of groups, and number of objects in all of them
 _LONGEST = 256  # most characters of an attribute
 _REMEDY = "Store a dataset time_s beside the vectors, or an attribute sample_rate_hz."
 
@@ -55,9 +55,9 @@ class _Walk:
             if name.lower() in (*TIMES, *RATES) or part.size < 2 or not wanted(path_name, self.names):
                 continue
             self.budget.take(_checked_size(path_name, part))
-            yield RawChannel(
-                path_name, _numbers(part), _abscissa(path_name, part, vectors, group), _unit(name, part)
-            )
+            abscissa = _abscissa(path_name, part, vectors, group)
+            unit = next(filter(None, (_text(part, key) for key in _UNIT_ATTRIBUTES)), unit_of_name(name))
+            yield RawChannel(path_name, _numbers(part), abscissa, unit)
         for name, part in entries:
             if isinstance(part, h5py.Group) and name != "#refs#":
                 if depth >= _DEPTH:
@@ -72,9 +72,8 @@ class _Walk:
             if self.entries > _MAX_ENTRIES:
                 raise UnusableFile(f"a file of at most {_MAX_ENTRIES} entries", "Store fewer of them.")
             if not isinstance(group.get(name, getlink=True), h5py.HardLink):
-                raise UnusableFile(
-                    "a file without links to other places or files", "Copy what they lead to.", name
-                )
+                bound = "a file without links to other places or files"
+                raise UnusableFile(bound, "Copy what they lead to.", name)
             yield name, group[name]
 
 
@@ -90,19 +89,13 @@ def _checked_size(name: str, part: Any) -> int:
     try:
         size = value_size(part.id, part.id.get_type())
     except UnreadableFile as error:
-        raise UnusableFile(
-            f"a file whose datasets lie in it as numbers; this one {error}", value=name
-        ) from None
+        bound = f"a file whose datasets lie in it as numbers; this one {error}"
+        raise UnusableFile(bound, value=name) from None
     return int(size // part.dtype.itemsize)
 
 
 def _numbers(part: Any) -> np.ndarray:
     return np.ravel(np.asarray(part[()], dtype=np.float64))
-
-
-def _unit(name: str, part: Any) -> str:
-    unit = next((_text(part, key) for key in _UNIT_ATTRIBUTES if _text(part, key)), "")
-    return unit or unit_of_name(name)
 
 
 def _text(part: Any, key: str) -> str:
@@ -115,17 +108,15 @@ def _text(part: Any, key: str) -> str:
 
 
 def _abscissa(name: str, part: Any, vectors: dict[str, Any], group: Any) -> Any:
+    """Return the times of a vector, or its first time and its time step."""
     lower = {key.lower(): vector for key, vector in vectors.items()}
     time = next((lower[key] for key in TIMES if key in lower), None)
     if time is not None and time.size == part.size:
         _checked_size("time", time)
         return _numbers(time)
-    in_attributes = (_rate(owner, key) for owner in (part, group, group.file) for key in RATES)
-    in_vectors = (float(lower[key][()].flat[0]) for key in RATES if key in lower and lower[key].size == 1)
-    rate = next(
-        (value for value in (*in_attributes, *in_vectors) if value and np.isfinite(value) and value > 0.0),
-        None,
-    )
+    rates = [_rate(owner, key) for owner in (part, group, group.file) for key in RATES]
+    rates += [float(lower[key][()].flat[0]) for key in RATES if key in lower and lower[key].size == 1]
+    rate = next((value for value in rates if value and 0.0 < value < math.inf), None)
     if rate is None:
         raise UnusableFile("a file with a time for each sample, or a sample rate above 0", _REMEDY, name)
     return 0.0, 1.0 / rate

@@ -1,4 +1,7 @@
-"""Levels of a scene by the flanks of one of its meshes: transfer functions once, then a table each."""
+"""Levels of a scene by the flanks of one of its meshes: transfer functions once, then a table each.
+
+L: load cases, K: lines of orders, S: speeds, H: harmonics of the common period.
+"""
 
 from __future__ import annotations
 
@@ -63,15 +66,13 @@ UNITS = {
     SURFACE_VELOCITY: "dB re 1 nm/s",
     SOUND_PRESSURE: "dB(A) re 20 uPa",
 }
-_AT_REST, _LEVEL = (6e-3, 1.2e-6), 0.01
-"""CPU seconds of a table at rest in the scene, and by freedoms squared; a level over its transfer functions.
-
-5 to 170 freedoms, within a factor of 2.
-"""
+_AT_REST, _PER_FREEDOM_2, _LEVEL = 6e-3, 1.2e-6, 0.01
+"""Cost of a table in a load case: CPU seconds at rest, the same by freedoms squared, and the cost of a level
+over that of its transfer functions. Measured within a factor of 2 from 5 to 170 freedoms."""
 
 
 class FlankLevels(NamedTuple):
-    """Levels (L, K), dB, and share of the mesh force by which flanks part (L,), 0: they do not."""
+    """Levels (L, K), dB, and the share of the mesh force by which flanks part (L,), 0 if they do not."""
 
     level: FloatArray
     parting: FloatArray
@@ -125,10 +126,9 @@ class HeardLoad:
         added = np.moveaxis(self.transfer.input_changes(flanks, inputs, changes), 3, 0)
         off = np.sqrt(sum(self.form.weighted(amplitude) for amplitude in added))
         size = np.sqrt(self.form.weighted(inputs))
-        low, level, high = (
-            self.levels(amplitude**2, worst_speed)
-            for amplitude in (np.maximum(size - off, CANCELED * size), size, size + off)
-        )
+        low = self.levels(np.maximum(size - off, CANCELED * size) ** 2, worst_speed)
+        level = self.levels(size**2, worst_speed)
+        high = self.levels((size + off) ** 2, worst_speed)
         varied = self.transfer.varied_inputs(scene.at, flanks)[0]
         omitted = self.levels(self.form.weighted(varied), worst_speed) - level
         return np.stack([level - low - np.minimum(omitted, 0.0), high - level + np.maximum(omitted, 0.0)])
@@ -186,7 +186,8 @@ def sound_loads(
     loads = load_cases(question.load_cases)
     systems = [system_with(subject, mesh, table, load) for table, load in zip(tables, loads, strict=True)]
     index = mesh_index(subject.scene, mesh)
-    speed, transfers = np.array(question.speed_rpm) * RPM, []
+    speed = np.array(question.speed_rpm) * RPM
+    transfers = []
     for done, system in enumerate(systems):
         orders = period_orders(system, mesh, question.orders)
         transfers.append(flank_transfer(system, speed, orders, cache=means.home / FOLDER))
@@ -219,26 +220,28 @@ def levels_cost(scene: SceneInput, mesh: str, question: HeardQuestion) -> Levels
     before = scene_before_tables(scene)
     if before is None:
         return None
-    cases, speed = len(question.load_cases), np.array(question.speed_rpm) * RPM
+    cases = len(question.load_cases)
+    speed = np.array(question.speed_rpm) * RPM
     try:
         system = sized(scene)
         transfer = cases * transfer_seconds(system, speed, period_orders(system, mesh, question.orders))
     except (DynamicsError, InputError):
         return None  # the study says it, on its own tables
-    at_rest = _AT_REST[0] + _AT_REST[1] * system.freedoms.column.size**2
+    at_rest = _AT_REST + _PER_FREEDOM_2 * system.freedoms.column.size**2
     return LevelsCost(transfer, cases * at_rest + _LEVEL * transfer, before)
 
 
 def period_orders(system: System, mesh: str, orders: int) -> int:
     """Return the number of orders of the first turning mesh that reach as far as orders of a mesh."""
-    period, index = common_period(system), mesh_index(system.scene, mesh)
-    if not period.pitches[index]:
+    period = common_period(system)
+    pitches = period.pitches[mesh_index(system.scene, mesh)]
+    if not pitches:
         raise InputError("mesh", mesh, "one that turns")
-    return math.ceil(orders * abs(period.pitches[index]) / period.counted)
+    return math.ceil(orders * abs(pitches) / period.counted)
 
 
 def mesh_index(scene: Scene, mesh: str) -> int:
-    """Return which of the meshes one is."""
+    """Return the index of a mesh by its name."""
     return [part.name for part in scene.meshes].index(mesh)
 
 
@@ -258,7 +261,7 @@ def quantity_of(subject: TabledScene, receiver: HeardInput) -> str:
 
 
 def system_with(subject: TabledScene, mesh: str, table: SteDatabase, load: LoadCase) -> System:
-    """Return the scene under a load case with another table of a mesh, run at the misalignment of that."""
+    """Return the scene under a load case with another table of a mesh, run at the table's misalignment."""
     aligned = {"misalignment_um": float(table.misalignment[0]) / UM}
     meshes = tuple(
         part.model_copy(update=aligned) if part.name == mesh else part for part in subject.inputs.meshes
@@ -285,15 +288,12 @@ def _form(
     subject: TabledScene, transfer: FlankTransfer, model: SoundModel, receiver: HeardInput
 ) -> QuantityForm:
     of_bearings = transfer.bearing if receiver.bearing is None else (receiver.bearing,)
+    x, y, z = receiver.microphone_mm or (0.0, 0.0, 0.0)
+    microphone = x * MM, y * MM, z * MM
     parts: dict[str, Callable[[], tuple[Quantity, ...]]] = {
         SOUND_POWER: lambda: (SoundPower(),),
         SURFACE_VELOCITY: lambda: (SurfaceVelocity(housing_of(subject.inputs, receiver)),),
-        SOUND_PRESSURE: lambda: (SoundPressure(housing_of(subject.inputs, receiver), _microphone(receiver)),),
+        SOUND_PRESSURE: lambda: (SoundPressure(housing_of(subject.inputs, receiver), microphone),),
         BEARING_FORCE: lambda: tuple(map(BearingForce, of_bearings)),
     }
     return Together(parts[quantity_of(subject, receiver)]()).form(transfer, model)
-
-
-def _microphone(receiver: HeardInput) -> tuple[float, float, float]:
-    x, y, z = receiver.microphone_mm or (0.0, 0.0, 0.0)
-    return x * MM, y * MM, z * MM

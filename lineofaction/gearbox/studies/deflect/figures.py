@@ -11,13 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from bounds.types import FloatArray, Json
-from dynamics.deflection import (
-    CAUSES,
-    BearingLoad,
-    CaseDeflection,
-    equivalent_load,
-    life_duration,
-)
+from dynamics.deflection import CAUSES, BearingLoad, CaseDeflection, equivalent_load, life_duration
 from dynamics.settings.load_case import COAST
 from lineofaction.gearbox.schemas.toml import toml_text
 from lineofaction.gearbox.studies.deflect import DeflectFigures, RatingLife
@@ -37,23 +31,19 @@ BALL_EXPONENT = 3.0
 
 
 def _loads_by_case(cases: Sequence[CaseDeflection]) -> list[list[BearingLoad]]:
-    """Return the loads of all bearings in every case, forces and displacements within rounding zero."""
-    largest = [
-        max(float(np.max(np.abs(load.force[:3]))) for load in loads)
-        for loads in zip(*(case.bearings for case in cases), strict=True)
-    ]
+    """Return the loads of all bearings in every case; forces and displacements of rounding are zero."""
+    by_bearing = zip(*(case.bearings for case in cases), strict=True)
+    largest = [max(float(np.max(np.abs(load.force[:3]))) for load in loads) for loads in by_bearing]
     of_all = ROUNDING_OF_ALL * max(largest, default=0.0)
     minimum = [max(ROUNDING * force, of_all) for force in largest]
     loads = [load for case in cases for load in case.bearings]
     displacements = (part[:3] for load in loads for part in (load.elastic, load.clearance, load.seat))
-    largest_displacement = max((float(np.max(np.abs(part))) for part in displacements), default=0.0)
-    return [
-        [
-            _without_rounding(load, limit, ROUNDING_OF_ALL * largest_displacement)
-            for load, limit in zip(case.bearings, minimum, strict=True)
-        ]
-        for case in cases
-    ]
+    floor = ROUNDING_OF_ALL * max((float(np.max(np.abs(part))) for part in displacements), default=0.0)
+    by_case = []
+    for case in cases:
+        limited = zip(case.bearings, minimum, strict=True)
+        by_case.append([_without_rounding(load, limit, floor) for load, limit in limited])
+    return by_case
 
 
 def _without_rounding(load: BearingLoad, minimum: float, floor: float) -> BearingLoad:
@@ -145,7 +135,8 @@ def _case(
 
 def _mesh_over_cases(result: GearboxDeflection, name: str) -> DeflectFigures.MeshOverCases:
     """Return the means of a mesh over the load cases by their shares, and its worst case."""
-    weights, cases = _shares(result), result.deflection.cases
+    weights = _shares(result)
+    cases = result.deflection.cases
     alignments = [next(mesh for mesh in case.meshes if mesh.name == name) for case in cases]
     worst = int(np.argmax([abs(mesh.misalignment) for mesh in alignments]))
     flanks = [part for part in result.flanks if part.mesh == name]
@@ -201,16 +192,13 @@ def write_spectrum(result: GearboxDeflection, _scene: Any, target: Path) -> None
         if name not in result.cases:
             continue
         stem = "".join(letter if letter.isalnum() else "_" for letter in name)
-        case, study = (target.with_name(f"{target.stem}_{stem}{end}.toml") for end in ("", "_optimize"))
+        case = target.with_name(f"{target.stem}_{stem}.toml")
+        study = target.with_name(f"{target.stem}_{stem}_optimize.toml")
         case.write_text(toml_text(result.cases[name]), encoding="utf-8")
         study.write_text(toml_text(optimization_inputs(result, name)), encoding="utf-8")
         lines.append(f"# loa optimize {case.name} {study.name} -o {target.stem}_{stem}_best")
-        lines += [
-            f'[[meshes]]\nname = "{name}"',
-            f'case_file = "{case.name}"',
-            f'study_file = "{study.name}"',
-            "",
-        ]
+        lines += ["[[meshes]]", f'name = "{name}"']
+        lines += [f'case_file = "{case.name}"', f'study_file = "{study.name}"', ""]
     target.write_text("\n".join(lines), encoding="utf-8")
 
 

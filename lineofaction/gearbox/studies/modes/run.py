@@ -85,28 +85,30 @@ class _ModesStudy(SceneStudy[Inputs, ModesFigures, ModalAnalysis]):
         }
 
     def motions(self, modes: ModalAnalysis) -> list[OfferedMotion]:
-        """Return the modes at rest and over speed; none of files of versions that did not keep the axes."""
+        """Return the modes at rest and over speed; files of versions that did not keep the axes have none."""
         if not modes.axis_shaft.size:
             return []
         energies = modes.natural_strain_energy, modes.natural_kinetic_energy
         rest = zip(modes.natural_frequency, modes.natural_damping_ratio, *energies, strict=True)
         shapes = modes.natural_shape
         offered = [_offered(modes, "at rest", row, shapes[k]) for k, row in enumerate(rest)]
-        for at in chosen_rows(modes.speed.size, MAX_GROUPS) if modes.speed.size else ():
-            whirl = modes.frequency[at], modes.damping_ratio[at], modes.strain_energy[at]
-            rows = enumerate(zip(*whirl, modes.kinetic_energy[at], strict=True))
+        if not modes.speed.size:
+            return offered
+        for at in chosen_rows(modes.speed.size, MAX_GROUPS):
             group = f"at {engineering(modes.speed[at] / RPM, 5)} rpm"
-            offered += [
-                _offered(modes, group, row, modes.shape[at, k]) for k, row in rows if np.isfinite(row[0])
-            ]
+            energies = modes.strain_energy[at], modes.kinetic_energy[at]
+            whirl = zip(modes.frequency[at], modes.damping_ratio[at], *energies, strict=True)
+            for k, row in enumerate(whirl):
+                if np.isfinite(row[0]):
+                    offered.append(_offered(modes, group, row, modes.shape[at, k]))
         return offered
 
 
 def _offered(modes: ModalAnalysis, group: str, row: Any, shape: Any) -> OfferedMotion:
+    """Return the motion of a mode from its frequency, damping ratio, strain and kinetic energies."""
     hertz, damping, strain, kinetic = row
-    name = (
-        f"{engineering(hertz, 4)} Hz, {modes.kind(strain, kinetic)}, damping {engineering(100.0 * damping)} %"
-    )
+    kind = modes.kind(strain, kinetic)
+    name = f"{engineering(hertz, 4)} Hz, {kind}, damping {engineering(100.0 * damping)} %"
 
     def made() -> UnitMotion:
         motion = np.asarray(modes.axis_motion @ shape, dtype=complex)

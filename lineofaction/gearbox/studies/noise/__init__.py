@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -27,6 +27,7 @@ from lineofaction.gearbox.schemas.studied import OverSpeedsOrRun
 class Inputs(NoiseRanges, OverSpeedsOrRun):
     """Speeds at which the sound of the housings is looked for, the radiation model, and ranges of guesses."""
 
+    MANUAL: ClassVar[str] = "docs/service.md"
     radiation: Literal["estimate", "monopoles", "equivalent_radiated_power"] = Field(
         default="estimate",
         description="Radiation model: the estimate, a level that the other two both allow, mode by mode, "

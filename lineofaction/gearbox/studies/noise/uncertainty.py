@@ -87,13 +87,15 @@ class SoundUncertainty:
 def uncertainty(subject: TabledScene, sound: SceneSound, inputs: Inputs, means: Means) -> SoundUncertainty:
     """Return bands and sensitivities of the sound of a scene, as the inputs request them."""
     radiation, speed = sound.radiation, sound.power.speed
-    damping, band = damping_of(subject.inputs, radiation), None
+    damping = damping_of(subject.inputs, radiation)
+    band: SoundBand | None = None
     if inputs.housing_damping is not None:
         low, high = inputs.housing_damping
         damping = KnownDamping("range stated", (low, high))
     housings = {name: subject.housings[name] for name in radiation}
     model = SoundModel(subject.scene, housings, radiation)
-    sensitivities, omitted = tuple[Sensitivity, ...](), dict[str, str]()
+    sensitivities: tuple[Sensitivity, ...] = ()
+    omitted: dict[str, str] = {}
     began = cpu_seconds()
     with boundary_errors():
         if inputs.band:
@@ -108,8 +110,8 @@ def uncertainty(subject: TabledScene, sound: SceneSound, inputs: Inputs, means: 
 
 def spans_of(ranges: NoiseRanges) -> dict[str, Range]:
     """Return the ranges of factors, each about 1, by the name of the guessed figure."""
-    factors = {name: span for name in RANGES if (span := getattr(ranges, name)) is not None}
-    return {name: Range(low, 1.0, high) for name, (low, high) in factors.items()}
+    factors = {name: getattr(ranges, name) for name in RANGES}
+    return {name: Range(span[0], 1.0, span[1]) for name, span in factors.items() if span is not None}
 
 
 def _sensitivities_of(
@@ -128,8 +130,9 @@ def _sensitivities_of(
 def _flank_figures(scene: SceneInput) -> Iterator[DesignFigure]:
     """Yield the figures of all meshes with a case; tip relief only where it has a length."""
     for mesh in scene.meshes:
-        for gear in GEARS if mesh.case is not None else ():
-            assert mesh.case is not None
+        if mesh.case is None:
+            continue
+        for gear in GEARS:
             flank = getattr(mesh.case.pair, gear)
             for amount in AMOUNTS:
                 if amount != "tip_relief_um" or has_extent(flank, "tip_relief"):

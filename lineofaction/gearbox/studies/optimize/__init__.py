@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import cycle, pairwise
-from typing import Annotated, Any, Literal, Optional, Self
+from typing import Annotated, Any, ClassVar, Literal, Optional, Self
 
 from pydantic import Field, Strict, model_validator
 
@@ -20,6 +20,7 @@ from lineofaction.gearbox.studies.deflect import LoadCaseInput, LoadCases
 from lineofaction.gearbox.studies.scatter import ToleranceInputs
 
 TRIALS, SOUND_TRIALS = 3, 8
+"""Number of best start designs from which a search begins, of a case and of a scene."""
 PAIRS = 32
 """Number of pairs over which start and optimum are compared: a few CPU seconds."""
 Deviation = Annotated[float, Field(gt=0.0, le=1000.0)]
@@ -150,6 +151,7 @@ class SearchInput(BoundaryModel):
 class HeardObjectiveInput(OverOrders, HeardInput):
     """Level of a scene over speeds and load cases, which is minimized."""
 
+    MANUAL: ClassVar[str] = "docs/studies.md"
     mesh: Name | None = Field(
         default=None,
         description="Mesh of the scene whose flanks are varied; left out: the only one with a case",

@@ -126,9 +126,8 @@ class HeardOptimization(ResultRecord):
         """The outcome in a sentence."""
         gain, start, optimum = self.gain, self.start.objective, self.optimum.objective
         over = excess(self.optimum)
-        levels = (
-            f"{start.value:.1f} to {optimum.value:.1f} {self.unit}, errors {engineering(gain.error, 2)} dB"
-        )
+        levels = f"{start.value:.1f} to {optimum.value:.1f} {self.unit}"
+        levels = f"{levels}, errors {engineering(gain.error, 2)} dB"
         sentences = {
             Outcome.IMPROVED: f"Quieter by {gain.value:.1f} dB: {levels}",
             Outcome.WITHIN_ERROR: f"A tie: the optimum cannot be told from the start, {levels}",
@@ -140,7 +139,8 @@ class HeardOptimization(ResultRecord):
 
     def ended(self) -> str:
         """Return a sentence on the end of the search, and on the number of its starts that agree."""
-        run, ends = self.runs[self.best_run], np.array([end for start in self.runs for end in start.ends])
+        run = self.runs[self.best_run]
+        ends = np.array([end for start in self.runs for end in start.ends])
         ended = "The search converged" if run.converged else f"The search ended: {run.ended.value}"
         same = max(AUDIBLE, self.optimum.objective.error)
         agreeing = int(np.sum(ends <= ends.min(initial=np.inf) + same))
@@ -176,17 +176,16 @@ class HeardOptimization(ResultRecord):
     def worse(self) -> Iterator[str]:
         """Yield figures that get worse: orders by load case, largest first, ripple, pressure, K_Hbeta."""
         before, after = self.start, self.optimum
-        change, error = after.level - before.level, before.level_error + after.level_error
+        change = after.level - before.level
+        error = before.level_error + after.level_error
         floor = max(before.level.max(), after.level.max()) - FALL
         for flat in np.argsort(-after.level, axis=None, kind="stable").tolist():
             load, line = np.unravel_index(flat, change.shape)
             threshold = max(AUDIBLE, float(error[load, line]))
             if change[load, line] >= threshold and after.level[load, line] > floor:
                 name = "all orders" if self.lines[line] == ALL else f"order {self.lines[line]}"
-                yield (
-                    f"{name} at {self.torque[load]:.4g} N m {change[load, line]:+.1f} dB to "
-                    f"{after.level[load, line]:.1f} dB"
-                )
+                rise = f"{change[load, line]:+.1f} dB to {after.level[load, line]:.1f} dB"
+                yield f"{name} at {self.torque[load]:.4g} N m {rise}"
         ripple = after.peak_to_peak - before.peak_to_peak
         rises = ripple > before.peak_to_peak_error + after.peak_to_peak_error
         for load in np.flatnonzero(rises).tolist():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
@@ -15,13 +15,7 @@ from bounds import engineering
 from bounds.types import Json
 from fe_contact.analysis.run_plan import predicted_designs
 from fe_contact.microgeometry.confirmation import HarrisMap
-from fe_contact.microgeometry.objective import (
-    HarmonicAmplitude,
-    Limits,
-    Objective,
-    WeightedMean,
-    Worst,
-)
+from fe_contact.microgeometry.objective import HarmonicAmplitude, Limits, Objective, WeightedMean, Worst
 from fe_contact.microgeometry.optimization import Optimization, OptimizationRequest
 from fe_contact.microgeometry.optimize import optimize
 from fe_contact.microgeometry.scatter import GaussHermite, Scatter, SobolSample
@@ -79,12 +73,13 @@ def _write_case(
     result: Optimization | HeardOptimization, checked: CheckedCase | SceneInput, target: Path
 ) -> None:
     """Write the case with the best design as a case file: the stated case, and the best flanks."""
-    content: Json = (
-        checked.case.model_dump(mode="json", exclude_unset=True)
-        if isinstance(checked, CheckedCase)
-        else copy.deepcopy(getattr(result, "case", {}))
-    )
-    checked_case = checked if isinstance(checked, CheckedCase) else CheckedCase(validated(Case, content))
+    content: Json
+    if isinstance(checked, CheckedCase):
+        checked_case = checked
+        content = checked.case.model_dump(mode="json", exclude_unset=True)
+    else:
+        content = copy.deepcopy(getattr(result, "case", {}))
+        checked_case = CheckedCase(validated(Case, content))
     for gear, fields in as_typed(checked_case.case, checked_case.pair, result.optimum.values).items():
         content["pair"][gear] = with_figures(content["pair"][gear], fields)
     target.write_text(f"# {result.reason}\n\n{toml_text(content)}", encoding="utf-8")
@@ -135,16 +130,15 @@ class _OptimizeStudy(
         load = np.size(request.torques) / request.checked.request.load.size
         seconds = load * request.scatter.nodes().weight.size * predicted.design
         designs = usual_designs(request.search)
-        confirmed = Work("analyses", CONFIRMED * predicted.table, 2)
-        return StudyCost(
-            (Work("gears", predicted.bodies), Work("designs", seconds, designs), confirmed), predicted.bytes
-        )
+        gears, confirmed = Work("gears", predicted.bodies), Work("analyses", CONFIRMED * predicted.table, 2)
+        return StudyCost((gears, Work("designs", seconds, designs), confirmed), predicted.bytes)
 
     def normalized(self, subject: CheckedCase | SceneInput, study: Inputs) -> Json:
         """Return all inputs, with the usual variables if none are named."""
         case: Case | None
         if isinstance(subject, CheckedCase):
-            case, study = subject.case, of_case(subject.case, study)
+            case = subject.case
+            study = of_case(case, study)
         else:
             study = of_scene(subject, study)
             case = _question_of(subject, study)[1].case
@@ -153,9 +147,9 @@ class _OptimizeStudy(
     def compute(
         self, subject: CheckedCase | TabledScene, study: Inputs, means: Means
     ) -> Optimization | HeardOptimization:
-        """Optimize the modifications of a case or of a mesh; cancelled, end with the best so far.
+        """Optimize the modifications of a case or of a mesh; a cancelled search ends with its best design.
 
-        Designs of a case are remembered: another attempt, or another deadline, goes on from them.
+        Designs of a case are stored: another attempt, or another deadline, goes on from them.
         """
         with boundary_errors():
             if isinstance(subject, TabledScene):
@@ -183,16 +177,13 @@ class _OptimizeStudy(
             value = limits.pop(known, None)  # files of version 0.2 lack some
             limits[name] = None if value is None else value / unit
         nodes = result.nodes
-        deviation = [
-            [_typed(name, float(x)) for name, x in zip(nodes.names, row, strict=True)]
-            for row in nodes.deviation
-        ]
+        deviation = []
+        for row in nodes.deviation:
+            by_name = zip(nodes.names, row, strict=True)
+            deviation.append([_typed(name, float(x)) for name, x in by_name])
         requested = {"scatter": _scattering(result), "limits": limits}
         return {
-            "variables": [
-                {"name": boundary_name(var.name), "bounds": _range(var.name, var.low, var.high)}
-                for var in result.variables
-            ],
+            "variables": list(map(_variable, result.variables)),
             "nodes": (nodes, {"names": list(map(boundary_name, nodes.names)), "deviation": deviation}),
             "start": (result.start, {"values": _at_boundary(result.start.values)}),
             "optimum": (result.optimum, {"values": _at_boundary(result.optimum.values)}),
@@ -253,25 +244,19 @@ def _mesh_request(scene: SceneInput, mesh: MeshInput, study: Inputs) -> Optimiza
 
 
 def _sound_figures(result: HeardOptimization) -> Json:
-    lines = [
-        [
-            {
-                "order": name,
-                "before_db": float(result.start.level[load, line]),
-                "after_db": float(result.optimum.level[load, line]),
-                "error_db": float(
-                    result.start.level_error[load, line] + result.optimum.level_error[load, line]
-                ),
-            }
-            for line, name in enumerate(result.lines)
-        ]
-        for load in range(result.torque.size)
-    ]
-    designs = {
-        name: (design, {"values": _at_boundary(design.values)})
-        for name, design in (("start", result.start), ("optimum", result.optimum))
-    }
+    start, optimum = result.start, result.optimum
+    error = start.level_error + optimum.level_error
+    levels = []
+    for load in range(result.torque.size):
+        lines = []
+        for line, name in enumerate(result.lines):
+            level = {"before_db": start.level[load, line], "after_db": optimum.level[load, line]}
+            lines.append({"order": name, **level, "error_db": error[load, line]})
+        levels.append(lines)
     notes: Json = {"worse": list(result.worse()), "parting": list(result.partings()), "ended": result.ended()}
+    notes["start"] = start, {"values": _at_boundary(start.values)}
+    notes["optimum"] = optimum, {"values": _at_boundary(optimum.values)}
+    notes["levels"] = levels
     notes["pairs"] = None
     if result.pairs.size:
         names = "before_db", "after_db", "change_db"
@@ -282,11 +267,13 @@ def _sound_figures(result: HeardOptimization) -> Json:
             "louder_share": result.louder_share,
         }
     of_case = dict.fromkeys(("gain", "gain_error", "start", "optimum", "runs", "torque", "misalignment"))
-    variables = [
-        {"name": boundary_name(var.name), "bounds": _range(var.name, var.low, var.high)}
-        for var in result.variables
-    ]
-    return of_case | {"variables": variables, "heard": (result, {**designs, "levels": lines, **notes})}
+    return of_case | {"variables": list(map(_variable, result.variables)), "heard": (result, notes)}
+
+
+def _variable(variable: DesignVariable) -> Json:
+    """Return the name and the bounds of a variable, as a case file has them."""
+    bounds = _range(variable.name, variable.low, variable.high)
+    return {"name": boundary_name(variable.name), "bounds": bounds}
 
 
 def _with_variables(case: Case, study: Inputs) -> Inputs:
@@ -308,16 +295,16 @@ def _with_variables(case: Case, study: Inputs) -> Inputs:
 def _library_request(checked: CheckedCase, study: Inputs) -> OptimizationRequest:
     pair, case = checked.pair, checked.case
     study = _with_variables(case, of_case(case, study))
-    complained = study.objective.harmonic is not None
     torques = study.torque_n_m or case.load.torque_n_m
     if torques is None:
         torques = tuple(float(pair.torque(force)) for force in case.load.normal_force_n or ())
-    objective = _objective(study)
-    gears = {"pinion": study.variables.pinion, "wheel": study.variables.wheel}
+    objective: Objective
+    harmonic, weights = study.objective.harmonic, study.objective.weights
+    over_loads = WeightedMean(weights) if study.objective.kind == "weighted_mean" else Worst()
+    objective = over_loads if harmonic is None else HarmonicAmplitude(harmonic, over_loads)
     variables = [
-        DesignVariable(name, *(end * unit for end in ends))
-        for gear, fields in gears.items()
-        for name, ends, unit in _set_fields(gear, fields)
+        DesignVariable(name, low * unit, high * unit)
+        for name, (low, high), unit in _set_fields(study.variables.pinion, study.variables.wheel)
     ]
     limits_input = study.limits
     limits = Limits(
@@ -337,14 +324,8 @@ def _library_request(checked: CheckedCase, study: Inputs) -> OptimizationRequest
         limits,
         _search(study.search, of_sound=study.heard is not None),
         checked.options,
-        grid=drawing_grid(case, pair, variables) if complained else {},
+        grid={} if harmonic is None else drawing_grid(case, pair, variables),
     )
-
-
-def _objective(study: Inputs) -> Objective:
-    given = study.objective
-    over_loads = WeightedMean(given.weights) if given.kind == "weighted_mean" else Worst()
-    return over_loads if given.harmonic is None else HarmonicAmplitude(given.harmonic, over_loads)
 
 
 def _si(value: float | None, unit: float) -> float | None:
@@ -354,33 +335,30 @@ def _si(value: float | None, unit: float) -> float | None:
 def _scatter_of(scatter: ScatterInput, seed: int) -> Scatter:
     hermite = scatter.rule == "gauss_hermite"
     rule = GaussHermite(scatter.points) if hermite else SobolSample(scatter.log2_size, seed)
-    gears = {"pinion": scatter.pinion, "wheel": scatter.wheel}
-    deviations = {
-        name: value * unit
-        for gear, fields in gears.items()
-        for name, value, unit in _set_fields(gear, fields)
-    }
+    fields = _set_fields(scatter.pinion, scatter.wheel)
+    deviations = {name: value * unit for name, value, unit in fields}
     return Scatter(scatter.misalignment_um * UM, deviations, rule)
 
 
-def _set_fields(gear: str, inputs: GearVariablesInput | GearScatterInput) -> list[tuple[str, Any, float]]:
-    """Return name in the library, value and unit of the fields that are given."""
-    return [
-        (f"{gear}.{field.rpartition('_')[0]}", value, factor(field))
-        for field in type(inputs).model_fields
-        if (value := getattr(inputs, field)) is not None
-    ]
+def _set_fields(
+    pinion: GearVariablesInput | GearScatterInput, wheel: GearVariablesInput | GearScatterInput
+) -> Iterator[tuple[str, Any, float]]:
+    """Yield name in the library, value and unit of the fields of both gears that have a value."""
+    for gear, inputs in (("pinion", pinion), ("wheel", wheel)):
+        for field in type(inputs).model_fields:
+            value = getattr(inputs, field)
+            if value is not None:
+                yield f"{gear}.{field.rpartition('_')[0]}", value, factor(field)
 
 
 def _search(search: SearchInput, *, of_sound: bool) -> Search:
     """Return the search; few positions tell a level nearly as well as many, but not a ripple."""
-    linear: Method = (
-        StagedLinearProgramming(search.sample, SOUND_TRIALS if search.trials is None else search.trials)
-        if of_sound
-        else SequentialLinearProgramming(search.sample, TRIALS if search.trials is None else search.trials)
-    )
+    trials = search.trials
+    if trials is None:
+        trials = SOUND_TRIALS if of_sound else TRIALS
+    linear = StagedLinearProgramming if of_sound else SequentialLinearProgramming
     methods: dict[str, Method] = {
-        "sequential_linear_programming": linear,
+        "sequential_linear_programming": linear(search.sample, trials),
         "differential_evolution": DifferentialEvolution(search.population),
         "nelder_mead": NelderMead(),
     }
@@ -392,11 +370,8 @@ def _scattering(result: Optimization) -> Json:
     """Return the scattering variables by the fields of a case file."""
     scatter = result.request["scatter"]
     rule = {name: value for name, value in scatter.items() if not name.endswith("_m")}
-    spread = {
-        "misalignment_um": scatter["misalignment_m"] / UM,
-        **_at_boundary(scatter["modification_m"]),
-    }
-    return {**spread, **rule}
+    misalignment = scatter["misalignment_m"] / UM
+    return {"misalignment_um": misalignment, **_at_boundary(scatter["modification_m"]), **rule}
 
 
 def _range(name: str, low: float, high: float) -> list[float]:

@@ -124,8 +124,9 @@ class HeardMerit:
         By cutting planes: tangents of the largest rows, where the last program ended.
         """
         reach = np.maximum(np.abs(low), np.abs(high))
-        step = best = np.zeros(low.size)
-        least, cuts = self._merit(step), [self._cuts(step)]
+        best = np.zeros(low.size)
+        least = self._merit(best)
+        cuts = [self._cuts(best)]
         for _ in range(CUTS):
             program = LinearProgram(low.size)
             (objective,) = program.columns(1, minimum=0.0)
@@ -190,15 +191,18 @@ class HeardProblem(SearchProblem):
         try:
             parts = [*chain(*by.run(_linearized_nodes, self, tasks))]
         except (FeContactError, DynamicsError):
-            return self._with_merit(math.inf, math.inf), _no_merit(point.size)
-        powers = Powers(*(np.stack(power) for power in zip(*(part[1] for part in parts), strict=True)))
+            d = point.size
+            still = Powers(np.zeros(1), np.zeros((1, d)), np.zeros((1, d, d)))  # no step leads away from here
+            return self._with_merit(math.inf, math.inf), HeardMerit(still, (), PENALTY)
+        powers = _stacked([part.powers for part in parts])
         objective, weight = self._over_nodes(powers.constant)
         expected = Powers(*(np.tensordot(weight, power, 1) for power in powers))
-        violation = self._violation([figures for part in parts for figures in part[0]])
+        violation = self._violation([figures for part in parts for figures in part.figures])
         level = self.sound.level(expected.constant) - objective + self.scale  # of the start, on its scale
         start = self.sound.at[0].case.form.reference * 10.0 ** (level / 10.0)
         rows = Powers(*(self.sound.rows(power) / start for power in expected))
-        ranges, limits = self.ranges, _joined([part[2] for part in parts])
+        ranges = self.ranges
+        limits = _joined([part.limits for part in parts])
         scaled = Powers(rows.constant, rows.slope * ranges, rows.bend * ranges[:, None] * ranges)
         merit = HeardMerit(scaled, tuple((value, by * ranges) for value, by in limits), PENALTY)
         return self._with_merit(objective, violation), merit
@@ -214,14 +218,13 @@ class HeardProblem(SearchProblem):
 
     def levels(self, values: dict[str, float], workers: Workers) -> FloatArray:
         """Return the levels of a design at each node (N,), dB; NaN where one cannot be solved."""
-        return np.array(
-            [*divided(workers, _level_at, (self, values), range(self.evaluator.nodes.weight.size))]
-        )
+        nodes = range(self.evaluator.nodes.weight.size)
+        return np.array([*divided(workers, _level_at, (self, values), nodes)])
 
     def _over_nodes(self, power: FloatArray) -> tuple[float, FloatArray]:
         """Return the level of powers (N, L, S) at the nodes, dB, and the weights (N,) of its derivatives.
 
-        Those of a quantile are of the nodes that are as loud: it is followed by their mean power.
+        The derivatives of a quantile are those of the mean power of the nodes that are at least as loud.
         """
         if self.quantile is None:
             weight = self.evaluator.nodes.weight
@@ -240,9 +243,10 @@ class HeardProblem(SearchProblem):
 
     def tables_of(self, tabled: Sequence[TabledLoads]) -> list[TabledLoads]:
         """Return the table of each load case at its load and the neighbors, from the tables of a node."""
-        count, groups, tables = LOAD_FACTORS.size, self.evaluator.groups, []
+        tables = []
         for case in range(len(self.sound.at)):
-            of_case = [np.flatnonzero(group // count == case) for group in groups]
+            # the loads of a case are in one group of the evaluator
+            of_case = [np.flatnonzero(group // LOAD_FACTORS.size == case) for group in self.evaluator.groups]
             (at,) = (k for k, loads in enumerate(of_case) if loads.size)
             tables.append(tabled[at].at_loads(of_case[at]))
         return tables
@@ -264,19 +268,32 @@ def _level_at(shared: tuple[HeardProblem, dict[str, float]], node: int) -> float
         return math.nan
 
 
+class _LinearizedNode(NamedTuple):
+    """Figures, powers by load case and limits of a design at a node of its scatter."""
+
+    figures: list[LoadFigures]
+    powers: Powers
+    limits: tuple[Rows, ...]
+
+
 def _linearized_nodes(
     problem: HeardProblem, task: tuple[dict[str, float], tuple[int, ...]]
-) -> list[tuple[list[LoadFigures], Powers, tuple[Rows, ...]]]:
+) -> list[_LinearizedNode]:
     """Linearize a design at some nodes: one task."""
     values, nodes = task
     parts = []
     for node in nodes:
         tabled = list(tabled_loads(problem.evaluator, values, (node,), problem.names, problem.limits))
         at = zip(problem.sound.at, problem.tables_of(tabled), strict=True)
-        powers = [load.powers(case) for load, case in at]
-        stacked = Powers(*(np.stack(part) for part in zip(*powers, strict=True)))
-        parts.append(([part.figures for part in tabled], stacked, _joined([case.limits for case in tabled])))
+        powers = _stacked([load.powers(case) for load, case in at])
+        limits = _joined([case.limits for case in tabled])
+        parts.append(_LinearizedNode([part.figures for part in tabled], powers, limits))
     return parts
+
+
+def _stacked(powers: Sequence[Powers]) -> Powers:
+    """Return several powers as one, along a new first axis."""
+    return Powers(*(np.stack(part) for part in zip(*powers, strict=True)))
 
 
 def _joined(limits: Sequence[tuple[Rows, ...]]) -> tuple[Rows, ...]:
@@ -285,12 +302,6 @@ def _joined(limits: Sequence[tuple[Rows, ...]]) -> tuple[Rows, ...]:
         (np.concatenate([part[0] for part in rows]), np.concatenate([part[1] for part in rows]))
         for rows in zip(*limits, strict=True)
     )
-
-
-def _no_merit(variables: int) -> HeardMerit:
-    """Return the merit about a design that cannot be solved: nothing leads away from it."""
-    nothing = Powers(np.zeros(1), np.zeros((1, variables)), np.zeros((1, variables, variables)))
-    return HeardMerit(nothing, (), PENALTY)
 
 
 def with_neighbor_loads(load: FloatArray, misalignment: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -105,22 +105,26 @@ def sound_optimum(
     load cases. Raises `InputError`, `SolveError`: no such flanks, no equilibrium, or no contact of the start.
     """
     assert mesh.case is not None  # a scene with its tables has its cases written out
-    clock, run = StageClock(means.workers.cost), means.analysis
+    clock = StageClock(means.workers.cost)
+    run = means.analysis
     with clock.stage("deflection"):
         misalignment = misalignments(subject, mesh, question, means)
     with clock.stage("transfer functions"):
         setup = sound_problem(subject, mesh, question, request, misalignment, means)
     with clock.stage("search"):
-        start, sample = dict(zip(setup.problem.names, request.start_design, strict=True)), setup.sample
+        start = dict(zip(setup.problem.names, request.start_design, strict=True))
+        sample = setup.sample
         problem = _scaled(setup.problem if question.quantile is None or sample is None else sample, start)
-        expected, cancel = _expected_seconds(problem, start, request.search), means.cancel or never
+        expected = _expected_seconds(problem, start, request.search)
+        cancel = means.cancel or never
         announce(means.report, "search", expected)
         runs = search_all(problem, request.search, request.start_design, run, cancel)
         runs = tuple(best_on_grid(problem, part, request.grid, cancel) for part in runs)
     best = min(range(len(runs)), key=lambda i: runs[i].assessed.order)
     designs = start, problem.values(runs[best].coordinates)
     with clock.stage("confirmation"):
-        before, after = (_confirmed(replace(setup, problem=problem), values, run.cache) for values in designs)
+        searched = replace(setup, problem=problem)
+        before, after = (_confirmed(searched, values, run.cache) for values in designs)
     with clock.stage("pairs"):
         rough = None if sample is None or cancel() else sample.at(request.search.exploration)
         pairs = [np.zeros(0) if rough is None else rough.levels(values, means.workers) for values in designs]
@@ -163,7 +167,8 @@ def _scaled(problem: HeardProblem, start: dict[str, float]) -> HeardProblem:
 
 def _expected_seconds(problem: HeardProblem, values: dict[str, float], search: Search) -> float:
     """Return the CPU seconds of a usual search, by timing a design at few positions and one in full."""
-    rough, seconds = problem.rough(search.exploration), []
+    rough = problem.rough(search.exploration)
+    seconds = []
     for timed in (rough, rough, problem):  # the first call also loads compiled code, and is not counted
         began = cpu_seconds()
         timed.evaluated(values)
@@ -174,7 +179,8 @@ def _expected_seconds(problem: HeardProblem, values: dict[str, float], search: S
 
 def usual_sound_designs(search: Search) -> tuple[float, float]:
     """Return the numbers of designs of a usual search, at few positions and in full."""
-    method, few, many = search.method, 0.0, float(search.evaluations)
+    method = search.method
+    few, many = 0.0, float(search.evaluations)
     if isinstance(method, StagedLinearProgramming):
         few = min(method.sample + LINEARIZED * WALK * (method.trials + 1 + MISSES), EXPLORED * many)
         many = min(LINEARIZED * FINISH * FINISHED, many)
@@ -196,14 +202,13 @@ def sound_cost(
     levels = levels_cost(scene, mesh.name, question)
     if levels is None:
         return None
-    predicted, search, pairs = predicted_designs(request.checked, cache), request.search, question.tolerances
+    predicted = predicted_designs(request.checked, cache)
+    search, pairs = request.search, question.tolerances
     share = len(question.load_cases) * LOAD_FACTORS.size / request.checked.request.load.size
-    rough, full = (
-        share * predicted.design * part + levels.per_table
-        for part in (min(search.exploration / search.positions, 1.0), 1.0)
-    )
-    spread = question.quantile is not None
-    nodes = pairs.samples if spread else request.scatter.nodes().weight.size
+    fewer_positions = min(search.exploration / search.positions, 1.0)
+    rough = share * predicted.design * fewer_positions + levels.per_table
+    full = share * predicted.design + levels.per_table
+    nodes = request.scatter.nodes().weight.size if question.quantile is None else pairs.samples
     few, many = usual_sound_designs(search)
     parts = [
         Work("gears", predicted.bodies),
@@ -229,8 +234,9 @@ def misalignments(
     The first of these that is stated counts: the question's, the scene's (0 for a plane model), and else the
     misalignment by the deflection of shafts, bearings and housing.
     """
-    known, shape = subject.databases[mesh.name], (len(question.load_cases),)
-    plane = known.metadata.receipt["plan"]["model"] in ("plane_strain", "plane_stress")
+    shape = (len(question.load_cases),)
+    plan = subject.databases[mesh.name].metadata.receipt["plan"]
+    plane = plan["model"] in ("plane_strain", "plane_stress")
     nominal = subject.scene.meshes[mesh_index(subject.scene, mesh.name)].misalignment
     if question.misalignment_um is not None:
         return np.broadcast_to(np.asarray(question.misalignment_um, dtype=float) * UM, shape).copy()
@@ -239,14 +245,8 @@ def misalignments(
     deflected = DEFLECT.compute(subject, DeflectInputs(load_cases=question.load_cases), means)
     if failure := DEFLECT.failure(deflected):
         raise SolveError(failure)
-    return np.array(
-        [
-            deflection.misalignment
-            for case in deflected.deflection.cases
-            for deflection in case.meshes
-            if deflection.name == mesh.name
-        ]
-    )
+    meshes = [part for case in deflected.deflection.cases for part in case.meshes if part.name == mesh.name]
+    return np.array([part.misalignment for part in meshes])
 
 
 def sound_problem(
@@ -263,7 +263,10 @@ def sound_problem(
     bodies = condensed_pair(request.pair, known, dict(mesh.case.effects), cache, compute=True)
     assert bodies is not None
     torque = _torques(subject, mesh.name, question)
-    tables = [_table(bodies, request, *load_case) for load_case in zip(torque, misalignment, strict=True)]
+    tables = [
+        bodies.table(request.pair, load * LOAD_FACTORS, skew)
+        for load, skew in zip(torque, misalignment, strict=True)
+    ]
     loads = sound_loads(subject, mesh.name, question, tables, means)
     evaluator = _evaluator(request, torque, misalignment, means)
     shares = np.array([load_case.load.share for load_case in loads])
@@ -304,17 +307,11 @@ def _sampled(problem: HeardProblem, case: Case, question: HeardObjectiveInput) -
 
 def _torques(subject: TabledScene, mesh: str, question: HeardObjectiveInput) -> FloatArray:
     """Return the torque on the driving gear of the mesh under each load case (L,), N m."""
-    index, radius = mesh_index(subject.scene, mesh), subject.databases[mesh].geometry.base_radius[0]
+    index = mesh_index(subject.scene, mesh)
+    radius = subject.databases[mesh].geometry.base_radius[0]
     systems = [assemble(with_loads(subject.scene, load)) for load in load_cases(question.load_cases)]
     forces = [float(excited(system).linear.equilibrium.mesh_force[index]) for system in systems]
     return np.array(forces) * radius
-
-
-def _table(
-    bodies: CondensedPair, request: OptimizationRequest, torque: float, misalignment: float
-) -> SteDatabase:
-    """Return the table of the request's flanks under a load case, at `LOAD_FACTORS` of its torque in N m."""
-    return bodies.table(request.pair, torque * LOAD_FACTORS, misalignment)
 
 
 def _evaluator(
@@ -337,8 +334,9 @@ def _evaluator(
 
 
 def _confirmed(setup: SoundSearch, values: dict[str, float], cache: Path | None) -> HeardDesign:
-    """Return a design with errors; they are the change by rougher contacts: fewer slices, coarser meshes."""
-    problem, pair = setup.problem, modified(setup.bodies.checked.request.pair, values)
+    """Return a design with errors: changes by rougher contacts, which have fewer slices or coarser meshes."""
+    problem = setup.problem
+    pair = modified(setup.bodies.checked.request.pair, values)
     points = list(zip(np.outer(setup.torque, LOAD_FACTORS), setup.misalignment, strict=True))
     tables = [setup.bodies.table(pair, *point) for point in points]
     rougher = zip(*(_rougher(setup.bodies, pair, *point) for point in points), strict=True)
@@ -378,7 +376,8 @@ class _Levels(NamedTuple):
 
 def _levels(problem: HeardProblem, tables: Sequence[SteDatabase]) -> _Levels:
     """Return the levels of tables, one for each load case."""
-    sound, level, power, parting = problem.sound, [], [], []
+    sound = problem.sound
+    level, power, parting = [], [], []
     for at, table in zip(sound.at, tables, strict=True):
         flanks = at.case.with_table(table).excitation
         weighted = at.case.power(flanks)
@@ -392,13 +391,9 @@ def _rougher(
     bodies: CondensedPair, pair: ParallelAxes, torques: FloatArray, misalignment: float
 ) -> list[SteDatabase]:
     """Return the tables of a pair under a load case on each rougher contact; `torques` in N m, rising."""
-    return [
-        table_of_solution(
-            solved.pair,
-            solved.problem,
-            solved.solution,
-            np.unique(np.mod(solved.problem.candidates.position, 1.0)),
-            misalignment,
-        )
-        for solved in bodies.solve_rougher(pair, torques, misalignment)
-    ]
+    tables = []
+    for solved in bodies.solve_rougher(pair, torques, misalignment):
+        problem = solved.problem
+        positions = np.unique(np.mod(problem.candidates.position, 1.0))
+        tables.append(table_of_solution(solved.pair, problem, solved.solution, positions, misalignment))
+    return tables

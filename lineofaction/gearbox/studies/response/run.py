@@ -42,12 +42,8 @@ class _ResponseStudy(SceneStudy[Inputs, ResponseFigures, ForcedResponse]):
             "peaks": peaks(response),
             "parting": response.speed[~response.in_contact],
             "power": {
-                "input": {
-                    name: part_power.T for name, part_power in zip(power.source, power.input, strict=True)
-                },
-                "losses": [
-                    {"part": name, "kind": kind, "loss": part_power.T} for name, kind, part_power in sinks
-                ],
+                "input": {name: watts.T for name, watts in zip(power.source, power.input, strict=True)},
+                "losses": [{"part": name, "kind": kind, "loss": watts.T} for name, kind, watts in sinks],
                 "residual": power.residual,
             },
         }
@@ -67,10 +63,11 @@ def _mesh(row: Row) -> tuple[Any, ...]:
 def _rms(response: ForcedResponse, bearing: int) -> Json:
     """Return root mean squares of all orders of a bearing force together by speed, N."""
     square = response.bearing_mean_square[bearing]
-    omitted, error = (
-        part[bearing] if part.size else np.zeros(square.size)
-        for part in (response.bearing_floor, response.bearing_floor_error)
-    )
+    omitted = error = np.zeros(square.size)
+    if response.bearing_floor.size:
+        omitted = response.bearing_floor[bearing]
+    if response.bearing_floor_error.size:
+        error = response.bearing_floor_error[bearing]
     rms = np.sqrt(square)
     minimum = np.sqrt(np.maximum(square - error, 0.0))
     return {"rms": rms, "left_out_rms": np.sqrt(omitted), "rms_error": rms - minimum}

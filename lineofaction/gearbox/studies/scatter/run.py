@@ -141,34 +141,32 @@ def _measured(request: ToleranceRequest, checked: CheckedCase, rows: Row[Drawn])
     correlation: dict[tuple[str, str], float] = {}
     for text in rows:
         names, values = _population_row(text)
-        if checked.case.accuracy.model in PLANE and any(
-            name.partition(".")[2] in ACROSS_FACE for name in names
-        ):
+        across_face = any(name.partition(".")[2] in ACROSS_FACE for name in names)
+        if across_face and checked.case.accuracy.model in PLANE:
             continue
         if len(names) == 2:
             correlation[names[0], names[1]] = values[0]
         else:
             (name,) = names
-            mean[name], deviation[name] = values[0] - figure(request.pair, name), values[1]
+            mean[name] = values[0] - figure(request.pair, name)
+            deviation[name] = values[1]
     return replace(request, tolerances=measured_tolerances(request.tolerances, mean, deviation, correlation))
 
 
 def _population_row(text: str) -> tuple[list[str], list[float]]:
     """Return figure, mean and deviation in m that a row says, or two figures and their correlation."""
     left, _, right = text.partition("=")
-    names, values = [name.strip() for name in left.split("*")], [value.strip() for value in right.split("/")]
+    names = [name.strip() for name in left.split("*")]
+    values = [value.strip() for value in right.split("/")]
     if unknown := [name for name in names if name not in _TOLERATED]:
         raise _unknown_figure("population", text, unknown[0], _MEASURED)
     numbers = all(_NUMBER.fullmatch(value) for value in values)
-    if (
-        not numbers
-        or (len(names), len(values)) not in ((1, 2), (2, 1))
-        or (len(values) == 2 and values[1][0] == "-")
-    ):
-        bound = (
+    is_row = (len(names), len(values)) in ((1, 2), (2, 1))
+    if not numbers or not is_row or (len(values) == 2 and values[1][0] == "-"):
+        forms = (
             "GEAR.FIGURE=MEAN/DEVIATION, a deviation of 0 or above, or GEAR.FIGURE*GEAR.FIGURE=CORRELATION"
         )
-        raise BadInput.of("population", text, bound, _MEASURED)
+        raise BadInput.of("population", text, forms, _MEASURED)
     unit = factor(names[0]) if len(names) == 1 else 1.0
     return [_TOLERATED[name] for name in names], [float(value) * unit for value in values]
 

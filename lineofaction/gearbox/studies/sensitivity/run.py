@@ -43,8 +43,6 @@ _USUAL: tuple[tuple[float, ...], ...] = (
 """Changes of the center distance in per cent if none are named: the first row at which a pair meshes.
 
 All rows have equally many changes, so that the pairs of one study have equally many.
-
-As many of each: pairs of one study have equally many.
 """
 TABLES = 4
 """Number of tables of a pair: over each of two deviations, without and with corner contact."""
@@ -125,12 +123,11 @@ class _SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
         axes = checked.request.misalignment, checked.request.center_distance_change
         values = 2 * sum(np.union1d(np.zeros(1), axis).size for axis in axes)
         per_value = predicted.design + predicted.errors
-        return StudyCost(
-            (Work("gears", predicted.bodies), Work("values", per_value, values)), predicted.bytes
-        )
+        parts = (Work("gears", predicted.bodies), Work("values", per_value, values))
+        return StudyCost(parts, predicted.bytes)
 
     def compute(self, case: CheckedCase, inputs: Inputs, means: Means) -> Studies:
-        """Study a case at its highest load; its own misalignments and center distances are left aside."""
+        """Study a case at its highest load; its own misalignments and center distances do not count."""
         gears = case.case.pair
         tables = _TableByTable(means.report)
         run = replace(means.analysis, progress=tables.progress, on_plan=tables.plan)
@@ -154,7 +151,8 @@ class _TableByTable:
     """Progress of the study from the progress of each table."""
 
     def __init__(self, report: Progress) -> None:
-        self._report, self._tables = report, list[TableFraction]()
+        self._report = report
+        self._tables: list[TableFraction] = []
 
     def plan(self, stages: Mapping[str, float]) -> None:
         """Begin a table."""
@@ -185,9 +183,9 @@ def _tables(checked: CheckedCase, inputs: Inputs) -> Checked:
 
 def _at_changes(checked: CheckedCase, inputs: Inputs, percent: tuple[float, ...]) -> Checked:
     pair, load = checked.pair, checked.case.load
-    torques, forces = load.torque_n_m, load.normal_force_n
+    forces = load.normal_force_n or [float(pair.normal_force((load.torque_n_m or ())[-1]))]
     axes = TableAxes(
-        normal_forces=[float(pair.normal_force(torques[-1])) if torques else float((forces or ())[-1])],
+        normal_forces=[forces[-1]],
         misalignments=[value * UM for value in inputs.misalignment_um],
         center_distance_changes=[0.01 * value * pair.center_distance for value in percent],
     )

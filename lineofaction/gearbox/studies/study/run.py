@@ -9,14 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from bounds.types import Json
-from dynamics.study import (
-    Design,
-    Study,
-    StudyTask,
-    keep_runs,
-    study,
-    with_effects,
-)
+from dynamics.study import Design, Study, StudyTask, keep_runs, study, with_effects
 from dynamics.study.effect_decision import decision_points
 from fe_contact.analysis.run_plan import predicted_designs
 from lineofaction.gearbox.convert.boundary_errors import boundary_errors
@@ -30,11 +23,7 @@ from lineofaction.gearbox.studies.scene_before_tables import CASES
 from lineofaction.gearbox.studies.study import Inputs, StudyFigures
 from lineofaction.gearbox.studies.study.design import design_of
 from lineofaction.gearbox.studies.study.request import check_parts, factor_places, responses_of
-from lineofaction.gearbox.studies.study.scenes import (
-    Location,
-    VariedScene,
-    mesh_of_case,
-)
+from lineofaction.gearbox.studies.study.scenes import Location, VariedScene, mesh_of_case
 from lineofaction.gearbox.units import UM
 from model_studies.workers.content_digest import content_digest
 
@@ -61,10 +50,12 @@ class _ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):
         """
         places = factor_places(scene, inputs)
         with boundary_errors():
-            points = (design := design_of(scene, inputs, places)).points
-        varied, count = VariedScene(scene.model_dump_json(), {}, places, ""), len(points)
-        cost, probed = _flank_tables(scene, design, places, cache), list[float]()
-        for values in points[np.unique(np.linspace(0, count - 1, PROBED).astype(int))]:
+            design = design_of(scene, inputs, places)
+        varied = VariedScene(scene.model_dump_json(), {}, places, "")
+        count = len(design.points)
+        cost = _flank_tables(scene, design, places, cache)
+        probed: list[float] = []
+        for values in design.points[np.unique(np.linspace(0, count - 1, PROBED).astype(int))]:
             try:
                 varied_scene = varied.inputs(dict(zip(design.names, map(float, values), strict=True)))
                 runs = run_cost(varied_scene, count, inputs.receipt)
@@ -82,7 +73,7 @@ class _ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):
             written = tabled.inputs.model_dump_json()
             scenes = VariedScene(written, tabled.databases, places, str(means.home))
             task = StudyTask(scenes, design.names, responses_of(inputs), inputs.start_s, inputs.receipt)
-            task = with_effects(task, design.points, design.kinds, means.workers, means.report)
+            task = with_effects(task, design, means.workers, means.report)
             result = study(
                 task,
                 design,
@@ -128,22 +119,24 @@ def _flank_tables(
     scene: SceneInput, design: Design, places: Mapping[str, tuple[Location, ...]], cache: Path | None
 ) -> StudyCost:
     """Return the cost of the tables of all different flanks of the points."""
-    meshes = {name: {mesh_of_case(location) for location in at} - {None} for name, at in places.items()}
-    columns = [k for k, name in enumerate(design.names) if meshes[name]]
-    if not columns:
-        return StudyCost(())
-    of_runs, of_decision = design.points, decision_points(design.points, design.kinds)
-    different = len(np.unique(np.vstack([of_runs, of_decision])[:, columns], axis=0))
+    columns, meshes = [], set[int]()
+    for column, name in enumerate(design.names):
+        of_flanks = {index for index in map(mesh_of_case, places[name]) if index is not None}
+        if of_flanks:
+            columns.append(column)
+            meshes |= of_flanks
     cost = StudyCost(())
-    for index in sorted({index for indices in meshes.values() for index in indices if index is not None}):
+    if not columns:
+        return cost
+    points = np.vstack([design.points, decision_points(design.points, design.kinds)])
+    different = len(np.unique(points[:, columns], axis=0))
+    for index in sorted(meshes):
         case = scene.meshes[index].case
         if case is not None:
             with boundary_errors():
                 predicted = predicted_designs(CASES.of(case).checked, cache)
-            cost += StudyCost(
-                (Work("gears", predicted.bodies), Work("contacts", predicted.design, different)),
-                predicted.bytes,
-            )
+            contacts = Work("contacts", predicted.design, different)
+            cost += StudyCost((Work("gears", predicted.bodies), contacts), predicted.bytes)
     return cost
 
 
@@ -154,7 +147,7 @@ def in_boundary_units(result: Study, response: int) -> tuple[str, float]:
 
 
 def _response_statistics(result: Study, response: int) -> Json:
-    unit, one = in_boundary_units(result, response)
+    unit, one = in_boundary_units(result, response)  # one: the SI value of a unit
     spread, correlation = result.spread(response), result.correlation(response)
     sampled = [k for k, kind in enumerate(result.kind) if kind not in ("grid", "list")]
     others = [k for k in range(len(result.factor)) if k not in sampled]

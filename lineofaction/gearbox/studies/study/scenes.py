@@ -32,7 +32,7 @@ from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.level_quantity import with_quantity
 from lineofaction.gearbox.problems import BadInput, ServiceError
 from lineofaction.gearbox.schemas.declared import figures
-from lineofaction.gearbox.schemas.faults import faults_of, model_in
+from lineofaction.gearbox.schemas.faults import faults_of, known_names, model_in
 from lineofaction.gearbox.schemas.scene import SceneInput
 from model_studies import LeftOut
 
@@ -71,18 +71,14 @@ def places_of(scene: SceneInput, field: str, path: str) -> tuple[Location, ...]:
         return ((kind, *_below(type(parts), field, path, rest)),)
     if not isinstance(parts, tuple):
         raise BadInput.of(field, path, "the path of a number", f"{kind} has none.")
-    names = {_part_name(part, index): index for index, part in enumerate(parts)}
+    # parts of a kind without names go by their index
+    names = {str(getattr(part, "name", index)): index for index, part in enumerate(parts)}
     name = next((n for n in sorted(names, key=len, reverse=True) if rest.startswith(f"{n}.")), None)
     if name is None and not rest.startswith(f"{_EVERY}."):
         raise _unknown(field, path, rest.partition(".")[0], [*names, _EVERY])
     chosen = [names[name]] if name is not None else list(names.values())
     further = rest[len(name or _EVERY) + 1 :]
     return tuple((kind, index, *_below(type(parts[index]), field, path, further)) for index in chosen)
-
-
-def _part_name(part: BaseModel, index: int) -> str:
-    """Return the name of a part, or its index where parts of the kind have no name."""
-    return str(getattr(part, "name", index))
 
 
 def _below(model: type[BaseModel], field: str, path: str, rest: str) -> Iterator[str | int]:
@@ -102,17 +98,16 @@ def _below(model: type[BaseModel], field: str, path: str, rest: str) -> Iterator
 
 def _unknown(field: str, path: str, name: str, known: Sequence[str] | Mapping[str, Any]) -> BadInput:
     close = difflib.get_close_matches(name[:64], list(known), n=3)
-    remedy = f"Did you mean {' or '.join(close)}?" if close else f"Known here: {', '.join(known)}."
+    whole = SceneInput.MANUAL if isinstance(known, Mapping) else "the scene"
+    remedy = f"Did you mean {' or '.join(close)}?" if close else known_names(name, list(known), whole)
     return BadInput.of(field, path, f'a path of the scene file: there is no "{name}"', remedy)
 
 
 def mesh_of_case(location: Location) -> int | None:
     """Return the index of the mesh whose case a place is in; None if it is outside of cases."""
-    return (
-        location[1]
-        if location[0] == "meshes" and location[2] == "case" and isinstance(location[1], int)
-        else None
-    )
+    kind, index, *_ = location
+    in_case = kind == "meshes" and location[2] == "case"
+    return index if in_case and isinstance(index, int) else None
 
 
 def check_flank(field: str, path: str, location: Location) -> None:
@@ -164,9 +159,8 @@ class VariedScene:
             inputs = self.inputs(values)
             solids = inputs.housings, inputs.shafts, inputs.bushings, inputs.rolling_bearings
             databases = self._databases_of(inputs, self.expensive(values))
-            housings = self._reused(
-                ("reduced housings",), solids, lambda: reduced_in(inputs, Path(self.home))
-            )
+            name = ("reduced housings",)
+            housings = self._reused(name, solids, lambda: reduced_in(inputs, Path(self.home)))
             return with_quantity(dynamic_scene(inputs, databases, housings), inputs, housings)
         except (ServiceError, FeContactError) as error:
             raise LeftOut(str(error)) from error
@@ -226,7 +220,8 @@ class VariedScene:
         """Return what was made last under a name if its key is equal; else make it anew."""
         known = self._last.get(name)
         if known is None or known[0] != key:
-            known = self._last[name] = key, make()
+            known = key, make()
+            self._last[name] = known
         return known[1]
 
     def _table(self) -> Json:
@@ -241,14 +236,17 @@ class VariedScene:
         """Gears with their compliance, of the meshes whose flanks change."""
         inputs = self._base
         changed = {mesh_of_case(location) for name in self._of_flanks for location in self.places[name]}
-        return {mesh.name: self._compliance_of(mesh) for k, mesh in enumerate(inputs.meshes) if k in changed}
-
-    def _compliance_of(self, mesh: Any) -> CondensedPair:
-        pair, effects = gear_pair(mesh.case), dict(mesh.case.effects)
-        cache = Path(self.home) / "compliance"
-        bodies = condensed_pair(pair, self.databases[mesh.name], effects, cache, compute=True)
-        assert bodies is not None
-        return bodies
+        condensed = {}
+        for k, mesh in enumerate(inputs.meshes):
+            if k not in changed:
+                continue
+            assert mesh.case is not None
+            pair, effects = gear_pair(mesh.case), dict(mesh.case.effects)
+            cache = Path(self.home) / "compliance"
+            bodies = condensed_pair(pair, self.databases[mesh.name], effects, cache, compute=True)
+            assert bodies is not None
+            condensed[mesh.name] = bodies
+        return condensed
 
     def _databases_of(self, inputs: SceneInput, values: Mapping[str, float]) -> Mapping[str, SteDatabase]:
         """Return the tables at values of the flanks."""
@@ -264,7 +262,9 @@ class VariedScene:
     def _other_flanks(self, inputs: SceneInput) -> dict[str, SteDatabase]:
         """Solve the contact of changed flanks at all loads of the tables, including their support loads."""
         tables = {}
-        for mesh in (mesh for mesh in inputs.meshes if mesh.name in self._condensed):
+        for mesh in inputs.meshes:
+            if mesh.name not in self._condensed:
+                continue
             known, bodies = self.databases[mesh.name], self._condensed[mesh.name]
             assert mesh.case is not None
             pair = gear_pair(mesh.case)

@@ -80,7 +80,13 @@ class _Swept:
         minimum = 2 if self.what is not None and "*" not in names else 1
         tails = {".".join(names[-count:]) for count in range(minimum, len(names) + 1)}
         last = self.name.rpartition(".")[2]
-        return tails | {f"{head}{dot}{last}" for head, dot, _ in (tail.rpartition(".") for tail in tails)}
+        heads = [tail.rpartition(".")[:2] for tail in tails]
+        return tails | {f"{head}{dot}{last}" for head, dot in heads}
+
+
+def _of_gear(gear: str, what: Figure) -> _Swept:
+    """Return the variable of a figure of one gear's flanks."""
+    return _Swept(f"{gear}.{what.name}", f"pair.{gear}.{what.field}", f"{what.label} of the {gear}", what)
 
 
 CONDITIONS = (
@@ -93,11 +99,7 @@ SWEEPABLE = {
     for swept in (
         *CONDITIONS,
         *(_Swept(f.name, f"pair.*.{f.field}", f"{f.label} of both gears", f) for f in _FIGURES),
-        *(
-            _Swept(f"{gear}.{f.name}", f"pair.{gear}.{f.field}", f"{f.label} of the {gear}", f)
-            for gear in GEARS
-            for f in _FIGURES
-        ),
+        *(_of_gear(gear, figure) for gear in GEARS for figure in _FIGURES),
     )
 }
 """Variables by the name of their `SweepAxis`."""
@@ -123,10 +125,8 @@ def _named(text: str, name: str) -> _Swept:
     short = [swept.name for swept in SWEEPABLE.values()]
     close = difflib.get_close_matches(name[:64], short, n=3, cutoff=0.5)
     remedy = f"Did you mean {' or '.join(close)}?" if close else f"For example {', '.join(short[:4])}."
-    bound = (
-        "the torque, the alignment or a flank modification of a case; other bodies need tables of their own"
-    )
-    raise BadInput.of("over", text, bound, remedy)
+    bound = "the torque, the alignment or a flank modification of a case"
+    raise BadInput.of("over", text, f"{bound}; other bodies need tables of their own", remedy)
 
 
 def _usual(checked: CheckedCase, swept: _Swept) -> list[float]:
@@ -134,15 +134,15 @@ def _usual(checked: CheckedCase, swept: _Swept) -> list[float]:
     pair, case = checked.pair, checked.case
     if swept.what is not None:  # about the case's own values, or about a usual one where it has none
         variables = SweepAxis(swept.name, ()).variables
-        reference_value = max(abs(figure(pair, name)) for name in variables) or float(swept.what.what.example)
-        size, kind = swept.what.boundary_value(reference_value), swept.what.what.kind
-        if kind is Kind.LENGTH:
+        declared = swept.what.what
+        reference_value = max(abs(figure(pair, name)) for name in variables) or float(declared.example)
+        size = swept.what.boundary_value(reference_value)
+        if declared.kind is Kind.LENGTH:
             return _evenly(0.5 * size, 1.5 * size)
-        return _evenly(-2.0 * size if kind is Kind.DEVIATION else 0.0, 2.0 * size)
+        return _evenly(-2.0 * size if declared.kind is Kind.DEVIATION else 0.0, 2.0 * size)
     if swept.name == TORQUE:
-        loads = case.load.torque_n_m or [
-            float(pair.torque(force)) for force in case.load.normal_force_n or ()
-        ]
+        forces = case.load.normal_force_n or ()
+        loads = case.load.torque_n_m or [float(pair.torque(force)) for force in forces]
         return list(loads) if len(loads) >= _MIN_TORQUES else _evenly(_LEAST_TORQUE * loads[-1], loads[-1])
     if swept.name == CENTER_DISTANCE:
         changes = case.errors.center_distance_change_mm
@@ -220,12 +220,13 @@ class SweepResult(ResultRecord):
     def like_least(self, quantity: SweptQuantity) -> BoolArray:
         """Return the points of the grid that cannot be told from the lowest one within both errors.
 
-        In a map over the torque each is compared with the lowest one at the same torque.
+        In a map over the torque each point is compared with the lowest one at the same torque.
         """
         value, error = self.grid(quantity.value), self.grid(quantity.error)
-        if not (value.ndim == 2 and TORQUE in self.sweep.axes):
+        if value.ndim != 2 or TORQUE not in self.sweep.axes:
             return np.asarray(self.grid(quantity.like_least))
-        rows, columns = np.where(np.isnan(value), np.inf, value).argmin(axis=0), np.arange(value.shape[1])
+        rows = np.where(np.isnan(value), np.inf, value).argmin(axis=0)
+        columns = np.arange(value.shape[1])
         return np.asarray(value - value[rows, columns] <= error + error[rows, columns])
 
     def levels(self, axis: int) -> FloatArray:
@@ -252,8 +253,7 @@ class _SweepStudy(CaseStudy[Inputs, SweepFigures, SweepResult]):
     def compute(self, case: CheckedCase, inputs: Inputs, means: Means) -> SweepResult:
         """Sweep a case; an unswept load is the highest, an unswept deviation the nearest to zero."""
         with boundary_errors():
-            run = means.analysis
-            result = sweep(case.request(_request, inputs), run)
+            result = sweep(case.request(_request, inputs), means.analysis)
         known = {quantity.name for quantity in result.quantities}
         return SweepResult(result, tuple(name for name in inputs.show if name in known))
 
@@ -261,9 +261,7 @@ class _SweepStudy(CaseStudy[Inputs, SweepFigures, SweepResult]):
         swept = result.sweep
         return {
             "over": [(axis, {"values": result.levels(k)}) for k, axis in enumerate(result.axes)],
-            "held": {
-                SWEEPABLE[n].path.rpartition(".")[2]: v / SWEEPABLE[n].factor for n, v in swept.held.items()
-            },
+            "held": {_field(name): value / SWEEPABLE[name].factor for name, value in swept.held.items()},
             "points": [_at(result, k) | _figures(swept, k) for k, why in enumerate(swept.reason) if not why],
             "least": {
                 QUANTITIES[quantity.name].field.format(""): _at(result, quantity.minimum)
@@ -284,20 +282,24 @@ def _request(case: CheckedCase, inputs: Inputs) -> SweepRequest:
     return SweepRequest(case.pair, axes, point, case.options)
 
 
+def _field(name: str) -> str:
+    """Return the field in the case file of a variable that is not swept."""
+    return SWEEPABLE[name].path.rpartition(".")[2]
+
+
 def _at(result: SweepResult, point: int) -> Json:
     """Return the place of a point by the paths of the axes."""
-    return {
-        axis.path: float(f"{result.sweep.point[point, k] / axis.factor:.12g}")
-        for k, axis in enumerate(result.axes)
-    }
+    place = zip(result.axes, result.sweep.point[point], strict=True)
+    return {axis.path: float(f"{value / axis.factor:.12g}") for axis, value in place}
 
 
 def _figures(swept: Sweep, point: int) -> Json:
-    return {
-        QUANTITIES[quantity.name].field.format(suffix): float(values[point]) / QUANTITIES[quantity.name].one
-        for quantity in swept.quantities
-        for suffix, values in (("", quantity.value), ("_error", quantity.error))
-    }
+    figures = {}
+    for quantity in swept.quantities:
+        shown = QUANTITIES[quantity.name]
+        figures[shown.field.format("")] = float(quantity.value[point]) / shown.one
+        figures[shown.field.format("_error")] = float(quantity.error[point]) / shown.one
+    return figures
 
 
 RUN = _SweepStudy()

@@ -65,7 +65,7 @@ class Helical:
 
 def of_angles(*angles: float, scenes: Helical = Helical()) -> tuple[StudyTask, Design]:
     design = Design({ANGLE: Levels(angles)})
-    return StudyTask(scenes, design.names, RESPONSES), design
+    return with_effects(StudyTask(scenes, design.names, RESPONSES), design), design
 
 
 def figures(scene: Scene) -> list[float]:
@@ -103,6 +103,15 @@ def test_an_effect_that_one_end_of_a_factor_needs_is_on_in_all_runs(tmp_path: Pa
         assert entry["on"] and entry["choice"] == "auto" and "study" in entry["reason"]
 
 
+def test_without_a_decision_for_all_every_run_decides_by_itself() -> None:
+    task, design = of_angles(SMALL[0], 0.3)
+    made = study(replace(task, effects=None), design)
+    assert made.metadata["effects"] is None
+    for angle, row in zip(made.value[:, 0], made.figure, strict=True):
+        np.testing.assert_array_equal(row, figures(Helical().scene({ANGLE: float(angle)})))
+    assert made.figure[0].tolist() != study(task, design).figure[0].tolist()
+
+
 def test_sizes_are_estimated_at_the_points_of_the_decision_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     estimated: list[Scene] = []
     estimate = neglected_check._estimated
@@ -114,13 +123,13 @@ def test_sizes_are_estimated_at_the_points_of_the_decision_alone(monkeypatch: py
     monkeypatch.setattr(neglected_check, "_KNOWN", {})
     monkeypatch.setattr(neglected_check, "_estimated", counted)
     design = Design({ANGLE: Uniform(0.01, 0.015), SPEED: Levels((1900.0, 2000.0))}, samples=6)
-    made = study(StudyTask(Helical(), design.names, RESPONSES), design)
+    task = with_effects(StudyTask(Helical(), design.names, RESPONSES), design)
+    made = study(task, design)
     assert made.usable == 12 and len(estimated) == made.metadata["effects"]["points"] == 4
 
 
 def test_a_run_with_a_part_that_the_decision_never_had_decides_by_itself() -> None:
     task, design = of_angles(*SMALL)
-    task = with_effects(task, design.points, design.kinds)
     braced = replace(task, scenes=Helical(braced=0.012))
     for angle in SMALL:
         scene = braced.scene((angle,))
@@ -161,8 +170,7 @@ def test_a_small_design_is_decided_at_all_its_points() -> None:
 
 
 def test_points_without_a_scene_decide_nothing() -> None:
-    task = StudyTask(Helical(), (ANGLE,), RESPONSES)
-    wrong = with_effects(task, np.array([[np.nan]]), ("grid",))
+    wrong, _ = of_angles(2.0)
     assert wrong.effects is not None and wrong.effects.points == 0 and not wrong.effects.choices
 
 

@@ -36,9 +36,10 @@ from dynamics.study import (
     keep_runs,
     responses_of,
     study,
+    with_effects,
 )
 from model_studies import LeftOut
-from model_studies.workers import ByExecutor, Remembering
+from model_studies.workers import ByExecutor, Remembering, Workers
 
 RESPONSES = (
     Response("bearing_force", "input.left", order=1),
@@ -211,10 +212,13 @@ def test_an_interrupted_study_goes_on_where_it_was(tmp_path: Path) -> None:
                 self.done.append(len(item))
                 yield function(shared, item)
 
+    def study_by(workers: Workers) -> Study:
+        return study(with_effects(task(design), design, workers), design, workers)
+
     first, second = Counting(5, []), Counting(99, [])
     with pytest.raises(EndsInMidRun):
-        study(task(design), design, Remembering(first, tmp_path, "1"))
-    resumed = study(task(design), design, Remembering(second, tmp_path, "1"))
+        study_by(Remembering(first, tmp_path, "1"))
+    resumed = study_by(Remembering(second, tmp_path, "1"))
     assert first.done == [1, 1, 1, 8, 8] and second.done == [8]  # effects are decided at three points
     np.testing.assert_array_equal(resumed.figure, study(task(design), design).figure)
 
