@@ -16,7 +16,6 @@ MODULES = {
         "meshlane",
         "numba",
         "plotly",
-        "pymetis",
         "skfem",
     ),
     "service": (

@@ -17,6 +17,7 @@ import scipy.sparse as sp
 from dynamics.errors import SolveError
 from dynamics.housings.assembled_housing import BLOCK, AssembledHousing
 from dynamics.types import FloatArray, IntArray
+from host.graph_order import graph_order
 
 Solve = Callable[[FloatArray], FloatArray]
 """The solution of a linear system of equations, from its right side."""
@@ -40,10 +41,10 @@ def _factorized(matrix: sp.csr_array) -> Solve:
     """Return the solution of matrix x = b, b (f,) or (f, m); raises `SolveError`: a singular matrix."""
     from scipy.sparse.linalg import splu  # noqa: PLC0415 (start-up time)
 
-    order = _nested_dissection(matrix)
+    order = _fill_reducing_order(matrix)
     permuted = sp.csc_array(matrix[order][:, order])
     try:
-        # the matrix is symmetric and in the order of METIS: SuperLU must neither reorder nor pivot
+        # the matrix is symmetric and in an order of ours: SuperLU must neither reorder nor pivot
         factor = splu(permuted, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     except RuntimeError as error:
         raise SolveError(f"The stiffness matrix of the housing cannot be factorized: {error}.") from error
@@ -56,17 +57,14 @@ def _factorized(matrix: sp.csr_array) -> Solve:
     return solve
 
 
-def _nested_dissection(matrix: sp.csr_array) -> IntArray:
-    """Return the fill-reducing order of the freedoms (f,), which METIS finds on the graph of blocks."""
-    import pymetis  # noqa: PLC0415 (start-up time)
-
+def _fill_reducing_order(matrix: sp.csr_array) -> IntArray:
+    """Return the order of the freedoms (f,) by which the factor fills little, from the graph of blocks."""
     blocks = matrix.tobsr(blocksize=(BLOCK, BLOCK))
     graph = sp.csr_array((np.ones(len(blocks.indices)), blocks.indices, blocks.indptr))
     graph.setdiag(0.0)
     graph.eliminate_zeros()
-    order, _ = pymetis.nested_dissection(pymetis.CSRAdjacency(graph.indptr, graph.indices))
-    # blocks to their freedoms
-    return (BLOCK * np.asarray(order, dtype=np.int64)[:, None] + np.arange(BLOCK)).ravel()
+    order = graph_order(graph.indptr, graph.indices)
+    return (BLOCK * order[:, None] + np.arange(BLOCK)).ravel()  # blocks to their freedoms
 
 
 class ModeStatus(IntEnum):

@@ -1,4 +1,4 @@
-"""Factorization of sparse symmetric matrices by nested dissection."""
+"""Factorization of sparse symmetric matrices."""
 
 from __future__ import annotations
 
@@ -10,21 +10,22 @@ from scipy.sparse.linalg import splu
 
 from fe_contact.errors import SolveError
 from fe_contact.types import FloatArray, IntArray
+from host.graph_order import ORDERING, graph_order
 
 Solve = Callable[[FloatArray], FloatArray]
 
-FACTORIZATION = "SuperLU on a METIS ordering"
+FACTORIZATION = f"SuperLU on a {ORDERING} ordering"
 """Name of the method, for receipts and cache keys."""
 
 
 def factorise(matrix: sp.csc_array, block: int) -> Solve:
     """Factorise a symmetric positive definite matrix once, for many right-hand sides.
 
-    SciPy's SuperLU without pivoting, on METIS' nested dissection of the graph of the nodes, which hold
-    `block` consecutive freedoms. Returns x(b) for b (n, m), dense. Raises `SolveError`: the matrix is
+    SciPy's SuperLU without pivoting, on an order of the graph of the nodes, which hold `block` consecutive
+    freedoms. Returns x(b) for b (n, m), dense. Raises `SolveError`: the matrix is
     singular.
     """
-    order = nested_dissection(matrix, block)
+    order = fill_reducing_order(matrix, block)
     permuted = sp.csc_array(matrix[order][:, order])
     try:
         factor = splu(permuted, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
@@ -39,13 +40,10 @@ def factorise(matrix: sp.csc_array, block: int) -> Solve:
     return solve
 
 
-def nested_dissection(matrix: sp.csc_array, block: int) -> IntArray:
-    """Return METIS' fill-reducing order of the freedoms, from the graph of their nodes."""
-    import pymetis  # noqa: PLC0415 - a cached result needs no ordering
-
+def fill_reducing_order(matrix: sp.csc_array, block: int) -> IntArray:
+    """Return the order of the freedoms by which the factor fills little, from the graph of their nodes."""
     graph = sp.csr_array(matrix[::block, ::block])
     graph.setdiag(0.0)
     graph.eliminate_zeros()
-    adjacency = pymetis.CSRAdjacency(graph.indptr, graph.indices)
-    order, _ = pymetis.nested_dissection(adjacency)
-    return (block * np.asarray(order, dtype=np.int64)[:, None] + np.arange(block)).ravel()
+    order = graph_order(graph.indptr, graph.indices)
+    return (block * order[:, None] + np.arange(block)).ravel()

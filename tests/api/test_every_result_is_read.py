@@ -179,7 +179,7 @@ def python_prompt(reading: Reading) -> None:
     """Show, copy and compare a result as a user of Python does."""
     result = loa.read(reading.result.path)
     lines = repr(result).split("\n")
-    assert 2 < len(lines) <= MAX_LINES and max(map(len, lines)) <= WIDTH, lines
+    assert 1 < len(lines) <= MAX_LINES and max(map(len, lines)) <= WIDTH, lines
     assert "<table>" in result._repr_html_()
     for other in (
         pickle.loads(pickle.dumps(result)),

@@ -17,7 +17,7 @@ from fe_contact.analysis.request.request_check import check_request
 from fe_contact.compliance import flank_compliance_3d
 from fe_contact.compliance.cyclic_ring import close_ring, hold_sector
 from fe_contact.compliance.elimination_tree import EliminationTree, bisected_tree
-from fe_contact.compliance.factorization import factorise, nested_dissection
+from fe_contact.compliance.factorization import factorise, fill_reducing_order
 from fe_contact.compliance.flank import ComplianceChecks
 from fe_contact.compliance.rounding import (
     EPSILON,
@@ -171,9 +171,13 @@ def fill(matrix: sp.csc_array, order: np.ndarray) -> int:
     return int(factor.L.nnz)
 
 
-def test_nested_dissection_orders_whole_nodes_saves_fill_and_solves() -> None:
+@pytest.mark.parametrize("ordering", ["METIS", "minimum-degree"])
+def test_the_order_is_of_whole_nodes_saves_fill_and_solves(
+    ordering: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("host.graph_order.ORDERING", ordering)
     matrix = grid(60)
-    order = nested_dissection(matrix, 2)
+    order = fill_reducing_order(matrix, 2)
     assert np.array_equal(np.sort(order), np.arange(matrix.shape[0]))
     assert np.array_equal(order[1::2], order[::2] + 1)
     assert np.all(order[::2] % 2 == 0)
