@@ -29,7 +29,7 @@ from fe_contact.microgeometry.tolerance_study import curves_of_samples
 from fe_contact.options import Run
 from fe_contact.planning.cost_of_derivatives import ContactWork
 from host.directories import cache_home
-from lineofaction.cli import costs, run_study, simulate
+from lineofaction.cli import run_study, simulate
 from lineofaction.cli.costs import simulation_cost, study_cost, table_cost
 from lineofaction.cli.scene_tables import tabled_scene
 from lineofaction.cli.status import run_status
@@ -203,7 +203,7 @@ def test_the_verb_says_more_than_a_moment_on_standard_error(
     seconds: float, case: CheckedCase, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(run_study, "study_cost", lambda *_: StudyCost((Work("values", seconds / 8.0, 8),)))
-    monkeypatch.setattr(costs, "host_slowness", lambda _: 2.0)
+    monkeypatch.setattr("lineofaction.cli.costs.host_slowness", lambda _: 2.0)
     targets = Path("sensitivity.nc"), Path("sensitivity.html")  # one is drawn
     run_study._announce_cost(STUDIES["sensitivity"], [run_study._Subject(case, Path())], None, {}, targets)
     printed = capsys.readouterr()
