@@ -12,6 +12,8 @@ from fe_contact.types import FloatArray
 from model_studies.workers import InProcess, Workers, divided, pays, spent
 
 Design = tuple[Assessed, FloatArray]
+TAIL = 0.1
+"""Part of the work done that is taken to be left where a search goes on beyond its usual cost."""
 
 
 class BudgetUsed(Exception):
@@ -20,10 +22,6 @@ class BudgetUsed(Exception):
 
 class Cancelled(Exception):
     """Somebody requested the search to end."""
-
-
-TAIL = 0.1
-"""Part of the work done that is taken to be left where a search goes on beyond its usual cost."""
 
 
 class Budget:
