@@ -262,7 +262,8 @@ class SteFields:
     def require_complete(self) -> None:
         """Raise `SolveError`, with the table as its partial result, if any point failed."""
         if self.n_failed:
-            raise SolveError(f"{self.failure_message()}. allow_failed=True omits their rows.", self)
+            remedy = "A finer mesh may solve them; allow_failed=True omits their rows."
+            raise SolveError(f"{self.failure_message()}. {remedy}", self)
 
     def identical(self, other: SteFields) -> bool:
         """Whether every stored bit (NaN payloads included), fact and metadata entry agrees."""

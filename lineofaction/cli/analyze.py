@@ -71,7 +71,8 @@ def run_analyze(
         _show(summary, several_alignments=several)
         print_written([output])
     if database.n_failed:
-        raise JobFailed(f"{database.failure_message()}. The table in {output} holds NaN there.")
+        remedy = "A finer mesh may solve them: accuracy.level, or accuracy.tolerance without a level."
+        raise JobFailed(f"{database.failure_message()}. The table in {output} holds NaN there. {remedy}")
 
 
 def _computed(case: CheckedCase, executor: tuple[int, str | None]) -> SteDatabase:

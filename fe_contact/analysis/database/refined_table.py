@@ -15,7 +15,7 @@ from tempfile import TemporaryDirectory
 
 from bounds import engineering
 from fe_contact.analysis.database.compute_database import compute_pass
-from fe_contact.analysis.database.refinement import Refinement, next_pass
+from fe_contact.analysis.database.refinement import Refinement, finer_mesh, next_pass
 from fe_contact.analysis.database.run_passes import Pass, table_of_passes
 from fe_contact.analysis.estimates.tolerance_shares import error_shares, reducible_shares
 from fe_contact.analysis.request.model_choice import Decision, decide
@@ -112,8 +112,9 @@ def _refined(checked: Checked, shared: _Passes) -> SteDatabase:
         passes.append(last)
         if last.table is None:
             return table_of_passes(passes, table, f"pass {len(passes)} ({last.name}) failed: {last.failure}")
-        if last.used >= best.used:
-            reason = f"pass {len(passes)} ({refinement.text}) did not lower the measured errors"
+        if last.quality >= best.quality:
+            what = "solve more points" if best.failed else "lower the measured errors"
+            reason = f"pass {len(passes)} ({refinement.text}) did not {what}"
             return table_of_passes(passes, table, reason)
         best, table = last, last.table
 
@@ -123,16 +124,16 @@ def _next_refinement(table: SteDatabase, last: Pass) -> Refinement | str:
     tolerance = last.decision.checked.request.options.allowed
     if table.metadata.receipt["tolerance"]["met"]:
         return "met"
+    behind = last.decision.behind if last.refinement is None else None
     if table.n_failed:
-        return f"{table.n_failed} points failed"
+        return _behind_trial(behind, last) if behind else finer_mesh(last.decision, table.n_failed)
     at_nodes = table.metadata.receipt["tolerance"]["used_at_nodes"]
     if at_nodes is not None and at_nodes <= 1.0:  # the errors that finer meshes lower meet the tolerance
         return _interval_reason(table)
     # finer meshes lower these errors at nodes; the errors of the model stay
     reducible, _ = reducible_shares(error_shares(table, tolerance), last.decision.checked.request)
     measured = next_pass(last.decision, reducible)
-    behind = last.decision.behind
-    if behind and last.refinement is None and (isinstance(measured, str) or measured.expected > 1.0):
+    if behind and (isinstance(measured, str) or measured.expected > 1.0):
         return _behind_trial(behind, last)
     return measured
 

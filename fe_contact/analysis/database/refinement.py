@@ -183,6 +183,24 @@ def next_pass(choice: Decision, shares: FloatArray) -> Refinement | str:
     return Refinement(refined, AT_NODES[source], finer.steps, finer.used)
 
 
+def finer_mesh(choice: Decision, failed: int) -> Refinement | str:
+    """Return the pass on the next mesh, or why there is none, where `failed` points had no solution.
+
+    A coarse mesh may not resolve a narrow contact at the end of a face, whose strip is wider than the load
+    patches: forces that alternate along the face then have no stable solution.
+    """
+    plan, count = choice.plan, len(AT_NODES)
+    initial = _Resolution(
+        choice, plan.level, plan.discretization.slices, plan.nodes, shares=np.zeros((count, 1)), level_left=1
+    )
+    finer = initial.step(_MESH)
+    if finer is None:
+        return f"{failed} points failed"
+    refined = choice.refined(finer.level, finer.slices, finer.nodes, f"{failed} points had no solution")
+    expected = refined.mesh.option.error.reducible / choice.checked.request.options.allowed.relative
+    return Refinement(refined, AT_NODES[_MESH], finer.steps, expected)
+
+
 def _refined(resolution: _Resolution) -> _Resolution:
     """Refine the largest errors until the tolerance is predicted to be met, or nothing is left to refine."""
     while resolution.used > AIM:

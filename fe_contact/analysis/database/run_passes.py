@@ -33,6 +33,16 @@ class Pass:
         return float("inf") if used is None else float(used)
 
     @property
+    def failed(self) -> int:
+        """Number of points without a solution; 0 without a table."""
+        return 0 if self.table is None else self.table.n_failed
+
+    @property
+    def quality(self) -> tuple[int, float]:
+        """Points without a solution and part of the tolerance that is used, by which passes compare."""
+        return self.failed, self.used
+
+    @property
     def name(self) -> str:
         """Model, mesh and slices in words."""
         return f"{self.decision.checked.model_name}, {self.decision.mesh.option.name}"

@@ -10,7 +10,7 @@ import pytest
 from analysis_requests import table_request
 
 from fe_contact import AllowedError, FlankModification, Gear, GearPair, Material
-from fe_contact.analysis.database.refinement import AIM, MESH_STEP, Refinement, next_pass
+from fe_contact.analysis.database.refinement import AIM, MESH_STEP, Refinement, finer_mesh, next_pass
 from fe_contact.analysis.request.model_choice import Decision, decide
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.planning.discretization import SLICE_ORDER
@@ -111,6 +111,15 @@ def test_a_pass_goes_up_one_mesh_level_for_elements_or_layers():
     made = refined(draft, slices=1.3)
     assert made.decision.plan.level == "standard"
     assert made.decision.mesh.slices == 15
+
+
+def test_points_without_a_solution_take_the_next_mesh_up_to_the_finest():
+    made = finer_mesh(ran(pair(0.3), "draft", 15), 4)
+    assert isinstance(made, Refinement)
+    assert made.decision.plan.level == "standard"
+    assert made.decision.mesh.reason == "4 points had no solution"
+    assert 0.0 < made.expected < math.inf
+    assert finer_mesh(ran(pair(0.3), "fine", 15), 4) == "4 points failed"
 
 
 @pytest.mark.parametrize(
