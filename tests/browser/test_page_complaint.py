@@ -348,9 +348,9 @@ def test_levels_have_the_band_of_their_error_and_changes_that_of_both(visit: Vis
             ["the same, dB from A", "", "−6.0 ± 1.3"],
         ],
     ]
-    alone, beside = stated(curve(0.2, 0.02), curve(0.05, 0.1))
-    assert alone[0][1:] == ["below −20.0 dB", "its error; change within the errors"]
-    assert [cells[2] for cells in beside] == ["below −20.0 (its error)", "within the errors"]
+    alone, beside = stated(curve(0.2, 0.02), curve(0.05, 0.1))  # 20 lg((0.05 + 0.1) / (0.2 - 0.02))
+    assert alone[0][1:] == ["below −20.0 dB", "its error; change below −1.6 dB from A"]
+    assert [cells[2] for cells in beside] == ["below −20.0 (its error)", "below −1.6"]
 
 
 @pytest.mark.law

@@ -51,12 +51,14 @@ function levelOf(shown, count) {
   return { subject: subjectOf(`level of harmonic ${count}`, shown), value: 20 * Math.log10(value), error: bandOf(value, error), unit: "dB", coming };
 }
 
-/** Change of the level of a harmonic. @param {Shown} now @param {Shown} from @param {number} count @returns {Printed | ""} */
+/** Change of the level of a harmonic; of one that falls below its error the least fall. @param {Shown} now @param {Shown} from @param {number} count @returns {Printed | ""} */
 function levelChange(now, from, count) {
   const [one, other] = [levelOf(now, count), levelOf(from, count)];
-  const error = [one.error, other.error].includes(Infinity) ? Infinity : ofBoth(one.error, other.error);
-  const given = { ...one, subject: `change from ${from.name} of ${one.subject}`, value: one.value - other.value, error };
-  return error === Infinity ? { text: "within the errors", band: "", data: { "data-subject": given.subject, "data-below": true } } : changeOf(given);
+  const given = { ...one, subject: `change from ${from.name} of ${one.subject}`, value: one.value - other.value, error: ofBoth(one.error, other.error) };
+  if (![one.error, other.error].includes(Infinity)) return changeOf(given);
+  const [after, before] = [now, from].map(harmonic(count));
+  const least = 20 * Math.log10((before.value - before.error) / (after.value + after.error));
+  return { text: least > 0 ? `below −${number(least, 2)} dB` : "within the errors", band: "", data: { "data-subject": given.subject, "data-below": true } };
 }
 
 /** A level as it is printed. @param {Shown} shown @param {number} count @returns {Printed} */

@@ -25,6 +25,8 @@ Json = dict[str, Any]
 EXAMPLES = Path(__file__).parents[3] / "examples"
 DRAFT: Json = {"level": "draft", "positions": 16}
 PLANE: Json = {"level": "draft", "model": "plane_strain"}
+STANDARD: Json = {"level": "standard", "model": "plane_strain"}
+"""A planet in its ring: its draft solves no misalignment of 45 um."""
 
 
 def example(name: str, **tables: Any) -> Json:
@@ -64,7 +66,7 @@ RELIEF: Json = {"tip_relief_um": 12.0, "tip_relief_length_mm": 1.0, "helix_crown
 DEVIATIONS: Json = {"single_pitch_deviation_um": [4.0, -3.0, 1.0, -2.0] * 5}
 CASES: dict[str, Json] = {
     "spur": pair(4.5, (16, 24), 14.0, load={"torque_n_m": [60.0, 140.0]}),
-    "internal": example("internal_gear.toml", load={"torque_n_m": [20.0, 100.0]}, accuracy=PLANE),
+    "internal": example("internal_gear.toml", load={"torque_n_m": [20.0, 100.0]}, accuracy=STANDARD),
     "polymer": pair(1.0, (19, 43), 8.0, wheel=STEEL_ON_POM, load={"torque_n_m": [0.5, 1.0]}),
     "wind": pair(16.0, (21, 80), 290.0, 10.0, pinion=RELIEF, load={"torque_n_m": [4e4]}, accuracy=DRAFT),
     "ev": example("helical_ev_23_67.toml", load={"torque_n_m": [40.0, 120.0]}, accuracy=DRAFT),
