@@ -285,7 +285,7 @@ class RollerBearing(_Row):
 
     @property
     def lamina_stiffness(self) -> float:
-        """Return c of one lamina, N/m^(10/9): both contacts in series [1]_."""
+        """Return c of one lamina, N/m^(10/9): both contacts in series (ISO/TS 16281)."""
         return float(LINE_STIFFNESS * self.length ** (8.0 / 9.0) / self.laminae)
 
     @property

@@ -5,6 +5,11 @@ from __future__ import annotations
 from lineofaction.cli.analyze import _cost
 
 
+def cost(receipt: dict[str, object]) -> str:
+    """Return the lines on the cost of a receipt."""
+    return "\n".join(_cost(receipt, newton_metre=1.0))
+
+
 def receipt() -> dict[str, object]:
     stages = {"compliance": {"cpu_seconds": 0.25}, "contact": {"cpu_seconds": 1.5}}
     return {
@@ -15,7 +20,7 @@ def receipt() -> dict[str, object]:
 
 
 def test_time_by_stage_and_memory() -> None:
-    assert _cost(receipt()) == "\ncost 1.75 CPU s (compliance 0.25, contact 1.5), 300 MiB"
+    assert cost(receipt()) == "cost 1.75 CPU s (compliance 0.25, contact 1.5), 300 MiB"
 
 
 def test_held_out_errors_are_named_by_axis() -> None:
@@ -23,10 +28,10 @@ def test_held_out_errors_are_named_by_axis() -> None:
         "force": {"at": [1.0], "error_m": [[2e-8]]},
         "center_distance_change": {"at": [1e-4, 3e-4], "error_m": [[1e-7, 3.4e-7], [None, 1e-9]]},
     }
-    text = _cost(receipt() | {"held_out": measured})
+    text = cost(receipt() | {"held_out": measured})
     assert "between the nodes: force 0.02 µm, center distance change unknown" in text
 
 
 def test_contacts_that_outgrew_their_patch_are_counted() -> None:
-    assert "outgrew its load patch at 185 points" in _cost(receipt() | {"patch_outgrown_points": 185})
-    assert "outgrew" not in _cost(receipt() | {"patch_outgrown_points": 0})
+    assert "outgrew its load patch at 185 points" in cost(receipt() | {"patch_outgrown_points": 185})
+    assert "outgrew" not in cost(receipt() | {"patch_outgrown_points": 0})

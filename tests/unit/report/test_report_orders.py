@@ -255,7 +255,7 @@ def test_a_defect_of_drawing_is_no_damage_of_the_file(
     monkeypatch.setattr(f"{STORED}.read_stored", lambda _study, _file: object())
     monkeypatch.setattr(f"{STORED}.page_with_database", _defect)
     with pytest.raises(ValueError, match="argmax of an empty sequence"):
-        _study_page(study, tmp_path / "response.nc")
+        _study_page(study, tmp_path / "response.nc", None)
 
 
 def _defect(*_arguments: object) -> None:
