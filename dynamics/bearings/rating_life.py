@@ -4,7 +4,7 @@ Only for steel bearings of good quality; lubrication and contamination (the modi
 
 References
 ----------
-.. [1] ISO/TS 16281:2008, Rolling bearings - Methods for calculating the modified reference rating life for
+.. [2] ISO/TS 16281:2008, Rolling bearings - Methods for calculating the modified reference rating life for
    universally loaded bearings, 4.3 (balls, equations 19 to 30) and 5.3 (rollers, equations 47 to 66), of
    radial bearings of one row.
 """
@@ -20,7 +20,7 @@ from dynamics.bearings import BallBearing, RollerBearing
 from dynamics.checks import positive
 from dynamics.types import FloatArray
 
-BALL_RINGS, ROLLER_RINGS = (0.407, 0.389), (0.378, 0.364)  # of [1]_: inner, outer ring of radial bearings
+BALL_RINGS, ROLLER_RINGS = (0.407, 0.389), (0.378, 0.364)  # of [2]_: inner, outer ring of radial bearings
 ROLLER_QUALITY = 0.83  # lambda nu: contained in C, but no more once edge loads are computed
 
 
@@ -93,7 +93,7 @@ def _ring_ratings(
 
 
 def _edge_factor(laminae: int) -> FloatArray:
-    """Return the rise of stress towards the ends of a roller, (laminae,): equation 60 of [1]_."""
+    """Return the rise of stress towards the ends of a roller, (laminae,): equation 60 of [2]_."""
     if laminae == 1:
         return np.ones(1)
     coordinate = np.abs(2.0 * np.arange(1, laminae + 1) - laminae - 1.0) / (2.0 * laminae - 2.0)
