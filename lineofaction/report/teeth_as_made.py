@@ -12,6 +12,8 @@ from lineofaction.gearbox.units import DEGREE, MM, UM
 from lineofaction.report.drawing.figure import Axis, Figure, HeatMap, Panel, number
 
 _ROLLS, _FACES = 41, 41  # points of a map over roll angle and face
+_DECIMALS = 6
+"""Decimals of a deviation in µm that are more than rounding."""
 _LABEL = "material in excess, µm"
 _UNLOADED = np.array([1.0])  # N: a scene needs a load; the gaps of teeth do not depend on it
 
@@ -49,7 +51,7 @@ def _figure(pair: ParallelAxes, model: ContactModel, index: int) -> Figure | Non
     first, last = sorted((gear.form_roll_length, gear.tip_form_roll_length))
     roll = np.linspace(first, last, _ROLLS)
     face = np.linspace(-0.5, 0.5, _FACES) * gear.face_width
-    excess = excess_of_teeth(pair, model, index, roll, face) / UM
+    excess = np.round(excess_of_teeth(pair, model, index, roll, face) / UM, _DECIMALS)
     if not excess.any():
         return None
     shape = excess - excess.mean(axis=(1, 2), keepdims=True)

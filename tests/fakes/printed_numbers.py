@@ -51,7 +51,9 @@ def place_of_error(error: float) -> int:
 
 def faults(text: str, answer: Any = None) -> list[str]:
     """Return the faults of a text, each with its line; `answer` is the JSON beside it."""
-    errors = dict(_errors(answer))
+    errors: dict[float, float] = {}
+    for value, error in _errors(answer):  # numbers that are equal have the least of their errors
+        errors[value] = min(error, errors.get(value, math.inf))
     return [f"{fault}: {line.strip()}" for line in text.splitlines() for fault in _line_faults(line, errors)]
 
 
@@ -83,7 +85,7 @@ def _error_of(token: str, errors: Mapping[float, float]) -> float | None:
         return None
     value, place = _value(token), place_of(token)
     near = [error for known, error in errors.items() if round(abs(known), place) == abs(value)]
-    return max(near, default=None)
+    return min(near, default=None)
 
 
 def _errors(answer: Any) -> Iterator[tuple[float, float]]:

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from bounds.error_digits import to_error
 from fe_contact.ste import Curve, SteDatabase
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (
@@ -42,7 +43,10 @@ def ste_spectrum(database: SteDatabase) -> Figure:
     order, amplitude, error = _spectrum_of(curve)
     names = _order_names(curve, order)
     drawn = np.sort(np.argsort(-amplitude, kind="stable")[:ORDERS])
-    rows = tuple((names[k].removeprefix("order "), um(amplitude[k], 3), um(error[k], 2)) for k in drawn)
+    rows = tuple(
+        (names[k].removeprefix("order "), to_error(_UM * amplitude[k], _UM * error[k]), um(error[k], 2))
+        for k in drawn
+    )
     caption = "Order 1 is the mesh frequency. Amplitudes in the gray are below their stated error."
     if database.period > 1:
         caption += " Orders between the whole ones come from deviations of single teeth, run-out or waves."

@@ -156,7 +156,7 @@ def test_a_case_prints_no_digit_beyond_its_error(name: str, tmp_path: Path) -> N
     teeth = CASES[name]["pair"]["pinion"]["teeth"]
     found += printed("complaint", case, "--order", str(1.01 * teeth), "--speed-rpm", "1500")
     found += reported(tmp_path, sorted(tmp_path.glob("*.nc")))
-    assert found == []
+    assert found == [], "\n".join(found)
 
 
 @pytest.mark.nightly
@@ -183,4 +183,4 @@ def test_a_unit_prints_no_digit_beyond_its_error(name: str, tmp_path: Path) -> N
     if name != "planetary":
         found += printed("deflect", scene, "-o", tmp_path / "deflect.nc")
     found += reported(tmp_path, sorted(tmp_path.glob("*.nc")))
-    assert found == []
+    assert found == [], "\n".join(found)
