@@ -48,6 +48,7 @@ FLATTEST_TOUCH = 0.2
 _RIGID = Law("lifting of rigid gears", "transmission error without load", "µm", 1e6)
 _LOADED = Law("lifting under load", "transmission error", "µm", 1e6)
 _RISING = Law("rise with load", "compliance between this load and the one below", "nm/N", 1e9)
+_FROM_REST = Law("rise with load", "compliance between no load and this one", "nm/N", 1e9)
 _STIFFENING = Law("stiffening with load", "compliance between this load and the one below", "nm/N", 1e9)
 _PUSHING = Law("contacts push", "least force over the load")
 _BALANCE = Law("balance of moments", "moment of the contact forces over the torque less one")
@@ -195,8 +196,18 @@ class _AlignmentLaws:
             return location_text(t, position, m, d, float(force[load]))
 
         good = np.isfinite(ste) & np.isfinite(chord)
-        yield _RISING.above(np.where(good, chord, 1.0), np.where(good, minimum, 0.0), at)
+        # the touching point without load is found apart from the contacts: the difference is TOUCH at most
+        secant = (ste - self._no_load[:, None] + TOUCH) / force
+        least = np.maximum(minimum - bent * tangent, ONE_TO_ONE * tangent)  # `bent` at both ends of the way
+        solved = np.isfinite(ste)
+        yield _FROM_REST.above(np.where(solved, secant, 1.0), np.where(solved, least, 0.0), at)
         if force.size > 1:
+            rising, minimum = good[:, 1:], minimum[:, 1:]
+            yield _RISING.above(
+                np.where(rising, chord[:, 1:], 1.0),
+                np.where(rising, minimum, 0.0),
+                lambda p, f: at(p, f + 1),
+            )
             good = good[:, 1:] & good[:, :-1]
             yield _STIFFENING.below(
                 np.where(good, chord[:, 1:], 0.0),

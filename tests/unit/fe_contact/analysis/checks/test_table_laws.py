@@ -16,7 +16,7 @@ from spur_gears import GEAR, PAIR, gear
 from bounds import PlausibilityWarning
 from fe_contact import FlankGrid, FlankModification, GearPair, Material, ToothFlank, analyze
 from fe_contact.analysis.checks.neighbors import approach_steps
-from fe_contact.analysis.checks.table_laws import check_laws, require_laws
+from fe_contact.analysis.checks.table_laws import TOUCH, check_laws, require_laws
 from fe_contact.analysis.database import compute_database
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.tables import SolvedTable, solve_table
@@ -273,3 +273,16 @@ def test_a_patch_leaves_its_edge_without_a_step_of_the_curve(cache: Path) -> Non
     asked: Any = {"torques": [15.7], "level": "standard", "model": "plane_strain"}
     with pytest.warns(PlausibilityWarning):
         analyze(pair, cache=cache, **asked)  # raises where a law is broken
+
+
+def test_a_light_load_forgives_the_accuracy_of_the_gaps_and_no_more(cache: Path) -> None:
+    """Under some newtons an error of the gaps of 1 nm is a per cent of the deflection."""
+    made = solved(GearPair(RELIEVED, GEAR), cache, torques=[0.1], level="draft", positions=16)
+
+    def lifted(height: float) -> SolvedTable:
+        rigid = made.table.no_load_transmission_error + height
+        return replace(made, table=replace(made.table, no_load_transmission_error=rigid))
+
+    assert_lawful(lifted(0.5 * TOUCH))
+    with pytest.raises(SolveError, match="rise with load"):
+        assert_lawful(lifted(5.0 * TOUCH))
