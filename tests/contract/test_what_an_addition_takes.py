@@ -62,10 +62,10 @@ class AxialSpring(SceneBearingLaw):
     def rows(self, duty):
         return np.eye(5)[[2]]
 
-    def laid_out(self, duty):
+    def array_entry(self, duty):
         return self
 
-    def typical(self, duty):
+    def row_stiffness(self, duty):
         return np.array([self.stiffness])
 
     def tangent_error(self, duty):
