@@ -91,7 +91,11 @@ def _packages() -> Iterator[Finding]:
         faults = [fault for fault in map(_fault, requirements) if fault]
         name = f"extra {extra}" if extra else "base"
         remedy = f"pip install 'lineofaction{f'[{extra}]' if extra else ''}'"
-        text = f"{'; '.join(faults)}: {remedy}" if faults else f"{len(requirements)} packages"
+        text = (
+            f"{'; '.join(faults)}: {remedy}"
+            if faults
+            else f"{len(requirements)} {'package' if len(requirements) == 1 else 'packages'}"
+        )
         yield Finding(name, LACKS if faults else HAS, text)
 
 

@@ -109,6 +109,19 @@ def test_no_text_of_a_plot_lies_on_another(visit: Visit) -> None:
                 assert not overlap(boxes[one], boxes[other]), (key, one, other)
 
 
+def test_no_label_at_a_curve_is_cut_off(visit: Visit) -> None:
+    """Labels stand to the right of their curves, in whatever font the reader's machine has."""
+    cut: list[str] = visit.page.evaluate(
+        """() => [...document.querySelectorAll(".js-plotly-plot")].flatMap((plot) => {
+          const right = plot.getBoundingClientRect().right;
+          return [...plot.querySelectorAll(".annotation-text")]
+            .filter((label) => label.getBoundingClientRect().right > right + 0.5)
+            .map((label) => label.textContent);
+        })"""
+    )
+    assert cut == []
+
+
 def overlap(one: dict[str, float], other: dict[str, float]) -> bool:
     """Whether two boxes share more than a pixel in both directions."""
     across = min(one["x"] + one["width"], other["x"] + other["width"]) - max(one["x"], other["x"])
