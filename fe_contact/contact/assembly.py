@@ -73,24 +73,9 @@ def contact_problem(
     """
     slices = candidates.slices
     compliance, tilt = np.zeros((2, *slices.present.shape, slices.pair.size))
-    touch = slices.touch
-    patches = slices.patch_1, slices.patch_2
-    levers = touch.lever_1, touch.lever_2
     diagonals, at_edge = [], _share_at_edge(slices)
-    for g, (flank, tip) in enumerate(zip(compliances, (1, -1), strict=True)):
-        blocks, teeth = _tooth_blocks(flank, -tip * slices.pair)
-        gear = _GearFlank(
-            nodes=flank.s,
-            blocks=blocks,
-            teeth=teeth,
-            # rows in one order in memory: the loops are compiled once
-            along=np.ascontiguousarray(flank.along) / slices.tip_inclinations[g],
-            lever=np.ascontiguousarray(levers[g]),
-            patch=patches[g],
-            mate=patches[1 - g],
-            tip=float(tip),
-        )
-        tilt += _added_gear(gear, slices, at_edge, couple_teeth, compliance)
+    for g, flank in enumerate(compliances):
+        tilt += _added_gear(_gear_flank(flank, slices, g), slices, at_edge, couple_teeth, compliance)
         diagonals.append(np.einsum("pii->pi", compliance).copy())  # of gear 1, then of both gears
     planes, modulus = half_planes(compliances)
     diagonal = np.arange(slices.pair.size)
@@ -102,6 +87,24 @@ def contact_problem(
         *planes,
         tilt=tilt / slices.width,
         share_1=share_of_pinion(*diagonals),
+    )
+
+
+def _gear_flank(flank: FlankCompliance, slices: LoadedSlices, gear: int) -> _GearFlank:
+    """Return the condensed flank of gear 0 or 1 with the points at which candidates press on it."""
+    patches, levers = (slices.patch_1, slices.patch_2), (slices.touch.lever_1, slices.touch.lever_2)
+    tip = 1 - 2 * gear  # on gear 1 pair j lies on tooth -j, on gear 2 on tooth j
+    blocks, teeth = _tooth_blocks(flank, -tip * slices.pair)
+    return _GearFlank(
+        nodes=flank.s,
+        blocks=blocks,
+        teeth=teeth,
+        # rows in one order in memory: the loops are compiled once
+        along=np.ascontiguousarray(flank.along) / slices.tip_inclinations[gear],
+        lever=np.ascontiguousarray(levers[gear]),
+        patch=patches[gear],
+        mate=patches[1 - gear],
+        tip=float(tip),
     )
 
 

@@ -14,7 +14,7 @@ from model_studies.progress import Progress, silent, stage_name
 
 Stages = Iterable[tuple[str, float]]
 """Names of stages with their usual shares of the time, in their order; empty: unknown."""
-Watched = Progress | bool | None
+ProgressChoice = Progress | bool | None
 """Function that is called as progress(stage, fraction); True: bars where output is shown; False: nothing;
 None: the bar of a notebook, if the work takes longer than a moment.
 """
@@ -25,7 +25,7 @@ _INTERVAL = 0.25
 
 
 @contextmanager
-def watched(progress: Watched, stages: Stages = ()) -> Iterator[Progress]:
+def progress_display(progress: ProgressChoice, stages: Stages = ()) -> Iterator[Progress]:
     """Yield the function to which work reports its progress."""
     display = None if callable(progress) or progress is False else notebook_display()
     if callable(progress):

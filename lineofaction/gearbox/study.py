@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from dynamics.results import RunResult
-    from lineofaction.gearbox.progress_bars import Watched
+    from lineofaction.gearbox.progress_bars import ProgressChoice
     from lineofaction.gearbox.schemas.figures import Figures
     from lineofaction.gearbox.schemas.model import BoundaryModel
     from lineofaction.gearbox.studies.computation import Computation
@@ -180,7 +180,7 @@ class StudyFunction(Generic[Q, T]):
     @overload
     def __call__(self, subject: Subject, *, workers: Workers | None, **further: Any) -> T: ...
     @overload
-    def __call__(self, subject: Subject, *, progress: Watched, **further: Any) -> T: ...
+    def __call__(self, subject: Subject, *, progress: ProgressChoice, **further: Any) -> T: ...
     @overload
     def __call__(self, subject: Subject, *, folder: Path | None, **further: Any) -> T: ...
     def __call__(  # type: ignore[misc]  # the first form has all of Q by position, this one at most one
@@ -190,7 +190,7 @@ class StudyFunction(Generic[Q, T]):
         *,
         run: RunResult | None = None,
         workers: Workers | None = None,
-        progress: Watched = None,
+        progress: ProgressChoice = None,
         folder: Path | None = None,
         **fields: Any,
     ) -> Any:

@@ -33,7 +33,7 @@ from lineofaction.gearbox.input_file import InputFile, Override
 from lineofaction.gearbox.interrupts import until_interrupted
 from lineofaction.gearbox.mesh_tables import MeshTables, finished
 from lineofaction.gearbox.problems import BadInput, JobFailed
-from lineofaction.gearbox.progress_bars import Watched, watched
+from lineofaction.gearbox.progress_bars import ProgressChoice, progress_display
 from lineofaction.gearbox.rexs.files import read_rexs
 from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
 from lineofaction.gearbox.schemas.files import READERS, written_out
@@ -123,7 +123,11 @@ def analyze(
 ) -> SteDatabase: ...
 @overload
 def analyze(
-    subject: Subject, *, progress: Watched = ..., workers: Workers = ..., on_draft: OnDraft | None = None
+    subject: Subject,
+    *,
+    progress: ProgressChoice = ...,
+    workers: Workers = ...,
+    on_draft: OnDraft | None = None,
 ) -> SteDatabase: ...
 def analyze(subject: ParallelAxes | Subject, *request: Any, **keywords: Any) -> SteDatabase:
     """Compute the static transmission error of a gear pair or a case.
@@ -144,7 +148,7 @@ def analyze(subject: ParallelAxes | Subject, *request: Any, **keywords: Any) -> 
 def _table_of(
     case: CheckedCase,
     *,
-    progress: Watched = None,
+    progress: ProgressChoice = None,
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
     on_draft: OnDraft | None = None,
 ) -> SteDatabase:
@@ -157,7 +161,7 @@ def _table_of(
             on_draft(draft, refinement)
 
     try:
-        with watched(progress) as report:
+        with progress_display(progress) as report:
             return database_of(case, cache_home(), report, workers, note)
     except KeyboardInterrupt:
         if not drafts:
@@ -168,7 +172,7 @@ def _table_of(
 
 def simulate(
     subject: Scene | Subject,
-    progress: Watched = None,
+    progress: ProgressChoice = None,
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> RunResult:
     """Run a scene: in SI, or as written, with the tables of its meshes computed first.
@@ -190,7 +194,7 @@ def simulate(
     JobFailed
         The run ended early; see `dynamics.simulation.simulate` for its states.
     """
-    with watched(progress) as report:
+    with progress_display(progress) as report:
         scene = subject if isinstance(subject, Scene) else tabled(subject, report, workers).scene
         run = _run(scene, report)
     if not run.status.usable and run.status is not RunStatus.CANCELLED:
@@ -243,7 +247,7 @@ def studied(
     *,
     run: RunResult | None,
     workers: Workers | None,
-    progress: Watched,
+    progress: ProgressChoice,
     folder: Path | None,
 ) -> Any:
     """Return the result of a study, as its function does; raises `BadInput`, `JobFailed`."""
@@ -255,7 +259,7 @@ def studied(
     content = chosen.case if isinstance(chosen, CheckedCase) else chosen
     interrupts = until_interrupted if work.interruptible else nullcontext
     with (
-        watched(progress, study.stages) as report,
+        progress_display(progress, study.stages) as report,
         cached_workers(study, [content], varied, workers or InProcess()) as remembering,
         interrupts() as cancel,
     ):

@@ -101,8 +101,8 @@ def test_the_verb_judges_by_the_file_beside_and_stops_if_asked(tmp_path: Path) -
     (tmp_path / "gear.mew").write_text(VALUES.replace("12.0", "12.4"), encoding="utf-8")
     done = loa("measured", case, curves, *of)
     assert (done.exit_code, out.exists()) == (EXIT_WARNINGS, False)
-    said = "warning (machine_value): f_Halpha of tooth 3 left: 12.4 µm printed, 12.0 µm recomputed"
-    assert done.stdout.startswith(said)
+    warning = "warning (machine_value): f_Halpha of tooth 3 left: 12.4 µm printed, 12.0 µm recomputed"
+    assert done.stdout.startswith(warning)
     assert "7 of 8 recomputed" in done.stdout
 
 

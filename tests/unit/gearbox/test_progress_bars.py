@@ -9,7 +9,7 @@ from types import ModuleType, SimpleNamespace
 
 import pytest
 
-from lineofaction.gearbox.progress_bars import watched
+from lineofaction.gearbox.progress_bars import progress_display
 from model_studies.progress import silent
 
 Shown = list[tuple[str, str]]
@@ -52,7 +52,7 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
 def test_a_notebook_shows_a_bar_of_work_that_takes_longer_than_a_moment(
     cell: Shown, clock: SimpleNamespace
 ) -> None:
-    with watched(None) as report:
+    with progress_display(None) as report:
         report("contact", 0.1)
         assert cell == []
         clock.s += 2.1
@@ -68,11 +68,11 @@ def test_a_notebook_shows_a_bar_of_work_that_takes_longer_than_a_moment(
 
 
 def test_a_notebook_shows_it_at_once_if_told_and_never_if_not(cell: Shown, clock: SimpleNamespace) -> None:
-    with watched(False) as report:
+    with progress_display(False) as report:
         clock.s += 60.0
         report("contact", 0.5)
     assert cell == []
-    with watched(True) as report:
+    with progress_display(True) as report:
         report("contact", 0.5)
     assert len(cell) == 1
 
@@ -81,18 +81,18 @@ def test_a_script_shows_bars_on_a_terminal_if_told(monkeypatch: pytest.MonkeyPat
     terminal = Terminal()
     monkeypatch.setattr(sys, "stderr", terminal)
     monkeypatch.setenv("TERM", "xterm")
-    with watched(None) as report:
+    with progress_display(None) as report:
         assert report is silent
-    with watched(True) as report:
+    with progress_display(True) as report:
         report("contact", 1.0)
     assert "contact" in terminal.getvalue() and "100 %" in terminal.getvalue()
     monkeypatch.setattr(sys, "stderr", io.StringIO())
-    with watched(True) as report:
+    with progress_display(True) as report:
         assert report is silent
 
 
 def test_a_function_of_the_caller_is_called(cell: Shown) -> None:
     seen: list[tuple[str, float]] = []
-    with watched(lambda *step: seen.append(step)) as report:
+    with progress_display(lambda *step: seen.append(step)) as report:
         report("contact", 0.5)
     assert seen == [("contact", 0.5)] and cell == []
