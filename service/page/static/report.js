@@ -5,6 +5,9 @@ import { button, dataTable, figures, folded, make, save } from "./elements.js";
 import { figureBlock, painted, plot } from "./plots.js";
 import { soundBlock } from "./sound.js";
 
+/** What a report is of, as one sentence. @param {{title: string, lead: string}} report */
+export const leadOf = ({ title, lead }) => (lead ? `${title}: ${lead.replace(/\.$/, "")}.` : `${title}.`);
+
 /**
  * Show the report of a result.
  * @param {HTMLElement} target
@@ -25,9 +28,8 @@ export async function showReport(target, result, { making = false, signal, place
   const drawn = [];
   const shown = report.sections.filter((one) => making || one.part === "results" || one.figures.length);
   const sections = shown.map((one) => sectionBlock(one, { drawn, result, place }));
-  const lead = report.lead ? `${report.title}: ${report.lead.replace(/\.$/, "")}.` : `${report.title}.`;
   target.replaceChildren(
-    make("p", { class: "lead" }, lead), ...(warnings ? [] : alarms), head, files(result, figuresAt), ...sections,
+    make("p", { class: "lead" }, leadOf(report)), ...(warnings ? [] : alarms), head, files(result, figuresAt), ...sections,
   );
   warnings?.replaceChildren(...alarms);
   for (const [node, figure] of drawn) {

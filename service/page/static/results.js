@@ -9,7 +9,7 @@ import { sayMissing } from "./notice.js";
 import { pack, unpack } from "./packed.js";
 import { fetchPlotly } from "./plotly.js";
 import { circlesOf } from "./relief_start.js";
-import { showReport } from "./report.js";
+import { leadOf, showReport } from "./report.js";
 
 const PLANE = /plane/;
 const LONGEST = 256; // base pitches over which curves follow sliders
@@ -126,7 +126,7 @@ export class Results {
     const result = { href, type: "application/x-netcdf", hash };
     this.unreport();
     const report = await showReport(byId("results-body"), result, { making: true, signal, place, alarms: byId("results-alarms") });
-    if (report) byId("dock-words").textContent = `${report.title}, ${report.lead}.`;
+    if (report) byId("dock-words").textContent = leadOf(report);
     return report;
   }
 
