@@ -37,6 +37,8 @@ OPERATORS: dict[type[ast.AST], tuple[str, str, str]] = {
     ast.Eq: ("condition", "==", "!="), ast.NotEq: ("condition", "!=", "=="),
     ast.And: ("condition", "and", "or"), ast.Or: ("condition", "or", "and"),
 }  # fmt: skip
+USAGE_ERROR, NO_TEST_RAN = 4, 5
+"""Exit codes of pytest: a test that is none, or a conftest that cannot be imported; no test selected."""
 LOCKS = ("lock", "writing", "flock", "exclusive")
 
 
@@ -207,7 +209,9 @@ def first_failure(arguments: list[str], budget: float, *options: str) -> str:
             )
         except subprocess.TimeoutExpired:
             return "time"
-        if done.returncode not in (0, 5):
+        if done.returncode == USAGE_ERROR and "not found: " in done.stderr:
+            raise SystemExit(f"the record names a test that is none: {done.stderr.strip()[-300:]}")
+        if done.returncode not in (0, NO_TEST_RAN):
             ends = [
                 line.split()[1] for line in done.stdout.splitlines() if line.startswith(("FAILED ", "ERROR "))
             ]
