@@ -35,7 +35,6 @@ class DaskProcesses:
         return f"tcp://127.0.0.1:{self.port}"
 
     def start_scheduler(self) -> None:
-        """Start a scheduler, again on the port that it had."""
         if self.port == 0:
             with closing(create_server(("127.0.0.1", 0))) as free:
                 self.port = free.getsockname()[1]

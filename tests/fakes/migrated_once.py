@@ -18,7 +18,6 @@ _statements: list[str] = []
 
 @pytest.fixture(scope="module", autouse=True)
 def migrated_once() -> Iterator[None]:
-    """Migrate what is no empty SQLite database."""
     migrate = database.migrate
 
     def copied(connection: Connection, revision: str | None) -> None:

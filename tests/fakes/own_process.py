@@ -23,7 +23,6 @@ def python(
 
 
 def children(pid: int) -> list[int]:
-    """Return the children of all threads of a process."""
     found: list[int] = []
     for task in Path(f"/proc/{pid}/task").iterdir():
         with suppress(FileNotFoundError, ProcessLookupError):  # a thread that ended meanwhile

@@ -204,7 +204,6 @@ FIGURES: Mapping[str, tuple[str, int | None]] = {
 
 
 def _of_the_service(numbers: Iterable[Printed], state: Mapping[str, Any], address: str) -> Iterator[str]:
-    """Yield numbers that are not what the service answers to what the address says."""
     if not state["key"]:
         return
     own = "now" if state["alone"] else state["on"]

@@ -136,7 +136,6 @@ def shown(browser: Browser, address: str, key: str) -> Visit:
 
 
 def answered(page: Page) -> None:
-    """Wait for the live figures of a result."""
     page.wait_for_selector("#live-figures[data-answers]", state="attached")
 
 

@@ -89,7 +89,6 @@ def _error_of(token: str, errors: Mapping[float, float]) -> float | None:
 
 
 def _errors(answer: Any) -> Iterator[tuple[float, float]]:
-    """Yield numbers of an answer with their errors."""
     if isinstance(answer, list):
         for part in answer:
             yield from _errors(part)

@@ -32,7 +32,6 @@ class Element:
     places: list[Place] = field(default_factory=list)
 
     def all(self, *kinds: str) -> Iterator[Element]:
-        """Yield this element and those in it that are of these kinds."""
         if self.kind in kinds:
             yield self
         for child in self.children:
@@ -48,8 +47,6 @@ class Element:
 
 
 class Printed:
-    """A PDF, read."""
-
     def __init__(self, content: bytes) -> None:
         self.size = len(content)
         reader = PdfReader(BytesIO(content))
@@ -75,7 +72,6 @@ class Printed:
         return found + [plain(title) for title in pictures if title]
 
     def _read(self, number: int, page: Any) -> str:
-        """Return the text of a page, and keep its pieces."""
         fonts = {name: _letters(font.get_object()) for name, font in page["/Resources"]["/Font"].items()}
         pieces_open: list[int | None] = [None]  # a ligature is a span within one
         letters: dict[bytes, str] = {}

@@ -38,8 +38,6 @@ class Wish(BoundaryModel):
 
 
 class FakeInputs(BoundaryModel):
-    """Inputs of the fake."""
-
     wish: Wish
 
 

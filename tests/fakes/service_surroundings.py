@@ -20,7 +20,6 @@ FAKES = str(Path(__file__).resolve().parent)
 
 @pytest.fixture(autouse=True)
 def workers_find_fakes(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let workers import the fakes."""
     path = os.pathsep.join(part for part in (FAKES, os.environ.get("PYTHONPATH", "")) if part)
     monkeypatch.setenv("PYTHONPATH", path)
 

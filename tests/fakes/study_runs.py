@@ -67,8 +67,6 @@ class Ended:
 
 
 class StudyRuns:
-    """A row of the studies, and what its question gives each way."""
-
     def __init__(self, row: StudyRow, folder: Path, served: Served) -> None:
         self.row, self.folder, self.served = row, folder, served
         self.study: Study = row.registered

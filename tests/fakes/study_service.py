@@ -102,7 +102,6 @@ def study_service(directory: Path) -> Iterator[Served]:
 
 
 def scene_by_hash(directory: Path, duration: float) -> SceneInput:
-    """Return a scene of `duration` s with its table by hash."""
     given = read_model(SceneInput, scene_file(directory, duration=duration))
     (mesh,) = given.meshes
     by_hash = mesh.model_copy(update={"database_file": None, "database_hash": KEY})

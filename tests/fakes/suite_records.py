@@ -27,8 +27,6 @@ _PROPERTY, _SHARED = "cpu_seconds", "shared_cpu_seconds"
 
 
 class SuiteRecords:
-    """Measures each test, in the worker that runs it, and renews the records where the run is led."""
-
     def __init__(self) -> None:
         self.shared = self.start = 0.0
         self.fixtures: dict[str, float] = {}

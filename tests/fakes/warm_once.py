@@ -32,7 +32,6 @@ class _WarmProcesses:
         self._starts = threading.Lock()
 
     def launch(self, launcher: Launcher, ends: Ends) -> ChildProcess:
-        """Fork a child in place of `Launcher.launch`."""
         key = (launcher._work, *launcher._modules)
         with self._starts:
             server = self._found.get(key)

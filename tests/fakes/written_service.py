@@ -22,8 +22,6 @@ from service.worker.process import Registry, default_registry
 
 @dataclass(frozen=True)
 class Service:
-    """A service with a key."""
-
     url: str
     key: str
     description: dict[str, Any]

@@ -14,7 +14,6 @@ IMPORT = re.compile(rf"^from ((?:{OURS})(?:\.\w+)*) import ([\w, ]+)$", re.MULTI
 
 
 def imports() -> Iterator[tuple[str, str, str]]:
-    """Yield file, module and name of every import in a text."""
     for file in sorted(BENCHMARKS.glob("*.py")):
         for node in ast.walk(ast.parse(file.read_text("utf-8"))):
             text = node.value if isinstance(node, ast.Constant) and isinstance(node.value, str) else ""

@@ -26,7 +26,6 @@ LOST = ("static_transmission_error", "tangent_compliance", "error_estimate", "ma
 
 @pytest.fixture
 def computed(monkeypatch: pytest.MonkeyPatch) -> list[SteDatabase]:
-    """The tables that are computed."""
     made: list[SteDatabase] = []
 
     def computed_table(*_: object) -> SteDatabase:

@@ -321,8 +321,6 @@ def test_a_time_that_is_too_short_is_said() -> None:
 
 @dataclass(frozen=True)
 class Size:
-    """A length, asked for, and a width."""
-
     length: Annotated[float, typer.Option(help="Length in mm.")]
     width: Annotated[float, typer.Option(min=1.0, help="Width in mm.")] = 2.0
 

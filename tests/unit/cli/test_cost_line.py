@@ -6,7 +6,6 @@ from lineofaction.cli.analyze import _cost
 
 
 def cost(receipt: dict[str, object]) -> str:
-    """Return the lines on the cost of a receipt."""
     return "\n".join(_cost(receipt, newton_metre=1.0))
 
 

@@ -124,7 +124,6 @@ def idler() -> Json:
 
 
 def printed(verb: str, *arguments: object) -> Iterator[str]:
-    """Yield the faults of what a verb prints, beside its JSON."""
     shown, answer = loa(verb, *arguments), loa(verb, *arguments, "--json")
     assert shown.exit_code == 0, shown.output
     for text in (*faults(shown.stdout, json.loads(answer.stdout)), *contradictions(shown.stdout)):
@@ -132,7 +131,6 @@ def printed(verb: str, *arguments: object) -> Iterator[str]:
 
 
 def reported(folder: Path, files: list[Path]) -> Iterator[str]:
-    """Yield the faults of the report of results."""
     made = loa("report", *files, "--still", "-o", folder / "report.html")
     assert made.exit_code == 0, made.output
     yield from (

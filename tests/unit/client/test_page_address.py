@@ -104,7 +104,6 @@ def test_nothing_that_is_known_is_not_found(tmp_path: Path) -> None:
 
 
 def typed(content: object) -> str:
-    """Return the address of a design as typed."""
     return f"{ADDRESS}/#case={packed(content)}"
 
 

@@ -126,7 +126,6 @@ def test_other_flanks_make_the_pair_of_the_case_that_states_them(name: str, befo
 
 
 def _made(pair: Any) -> Any:
-    """Return a pair, or the faults for which there is none."""
     try:
         return pair()
     except BadInput as error:

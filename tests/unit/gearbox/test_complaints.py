@@ -81,7 +81,6 @@ def planetary(held: str = "ring") -> Json:
 
 
 def asked(scene: Json, levels: dict[str, tuple[float, ...]] | None = None, **fields: Any) -> Complaint:
-    """Return the complaint of a scene, all of it checked as every study does."""
     stated = validated(SceneInput, scene | {"complaint": fields})
     return complaint_of(stated, check_scene(stated, {}), levels or {})
 

@@ -28,7 +28,6 @@ COLOR = Attribute("custom_color", "string", "red")
 
 
 def unit() -> GearUnit:
-    """Return a shaft with a gear and two sections, and a load case."""
     parts = (
         Component(1, "shaft", name="input"),
         Component(2, "cylindrical_gear", (MODULE, HELIX, COLOR)),

@@ -148,7 +148,6 @@ def whole_units() -> Iterator[GearUnit]:
 
 
 def ring_unit() -> GearUnit:
-    """Return a unit with a ring gear."""
     ring = {
         "number_of_teeth": 60,
         "tip_diameter": 117.0,

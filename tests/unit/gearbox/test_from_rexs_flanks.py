@@ -33,7 +33,6 @@ from lineofaction.gearbox.schemas import Case
 
 
 def loaded(unit: GearUnit, gear: int, torque: float) -> LoadedFlank:
-    """Return the loaded flank of a gear under a torque on the driver."""
     meshing = Meshing.of(unit.part(STAGE), torques=(torque,))
     return LoadedFlank.of(meshing, unit.part(gear))
 

@@ -165,7 +165,6 @@ def test_start_and_optimum_are_as_loud_as_a_comparison_of_their_flanks_says() ->
 
 
 def predicted(**heard: Any) -> dict[str, list[Work]]:
-    """Return the parts of the predicted cost by name."""
     question = inputs(**heard)
     subject = SceneInput.model_validate(scene())
     cost = RUN.predicted(subject, Inputs.model_validate(question), None)

@@ -24,7 +24,6 @@ FUNCTIONS = {study.package: study for study in STUDIES.values()}
 
 
 def blocks(page: Path) -> list[ast.Module]:
-    """Return the Python of a page."""
     return [
         ast.parse(block) for block in re.findall(r"```python\n(.*?)```", page.read_text("utf-8"), re.DOTALL)
     ]

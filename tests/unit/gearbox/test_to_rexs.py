@@ -61,7 +61,6 @@ def table() -> SteDatabase:
 
 
 def of_stage(document: Document) -> dict[str, Attribute]:
-    """Return the calculated attributes of the stage by name."""
     stage = document.model.component(STAGE)
     assert stage is not None
     return {entry.id: entry for entry in stage.attributes if entry.origin == "calculated"}

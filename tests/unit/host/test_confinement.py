@@ -185,7 +185,6 @@ Run = Callable[..., Ended]
 
 @pytest.fixture
 def confined(tmp_path: Path) -> Run:
-    """Run expressions in a confined child and return how it ended."""
     (tmp_path / "canary").write_text("canary")
     own = tmp_path / "own"
     own.mkdir()

@@ -45,7 +45,6 @@ NO_ANALYSIS = f"gmsh is not installed. {ANALYSIS_ADVICE}"
 
 
 def in_the_base(code: str, *arguments: str) -> subprocess.CompletedProcess[str]:
-    """Run code where only the base is installed."""
     hidden = f"import importlib, sys\nsys.modules.update(dict.fromkeys({HIDDEN!r}))\n"  # importing fails now
     command = [sys.executable, "-c", hidden + code, *arguments]
     return subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT, timeout=120)

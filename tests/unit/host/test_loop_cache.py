@@ -45,7 +45,6 @@ def beside_the_source(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def project(folder: Path) -> Path:
-    """Write a package of a loop, of the inner loop that it calls and of a constant."""
     package = folder / "gears"
     package.mkdir(parents=True)
     (package / "__init__.py").touch()

@@ -45,8 +45,6 @@ def test_units_and_what_others_beat_do_not_move_the_knee():
 
 
 class Result(FidelityResult):
-    """A result with one error."""
-
     @property
     def error(self) -> float:
         """In the place of its title."""

@@ -58,7 +58,6 @@ def good(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def strike(good: Path, tmp_path: Path) -> Callable[[str, str], Path]:
-    """Return what makes the struck file of a kind."""
     canary = write_canary(tmp_path)
 
     def make(kind: str, name: str) -> Path:

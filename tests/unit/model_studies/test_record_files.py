@@ -52,8 +52,6 @@ class Set(Generic[C]):
 
 @dataclass(frozen=True)
 class Study(Set[Cup]):
-    """What is stored."""
-
     count: IntArray
     ended: Ended
     shares: Mapping[int, float]

@@ -22,8 +22,6 @@ class Shift:
 
 @dataclass(frozen=True)
 class Waves(Figures):
-    """Figures with amplitudes."""
-
     amplitudes: FloatArray = field(metadata=in_unit("n"))
 
 
@@ -34,8 +32,6 @@ class Toggled(EffectAblation[Waves, Shift]):
 
 @dataclass(frozen=True)
 class Found(FidelityResult):
-    """A result."""
-
     FIGURES = ("far", "near")
 
     far: float = float("nan")
@@ -44,8 +40,6 @@ class Found(FidelityResult):
 
 @dataclass(frozen=True)
 class Study(Frontier[Found]):
-    """A study."""
-
     count: int
 
 

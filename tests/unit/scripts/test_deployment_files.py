@@ -47,7 +47,6 @@ def documents(part: str) -> tuple[dict[str, Any], ...]:
 
 
 def of_kind(part: str, kind: str) -> Iterator[dict[str, Any]]:
-    """Yield the documents of a kind."""
     yield from (one for one in documents(part) if one["kind"] == kind)
 
 
@@ -74,18 +73,15 @@ def _pod(maker: dict[str, Any]) -> dict[str, Any]:
 
 
 def container(part: str) -> dict[str, Any]:
-    """Return the only container of a part."""
     (only,) = pods()[part]["containers"]
     return only
 
 
 def compose() -> dict[str, Any]:
-    """Return compose.yaml."""
     return yaml.safe_load((ROOT / "compose.yaml").read_text())
 
 
 def dockerfile() -> str:
-    """Return the Dockerfile."""
     return (ROOT / "Dockerfile").read_text()
 
 
@@ -402,7 +398,6 @@ def test_the_monitor_finds_the_management_port_under_the_name_of_the_alerts() ->
 
 
 def pods_labels(part: str) -> dict[str, str]:
-    """Return the labels of the pods of a part."""
     (maker,) = (one for one in servers() if one["metadata"]["name"].endswith(part))
     labels: dict[str, str] = maker["spec"]["template"]["metadata"]["labels"]
     return labels

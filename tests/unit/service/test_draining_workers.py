@@ -23,7 +23,6 @@ PRELOAD = "service.worker.draining"
 
 @pytest.fixture
 def dask(tmp_path: Path) -> Iterator[DaskProcesses]:
-    """A worker as containers start it."""
     with dask_processes(tmp_path, 0, LOA_DATA_DIRECTORY=str(tmp_path / "data")) as running:
         running.start_workers(nanny=False, preload=PRELOAD)
         running.await_workers(1)

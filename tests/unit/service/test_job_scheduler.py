@@ -314,7 +314,6 @@ def fall(server: Bench, *, begun: bool = True) -> list[str]:
 
 
 def _next_beside(scheduler: Scheduler, runs: list[Claim]) -> Claim | None:
-    """Return what a scheduler begins beside runs."""
     scheduler._running = {claim.id: SimpleNamespace(claim=claim) for claim in runs}  # type: ignore[misc]
     try:
         return scheduler._next()

@@ -45,8 +45,6 @@ def answer(future: Future[bytes]) -> dict[str, Any]:
 
 
 class LivePool(QuestionPool):
-    """A pool with one live worker."""
-
     def __init__(self, folder: Path, times: AnswerTimes | None = None, *, idle_s: float = 600.0) -> None:
         self.worker = LiveWorker(folder, 512, times)
         super().__init__([self.worker], Limits(in_all=4), "live requests", idle_s=idle_s)

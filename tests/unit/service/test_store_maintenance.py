@@ -31,7 +31,6 @@ KEYS = [hashlib.sha256(bytes([n])).hexdigest() for n in range(4)]
 
 @pytest.fixture(params=["directory", "s3"])
 def machine(tmp_path: Path, database_url: str | None, request: pytest.FixtureRequest) -> Iterator[Bench]:
-    """The job machinery, on each database and with each place of results."""
     place = None if request.param == "directory" else str(request.getfixturevalue("s3_url"))
     found = bench(tmp_path / "data", REGISTRY, database_url=database_url, results_url=place)
     yield found

@@ -68,7 +68,6 @@ def resonance(values) -> float:
 
 
 def level_band(level, ranges) -> LevelBand:
-    """Return the band of one level."""
     levels = np.array([[level(values)] for values in band_cases(ranges)])
     return level_bands(ranges, levels)[0]
 

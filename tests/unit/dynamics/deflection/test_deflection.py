@@ -35,7 +35,6 @@ def sliced():
 
 
 def only(scene, case=None, positions=3):
-    """The one deflected case of a scene."""
     return deflect(scene, (case or LoadCase("load"),), positions).cases[0]
 
 

@@ -317,7 +317,6 @@ LATER = ("pieces in other files", "a mesh of another program", "geometry in plac
 
 @pytest.fixture
 def opened(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """The files that are opened from here on."""
     files: list[str] = []
     plain = builtins.open
 

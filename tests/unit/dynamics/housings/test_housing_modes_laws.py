@@ -81,7 +81,6 @@ def relative(found, expected) -> float:
 
 
 def nearest(frequencies: np.ndarray, expected: float) -> float:
-    """Deviation of the nearest frequency."""
     return float(np.abs(frequencies / expected - 1.0).min())
 
 

@@ -26,8 +26,6 @@ LINES = {1.0: 4.0, 2.0: 9.0, 3.0: 1e-9}
 
 @dataclass(frozen=True)
 class OnBearing:
-    """Force along x on one bearing, A-weighted."""
-
     bearing: str
     name: str = "force on one bearing"
     unit: str = "dB(A)"

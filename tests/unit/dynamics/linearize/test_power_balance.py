@@ -33,7 +33,6 @@ def in_housing(scene, **changes):
 
 
 def all_square(scene):
-    """All meshes with a table that excites."""
     meshes = tuple(replace(mesh, table=square_wave_table()) for mesh in scene.meshes)
     return replace(scene, meshes=meshes)
 

@@ -102,7 +102,6 @@ def test_at_standstill_they_are_the_natural_modes():
 
 
 def without_damping(scene):
-    """The scene with no damper in bearings and meshes."""
     bearings = tuple(replace(part, damping_ratio=0.0) for part in scene.bushings)
     pins = tuple(replace(part, damping_ratio=0.0) for part in scene.planet_bearings)
     meshes = tuple(replace(mesh, damping=0.0) for mesh in scene.meshes)

@@ -160,7 +160,6 @@ def counted_by_hand(scene, start, links=()):
 
 
 def middle(driver, driven):
-    """Return the middle of the common face."""
     low = max(gear.position - gear.face_width / 2.0 for gear in (driver, driven))
     high = min(gear.position + gear.face_width / 2.0 for gear in (driver, driven))
     return (low + high) / 2.0

@@ -43,7 +43,6 @@ def light() -> SteadyStates:
 
 
 def on(found: SteadyStates, curve: int) -> np.ndarray:
-    """Points of one curve by rising speed."""
     points = np.flatnonzero(found.curve == curve)
     return points[np.argsort(found.speed[points], kind="stable")] if curve != BRANCH else points
 

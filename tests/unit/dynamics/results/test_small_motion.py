@@ -94,7 +94,6 @@ def test_flanks_that_part_by_a_base_pitch_end_the_run():
 
 
 def checked(system, **moved):
-    """The checks of freedoms that moved so much, by name."""
     q = np.zeros((3, len(system.freedoms.name)))
     for name, value in moved.items():
         q[1, system.freedoms.name.index(name.replace("__", "."))] = value

@@ -148,8 +148,6 @@ def test_code_is_made_after_as_long_as_it_takes_and_sooner_when_seen_before(stor
 
 
 class Count(NamedTuple):
-    """One number."""
-
     number: np.ndarray
 
 

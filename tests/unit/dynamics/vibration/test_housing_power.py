@@ -88,7 +88,6 @@ def rows(diagonal):
 
 @cache
 def meshed(damping=None, *, dashpot=DASHPOT) -> MeshedHousing:
-    """A tube of steel on one mount."""
     lever = [1.0, 1.0, 1.0, 4e-3, 4e-3, 4e-3]
     mount = Mount(rows([STIFFNESS * a for a in lever]), rows([dashpot * a for a in lever]))
     seat = SeatBore("seat", Bore((0.0, 0.0, 0.075), (0.0, 0.0, 1.0), 0.08, 0.05))

@@ -62,7 +62,6 @@ over_face = functools.cache(unit_root_stress_3d)
 
 
 def on_flank(found: UnitRootStress) -> np.ndarray:
-    """Forces of a pressure on the upper part of the flank, all of the face."""
     upper = found.s[:-2:2] > 0.4 * found.s[0] + 0.6 * found.s[-1]
     if found.across_face:
         return pressure_forces(

@@ -38,7 +38,6 @@ MESHES = pytest.mark.parametrize("nodes", [UNIFORM, GRADED, SINGLE], ids=["unifo
 
 
 def patch(nodes, center, half_width, share=0.0):
-    """Nodal forces on all nodes."""
     out = np.full(nodes.size, np.nan)
     first, last = load_vector(nodes, center, half_width, share, out)
     forces = np.zeros(nodes.size)

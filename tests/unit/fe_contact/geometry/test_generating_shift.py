@@ -26,7 +26,6 @@ both_cases = pytest.mark.parametrize("thinning", ["generating", "flank"])
 
 
 def drawn(kind: str, seed: int, **changes: Any) -> Toothing:
-    """Return a gear of random teeth, shift, helix and allowance."""
     draw = random.Random(seed)
     fields: dict[str, Any] = {
         "teeth": draw.randint(60, 120),

@@ -159,7 +159,6 @@ def test_coordinates_off_the_profile_are_refused(gear: Toothing, beyond: float) 
 
 
 def turned(points: FloatArray, angle: float) -> FloatArray:
-    """Points turned clockwise."""
     sine, cosine = math.sin(angle), math.cos(angle)
     x, y = points[..., 0], points[..., 1]
     return np.stack((x * cosine + y * sine, y * cosine - x * sine), axis=-1)

@@ -234,7 +234,6 @@ def test_helix_slope_and_misalignment_of_straight_teeth_add_up_at_every_load() -
 def optimized(
     pair: GearPair, torques: list[float], misalignment: float | list[float], **further: Any
 ) -> Optimization:
-    """Search the helix slope, at draft."""
     search = Search(NelderMead(), evaluations=further.pop("evaluations", 12), positions=POSITIONS)
     free = [DesignVariable(SLOPE, -30e-6, 30e-6)]
     request = design_request(

@@ -161,7 +161,6 @@ def axes(rng):
 
 
 def slopes(rule, grid, values):
-    """Slopes by one rule along every axis."""
     return tuple(np.moveaxis(rule(axis, np.moveaxis(values, i, 0)), 0, i) for i, axis in enumerate(grid))
 
 

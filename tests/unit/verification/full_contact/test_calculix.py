@@ -29,7 +29,6 @@ from verification.full_contact.condensation.sites import Range, contact_sites
 
 
 def program(folder: Path, body: str) -> str:
-    """A program that does `body` in the folder of the job."""
     path = folder / "fake"
     path.write_text(f"#!/bin/sh\n{body}\n")
     path.chmod(path.stat().st_mode | stat.S_IXUSR)

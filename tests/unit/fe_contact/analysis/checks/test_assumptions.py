@@ -43,7 +43,6 @@ def table(pair: GearPair, cache: Path, **asked: object) -> SteDatabase:
 
 
 def assumption(found: SteDatabase, effect: str) -> Json:
-    """The one entry of an effect."""
     (entry,) = [one for one in found.metadata.receipt["assumptions"] if one["effect"] == effect]
     return dict(entry)
 
@@ -171,7 +170,6 @@ AT = [0.1, *handovers(CLEAR)]
 
 
 def edges(receipt: Json) -> Json:
-    """The entry of the tip edges."""
     (entry,) = [one for one in receipt["assumptions"] if one["effect"] == "corner_contact"]
     return dict(entry)
 

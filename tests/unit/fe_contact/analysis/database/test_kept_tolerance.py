@@ -221,7 +221,6 @@ def test_a_pass_that_fails_or_is_interrupted_keeps_the_table_before_it(from_draf
 
 
 def fail_from(monkeypatch, number: int, error: BaseException) -> None:
-    """Let a pass and those after it fail."""
     begun: list[int] = []
 
     def failing(*arguments, **more) -> _Computed:

@@ -65,8 +65,6 @@ class Break:
 
 
 def at_spot(name: str, change: Callable[[np.ndarray], np.ndarray]) -> Callable[..., LoadDistribution]:
-    """Return what changes an array at one position."""
-
     def plant(flanks: LoadDistribution) -> LoadDistribution:
         values = np.array(getattr(flanks, name))
         values[SPOT] = change(values[SPOT])

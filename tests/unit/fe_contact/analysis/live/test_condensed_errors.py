@@ -32,7 +32,6 @@ CORNERS = {"corner_contact": "on"}
 
 
 def with_flank(modification: FlankModification) -> GearPair:
-    """Return the pair with another pinion flank."""
     return replace(PAIR, pinion=replace(GEAR, modification=modification))
 
 
@@ -48,7 +47,6 @@ def pair(cache: Path) -> CondensedPair:
 
 
 def condensed(table: SteDatabase, cache: Path) -> CondensedPair:
-    """Return the bodies of a table from the cache."""
     found = condensed_pair(PAIR, table, {}, cache)
     assert found is not None
     return found

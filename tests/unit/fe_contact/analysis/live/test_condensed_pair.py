@@ -28,12 +28,10 @@ TORQUES = np.array([0.5, 1.0])
 
 
 def with_flank(pair: GearPair, modification: FlankModification) -> GearPair:
-    """Return the pair with another pinion flank."""
     return replace(pair, pinion=replace(pair.pinion, modification=modification))
 
 
 def table_of(pair: GearPair, cache: Path, model: str = "plane_strain", **wish: object) -> SteDatabase:
-    """Analyze at the positions of a condensed pair."""
     return analyze(
         pair,
         torques=TORQUES,

@@ -154,7 +154,6 @@ RATED = [2700.0]
 
 
 def finite_width(pinion: Gear, tolerance: float) -> bool:
-    """Whether the decided model has it."""
     asked = check_request(
         GearPair(pinion, WHEEL),
         *table_request(normal_forces=RATED, tolerance=AllowedError.from_value(tolerance)),
