@@ -1,7 +1,5 @@
 """What all tests share: bodies condensed once, and the recorder of figures for the page of validation."""
 
-from __future__ import annotations
-
 import gc
 import json
 import os

@@ -1,7 +1,5 @@
 """A service with keys: nothing without one, nothing about one in what it says."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import ExitStack, closing
 from pathlib import Path

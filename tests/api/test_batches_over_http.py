@@ -1,7 +1,5 @@
 """Batches: one request, many jobs, one job for all of them; all are entered or none."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What caches may keep: with keys nothing that is shared, without keys results for ever (RFC 9111)."""
 
-from __future__ import annotations
-
 import shutil
 import socket
 import subprocess

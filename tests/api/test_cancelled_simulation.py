@@ -1,7 +1,5 @@
 """A long simulation as a job: progress, memory that does not grow, and an end when it is cancelled."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator
 from pathlib import Path

@@ -4,8 +4,6 @@ Every study of the registry has a row in tests/fakes/study_rows.py. Each asks a 
 what all tests here say is said of these answers. What a study refuses is in test_refusals_of_studies.py.
 """
 
-from __future__ import annotations
-
 import csv
 import io
 import json

@@ -1,7 +1,5 @@
 """Every operation against every caller that may not: of another project, no scope, expired, revoked."""
 
-from __future__ import annotations
-
 import json
 import tempfile
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """Databases as resources: metadata and file of a real table; force queries: test_queries_over_http.py."""
 
-from __future__ import annotations
-
 import base64
 import hashlib
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """The description of the API: what a generator, a linter and a reader expect of it."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

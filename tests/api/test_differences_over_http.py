@@ -1,7 +1,5 @@
 """Differences of jobs from those before them: of the same caller and process, on each database."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Server-sent events: the status now and at every change, the final one last, a bounded number of streams."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 from collections.abc import Callable, Coroutine

@@ -6,8 +6,6 @@ its row. By day one result of a fifth of the kinds is read, and images are left 
 with all their images.
 """
 
-from __future__ import annotations
-
 import copy
 import json
 import pickle

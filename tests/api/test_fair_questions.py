@@ -1,7 +1,5 @@
 """A key that floods the live workers, beside one that asks a few."""
 
-from __future__ import annotations
-
 import threading
 from collections import Counter
 from collections.abc import Iterator

@@ -5,8 +5,6 @@ is computed, but inputs and their checks are those of the service; at night all 
 inputs.
 """
 
-from __future__ import annotations
-
 import importlib
 import json
 import subprocess

@@ -4,8 +4,6 @@ A few with every change, 10 000 at night. No worker runs what is accepted. Plans
 worker of their own: they are asked at night, of an analyzed pair.
 """
 
-from __future__ import annotations
-
 import copy
 import json
 import random

@@ -1,7 +1,5 @@
 """Connections that drip, or send what never ends, to the server as `loa serve` sets it up."""
 
-from __future__ import annotations
-
 import http.client
 import socket
 import threading

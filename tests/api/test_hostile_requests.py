@@ -1,7 +1,5 @@
 """Requests that are made to hurt: refused in the one shape, at little cost, telling nothing secret."""
 
-from __future__ import annotations
-
 import gzip
 import json
 import re

@@ -1,7 +1,5 @@
 """What runs do to housings over HTTP: the figures of the command line, to the last bit."""
 
-from __future__ import annotations
-
 import json
 import shutil
 from collections.abc import Iterator

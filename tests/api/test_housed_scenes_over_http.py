@@ -1,7 +1,5 @@
 """Scenes on the solid of a housing over HTTP: its file goes along, the worker reduces it, faults return."""
 
-from __future__ import annotations
-
 import copy
 import json
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """The surface of housings before anything is computed: where it stands, its size, and what files try."""
 
-from __future__ import annotations
-
 import base64
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """A submission with an ``Idempotency-Key`` is one job, however often it arrives."""
 
-from __future__ import annotations
-
 import uuid
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any

@@ -1,7 +1,5 @@
 """What the API refuses: a full queue, bodies too long or unusable, paths and methods, in one error shape."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any

@@ -4,8 +4,6 @@ No job is lost, none ends with another result, no process is left, no partial fi
 each database at night, figures in out/kills_*.json; a few on one with every change.
 """
 
-from __future__ import annotations
-
 import json
 import random
 import sys

@@ -1,7 +1,5 @@
 """Titles and tags of jobs: kept, shown everywhere, searched, changed; on each database."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Lists page by page: every entry once, whatever is deleted meanwhile; filters; cases of databases."""
 
-from __future__ import annotations
-
 import hashlib
 import threading
 from concurrent.futures import ThreadPoolExecutor

@@ -1,7 +1,5 @@
 """Live curves and plans over HTTP: those of a whole analysis, and clear refusals."""
 
-from __future__ import annotations
-
 import html
 import json
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """The real processes, end to end over HTTP: a case to its database, a scene to its run."""
 
-from __future__ import annotations
-
 import copy
 import json
 import shutil

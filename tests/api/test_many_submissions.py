@@ -5,8 +5,6 @@ of 6 cases with every change, 200 of 20 at night. And to a server on SQLite by m
 none of which is refused.
 """
 
-from __future__ import annotations
-
 import random
 import re
 import time

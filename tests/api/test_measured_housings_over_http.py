@@ -1,7 +1,5 @@
 """Measured housings over HTTP: the responses go along with the scene, a confined process reads them."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Figures for Prometheus: text that its parser reads, true for all services of one database."""
 
-from __future__ import annotations
-
 import platform
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path

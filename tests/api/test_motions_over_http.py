@@ -1,7 +1,5 @@
 """Motions of a unit over HTTP: modes of a stored analysis along its shafts, of such results alone."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path

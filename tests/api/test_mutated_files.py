@@ -1,7 +1,5 @@
 """Spoiled files of every format: a refusal that names the file or an answer, and nothing left behind."""
 
-from __future__ import annotations
-
 import base64
 import io
 import json

@@ -1,7 +1,5 @@
 """Drafts and canaries: no temporary folder keeps a byte of a request, and no answer a byte of the service."""
 
-from __future__ import annotations
-
 import base64
 import copy
 import io

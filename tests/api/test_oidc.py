@@ -1,7 +1,5 @@
 """Bearer tokens of an issuer: what is let in, what is refused, and when the issuer is asked."""
 
-from __future__ import annotations
-
 import base64
 import hashlib
 import hmac

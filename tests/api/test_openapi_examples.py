@@ -1,7 +1,5 @@
 """Every body of the API has an example: those sent are accepted, those answered are as their schemas say."""
 
-from __future__ import annotations
-
 import json
 import re
 import tempfile

@@ -1,7 +1,5 @@
 """What is implausible is said before a job runs, in its status, and by every form of its result."""
 
-from __future__ import annotations
-
 import io
 import json
 import tomllib

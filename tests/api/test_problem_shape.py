@@ -1,7 +1,5 @@
 """Whatever is wrong with a request, to whichever route: one error shape, its status documented."""
 
-from __future__ import annotations
-
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Force queries: every encoding gives the database's own numbers to the last bit, and refuses the same."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import struct

@@ -3,8 +3,6 @@
 That defaults written out change nothing is in test_contract_of_studies.py.
 """
 
-from __future__ import annotations
-
 import copy
 from typing import Any
 

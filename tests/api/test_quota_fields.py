@@ -1,7 +1,5 @@
 """RateLimit and RateLimit-Policy say what a key may still ask (draft-ietf-httpapi-ratelimit-headers)."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from contextlib import ExitStack, closing

@@ -4,8 +4,6 @@ Beside tests/api/test_contract_of_studies.py. The tables hold what a study refus
 single numbers are in tests/contract/test_every_bound.py. A study without a row here fails.
 """
 
-from __future__ import annotations
-
 import re
 import warnings
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Axes of a table that do not rise are refused by name, value, bound: in Python, by the verb, over HTTP."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A scene as it is edited: its text and its faults are answers, and what its schema says of names."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

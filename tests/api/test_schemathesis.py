@@ -9,8 +9,6 @@ questions and force queries of a table that exists too, with an access key; coun
 in out/generated_bodies.json.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import re

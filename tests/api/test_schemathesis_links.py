@@ -3,8 +3,6 @@
 Schemathesis walks them at random from bodies that start from feasible pairs. Nothing is computed.
 """
 
-from __future__ import annotations
-
 import os
 from collections import Counter
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """Several serving processes on one socket: one that is killed is replaced, jobs go on, all stop together."""
 
-from __future__ import annotations
-
 import http.client
 import json
 import os

@@ -1,7 +1,5 @@
 """Sounds of stored runs over HTTP: those of `loa listen`, on one full scale, of runs alone."""
 
-from __future__ import annotations
-
 import importlib.util
 from collections.abc import Iterator
 from dataclasses import dataclass, replace

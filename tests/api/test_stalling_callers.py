@@ -1,7 +1,5 @@
 """Callers that begin many requests and end none, beside one that has a small question."""
 
-from __future__ import annotations
-
 import select
 import socket
 from collections import Counter

@@ -1,7 +1,5 @@
 """A process stopped (SIGSTOP) while it holds what all writers need: callers are told, readers served."""
 
-from __future__ import annotations
-
 import signal
 import subprocess
 from collections.abc import Iterator

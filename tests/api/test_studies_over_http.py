@@ -1,7 +1,5 @@
 """Studies as jobs beyond their contract: older files, rungs that fail, kept runs, rotors, textbooks."""
 
-from __future__ import annotations
-
 import hashlib
 import importlib
 import math

@@ -1,7 +1,5 @@
 """Traces and the log: from the caller to the stages of the worker; identifiers of callers are kept."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Webhooks: who is called, what is told, in which order, how often; and who is never called."""
 
-from __future__ import annotations
-
 import base64
 import hashlib
 import hmac

@@ -1,7 +1,5 @@
 """Chromium for the browser tests: the system's own, with everything that calls home switched off."""
 
-from __future__ import annotations
-
 import importlib.util
 import os
 import shutil

@@ -1,7 +1,5 @@
 """The result that came with the program is the answer of a service that computes it."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The address is the state: menu, reload, back, forward and another browser show what it names."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Gears as made on the page: stated, measured or drawn, undone, analyzed, with their orders by name."""
 
-from __future__ import annotations
-
 import copy
 import json
 import re

@@ -1,7 +1,5 @@
 """A service with access keys: its page asks once and goes on, its description is tried with the key."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """What the page computes while no slider moves: peak-to-peak over torque, the band of pairs as made."""
 
-from __future__ import annotations
-
 import re
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The page without a mouse, zoomed, and with less motion."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import pytest

@@ -1,7 +1,5 @@
 """Live flanks follow the sliders; two results on one pair of axes, of variants."""
 
-from __future__ import annotations
-
 import csv
 import json
 import re

@@ -1,7 +1,5 @@
 """The complaint in the bar: fields of the design in the units of who hears it, and the order that it is."""
 
-from __future__ import annotations
-
 import math
 import re
 import tomllib

@@ -1,7 +1,5 @@
 """Numbers of the page end with the second digit of their error, as those of terminal and document do."""
 
-from __future__ import annotations
-
 import pytest
 from playwright.sync_api import Page
 

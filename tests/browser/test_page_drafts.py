@@ -1,7 +1,5 @@
 """A pair typed digit by digit, with slips: its faults stand at their fields and are no errors of the page."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import pytest

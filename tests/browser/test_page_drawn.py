@@ -1,7 +1,5 @@
 """What is drawn is what is typed: a pair needs no load, an old picture is gray, a bar below its error too."""
 
-from __future__ import annotations
-
 import pytest
 from page_visit import control, opened, shown
 from playwright.sync_api import Browser, Page, Route, expect

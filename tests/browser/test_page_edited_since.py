@@ -1,7 +1,5 @@
 """A design was edited only where somebody edited it: what the service completes is no edit."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A page without an address shows its first example at once, and weighs little: bytes, listeners, memory."""
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path

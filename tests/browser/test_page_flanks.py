@@ -1,7 +1,5 @@
 """What is painted on flanks of the rolling pair: contact lines where they touch, colors of the pressure."""
 
-from __future__ import annotations
-
 import base64
 import re
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """The jobs of a service as a gallery: ripple and figures of each, no design twice, no table fetched."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

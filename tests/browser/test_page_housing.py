@@ -1,7 +1,5 @@
 """The housing of a scene is drawn as the scene is opened: from its file, where it stands, seen through."""
 
-from __future__ import annotations
-
 import base64
 import re
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """The page of the service in a real browser: from a case to live flanks by keyboard, nothing foreign."""
 
-from __future__ import annotations
-
 import json
 import re
 import tomllib

@@ -1,7 +1,5 @@
 """Jobs on the page: listed, reopened, cancelled; and a service that goes away and comes back."""
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path

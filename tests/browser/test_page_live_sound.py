@@ -1,7 +1,5 @@
 """Live curves as sounds: twice the ripple is twice as loud, and a sweep ends where it should."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Memory of the page: a slider leaves nothing behind, and the browser that measures it keeps nothing."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial

@@ -1,7 +1,5 @@
 """What the three-dimensional picture draws is what it says: bent teeth, bent shafts, motions at a phase."""
 
-from __future__ import annotations
-
 import base64
 import re
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """No two numbers of the page contradict each other or the service, whatever a user does with it."""
 
-from __future__ import annotations
-
 import os
 import random
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """The start of a relief on the page: as on the drawing, by one switch at its field."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """A scene of one's own on the page: written for the pair, edited, opened from a file, computed, refused."""
 
-from __future__ import annotations
-
 import re
 import tomllib
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """A scene in its tables: a cell and the TOML follow each other, faults stand at cells, rows are copied."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Iterator
 from typing import Any

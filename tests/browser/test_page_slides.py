@@ -1,7 +1,5 @@
 """A gear or bearing of the unit in the picture, moved along its shaft by keys and by the pointer."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """One address for what is on screen: six kinds of state, reloaded, gone back to, sent, and in mid-job."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterator
 from contextlib import suppress

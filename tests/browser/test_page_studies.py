@@ -1,7 +1,5 @@
 """Every study of the page in a real browser: run by its button, drawn, saved, accessible; all at night."""
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Four tasks of a new user in the browser alone, action by action as the documentation has them."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A pair typed field after field: the page waits, says what is missing, and rewrites nothing."""
 
-from __future__ import annotations
-
 import re
 import tomllib
 from collections.abc import Iterator

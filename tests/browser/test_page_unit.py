@@ -1,7 +1,5 @@
 """A gear unit is a subject of the page: its tabs, its dock, its answer in the bar, results at their parts."""
 
-from __future__ import annotations
-
 import math
 import os
 import random

@@ -1,7 +1,5 @@
 """Variants of a design on the page: side by side, each a copy, all in one address."""
 
-from __future__ import annotations
-
 import base64
 import json
 import math

@@ -1,7 +1,5 @@
 """The pair in three dimensions: drawn, turning, with live pressure, asleep; a drawing without WebGL."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Reports on paper, page by page: what a reader sees once, whole, and with its head."""
 
-from __future__ import annotations
-
 import json
 import re
 import warnings

@@ -1,7 +1,5 @@
 """The report in a real browser: every plot drawn, nothing fetched, nothing complained about."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass, field
 from pathlib import Path

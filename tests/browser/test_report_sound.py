@@ -1,7 +1,5 @@
 """Sounds of the page and of reports: the cursor is where they are, a click seeks, two play in turn."""
 
-from __future__ import annotations
-
 import base64
 from collections.abc import Iterator
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """A service without results, which no test of a file gives a job; its fakes are importable here too."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import pytest

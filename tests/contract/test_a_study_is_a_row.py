@@ -1,7 +1,5 @@
 """A study is its folder, its presentation and a row: verb, process, client's method and page follow."""
 
-from __future__ import annotations
-
 import json
 import shutil
 import subprocess

@@ -1,7 +1,5 @@
 """Wrong cases and scenes that cannot move: one clear error at every entry point, and nothing runs on."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -1,7 +1,5 @@
 """Documentation: what it shows in Python can be called so, and its pages are readable as text too."""
 
-from __future__ import annotations
-
 import ast
 import inspect
 import re

@@ -1,7 +1,5 @@
 """Every cost of a receipt is CPU time, children included; elapsed time stands under `wall_seconds`."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 import time

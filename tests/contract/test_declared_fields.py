@@ -1,7 +1,5 @@
 """A declared figure is at every entry point: case, question, design variable, scatter, names in messages."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import fields, replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Effects are named once; what is neglected or off is said wherever there is a place for it."""
 
-from __future__ import annotations
-
 import ast
 import inspect
 import re

@@ -1,7 +1,5 @@
 """Every bound of every number of cases and scenes, at every entry point: field, value, a bound that holds."""
 
-from __future__ import annotations
-
 import copy
 import json
 import math

@@ -1,7 +1,5 @@
 """Every module imports, and the library computes, where the modules that POSIX alone has are missing."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path

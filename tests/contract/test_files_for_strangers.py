@@ -1,7 +1,5 @@
 """What somebody who finds the project looks for: how to cite, report, change and decide."""
 
-from __future__ import annotations
-
 import json
 import re
 import tomllib

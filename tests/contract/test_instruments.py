@@ -1,7 +1,5 @@
 """An instrument can be deleted: only rows name it from outside, and the tree without it works."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """The keywords of `analyze` are the members of its axes, options and run, with their types."""
 
-from __future__ import annotations
-
 from dataclasses import fields
 from typing import Any, get_type_hints
 

@@ -4,8 +4,6 @@ A text is not followed by a rename as an import is, nor seen by the checker of t
 answers 500.
 """
 
-from __future__ import annotations
-
 import ast
 import re
 from collections.abc import Iterator

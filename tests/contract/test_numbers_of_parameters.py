@@ -1,7 +1,5 @@
 """Callers pass few parameters, and no module imports itself through others."""
 
-from __future__ import annotations
-
 import ast
 import re
 from collections.abc import Collection, Iterator

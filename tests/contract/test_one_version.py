@@ -1,7 +1,5 @@
 """One version, after the newest release while changes wait for the next; manifests: tests/unit/scripts."""
 
-from __future__ import annotations
-
 import re
 import tomllib
 from importlib.metadata import version

@@ -1,7 +1,5 @@
 """Opening a gear unit does not load what computes, and computing not what searches."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path

@@ -5,8 +5,6 @@ the callee is entered although it waits further up the stack: whoever reads the 
 dataclasses generate does not count: there is nothing to read.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 from collections.abc import Callable

@@ -1,8 +1,6 @@
 """The size of an effect is one number: in the plan, on the command line, in the report, on the page, in an
 ablation, in the receipt of a run."""
 
-from __future__ import annotations
-
 import json
 import re
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The structure of the house: no import points up, the picture is drawn from it, and no file is long."""
 
-from __future__ import annotations
-
 import ast
 from collections import Counter
 from importlib import import_module

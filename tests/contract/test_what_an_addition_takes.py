@@ -1,7 +1,5 @@
 """An effect of the dynamics is two product files, a bearing law is three: everything else follows."""
 
-from __future__ import annotations
-
 import json
 import shutil
 import subprocess

@@ -1,7 +1,5 @@
 """What mypy makes of the rows of the registry: `scripts/check` runs it on this file, nothing calls it."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import assert_type
 

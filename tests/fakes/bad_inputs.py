@@ -1,7 +1,5 @@
 """Inputs that cannot be computed, with the field at fault: in SI for Python, as a case elsewhere."""
 
-from __future__ import annotations
-
 import copy
 import dataclasses
 import math

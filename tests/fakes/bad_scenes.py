@@ -1,7 +1,5 @@
 """Scenes that cannot move, with the field at fault: in SI for Python, as a scene file elsewhere."""
 
-from __future__ import annotations
-
 import copy
 import tomllib
 from collections.abc import Callable

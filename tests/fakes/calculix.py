@@ -1,7 +1,5 @@
 """The transmission error of a loaded pair at one position by CalculiX, on the mesh of the condensed peer."""
 
-from __future__ import annotations
-
 import re
 import shutil
 import subprocess

@@ -1,7 +1,5 @@
 """Gears of few teeth, and sectors of them that are meshed coarsely."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any

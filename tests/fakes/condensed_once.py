@@ -5,8 +5,6 @@ tests share the results, each still said to be computed. The laws of condensing 
 tests/unit/fe_contact/compliance, whose conftest has a `condensed_once` that shares nothing.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterator
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """A Dask scheduler and workers in processes of their own, as an operator starts them."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

@@ -4,8 +4,6 @@ Which fifth follows from the names of the cases and from the version of the proj
 run and every worker, the next version draws another, and five versions in a row draw every case.
 """
 
-from __future__ import annotations
-
 import re
 import zlib
 from collections.abc import Callable, Iterable, Sequence

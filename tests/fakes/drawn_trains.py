@@ -1,7 +1,5 @@
 """Trains of gears drawn at random, and where their teeth touch: involutes are turned until they meet."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field, replace
 

@@ -5,8 +5,6 @@ rest, a deflection that grows with force^0.96 (20/20 pair in full contact: 0.963
 400). `spring_table` is F = k (d - e(x)).
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 

@@ -4,8 +4,6 @@ Every service of a test has a database of its own. The laws of migrations are in
 tests/unit/service/test_schema_upgrades.py, which overrides the fixture.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import pytest

@@ -1,7 +1,5 @@
 """A REXS document opened: its scene as dynamics takes it, its account, its deflection on straight tables."""
 
-from __future__ import annotations
-
 import tomllib
 from typing import Any
 

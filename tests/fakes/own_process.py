@@ -1,7 +1,5 @@
 """Programs in processes of their own, and what the system knows of these."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

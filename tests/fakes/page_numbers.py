@@ -6,8 +6,6 @@ beyond its error), "arithmetic" (a change or a level that is not that of the num
 what the service answers) or "bare" (a number without a subject).
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections import defaultdict

@@ -1,7 +1,5 @@
 """What the tests of the page share: a service, its small case, and a page that is watched."""
 
-from __future__ import annotations
-
 import copy
 import json
 import os

@@ -6,8 +6,6 @@ inertias over radius squared, stiffnesses and pressure angle. Radii drop out of 
 follow from tooth numbers that can be assembled.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """A PostgreSQL server of the tests' own: made from what is installed, on a socket of its own."""
 
-from __future__ import annotations
-
 import os
 import pwd
 import shutil

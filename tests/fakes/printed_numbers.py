@@ -5,8 +5,6 @@ error is that of its second digit. What a program answers as JSON beside the tex
 has: the value under a key and the error under the same key with "error" in it.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import re

@@ -1,7 +1,5 @@
 """Fixtures around every test of the service, for the conftest of its folder."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator
 from pathlib import Path

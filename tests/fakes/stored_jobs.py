@@ -1,7 +1,5 @@
 """A network in memory that holds results of all cases, for the client: jobs end after a few looks."""
 
-from __future__ import annotations
-
 import base64
 import hashlib
 import json

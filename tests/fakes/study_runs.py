@@ -1,7 +1,5 @@
 """A question to a study, asked in Python, by the verb and over HTTP, each once."""
 
-from __future__ import annotations
-
 import json
 import pickle
 import re

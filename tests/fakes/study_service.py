@@ -1,7 +1,5 @@
 """A running service that holds a table, and what the tests of its studies of cases and scenes share."""
 
-from __future__ import annotations
-
 import base64
 import hashlib
 import json

@@ -9,8 +9,6 @@ A run without `--all` renews what it runs: slow tests that it leaves out stay on
 their file rested on when they passed.
 """
 
-from __future__ import annotations
-
 import csv
 import time
 from collections.abc import Iterable, Iterator

@@ -10,8 +10,6 @@ and what it rested on when it passed; the nightly run renews it. Files that are 
 whole, and with `--all` everything does.
 """
 
-from __future__ import annotations
-
 import ast
 import csv
 import hashlib

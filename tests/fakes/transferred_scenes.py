@@ -1,7 +1,5 @@
 """A helical two-stage unit of elastic shafts on rolling bearings in a sounding housing, and other flanks."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 

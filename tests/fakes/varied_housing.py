@@ -3,8 +3,6 @@
 An eccentric tube, so that all its modes couple to its four seats, which stand one behind the other.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from types import SimpleNamespace
 

@@ -6,8 +6,6 @@ does by itself is in tests/unit/service/worker/test_warm_process.py and where se
 own.
 """
 
-from __future__ import annotations
-
 import os
 import threading
 from collections.abc import Iterator

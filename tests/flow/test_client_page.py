@@ -1,7 +1,5 @@
 """What the pages of the Python client show runs as shown; the paper's flow runs again without its service."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 import re

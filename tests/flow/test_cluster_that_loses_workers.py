@@ -1,7 +1,5 @@
 """Tables and studies on a cluster whose processes are killed in mid-run: complete, equal to the last bit."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

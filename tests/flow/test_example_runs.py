@@ -1,7 +1,5 @@
 """Examples run: scenes whose energy balances close, and a ring gear from its case to its report."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A unit from its REXS file, or a scene, to its report: every verb takes the folder, none a file in it."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

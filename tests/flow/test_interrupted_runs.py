@@ -1,7 +1,5 @@
 """A run through the whole command line: Ctrl-C in the middle and --resume, against one that never stopped."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal

@@ -1,7 +1,5 @@
 """The main job runs from case to report, says what it found, and leaves nothing running."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -1,7 +1,5 @@
 """README, tutorials and how-to guides run as they stand, show what comes out, and answer newcomers."""
 
-from __future__ import annotations
-
 import os
 import re
 import shutil

@@ -1,7 +1,5 @@
 """The notebooks run as they are written, each in less than a minute of CPU time, and hold no outputs."""
 
-from __future__ import annotations
-
 import ast
 import json
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """What the page on the service shows with curl works as shown, against a service that runs."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -4,8 +4,6 @@ The questions are the rows of the contract of studies. A study whose row sends n
 with the reason.
 """
 
-from __future__ import annotations
-
 import json
 import warnings
 from collections.abc import Callable, Iterator, Sequence

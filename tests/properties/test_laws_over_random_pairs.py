@@ -4,8 +4,6 @@ Bodies are springs in closed form, so that an example takes milliseconds. What f
 same laws in tests/stability.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Laws of geometry over random feasible gears and pairs, and over ring gears and the pinions inside them."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Random feasible gears and ring gears have good meshes and tooth sectors, or are refused by the geometry."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A value that an error suggests is accepted when it is typed as printed; above and below it, by a digit."""
 
-from __future__ import annotations
-
 import copy
 import re
 from collections import Counter

@@ -4,8 +4,6 @@ True touching points break no law; those that end where the flanks are not are d
 closed form.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

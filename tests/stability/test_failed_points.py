@@ -1,7 +1,5 @@
 """One damaged position: its points are marked and say why, the rest stands as if nothing were."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Every hard scene passes, by laws of physics; `loa hardcases` runs the same."""
 
-from __future__ import annotations
-
 import pytest
 
 from lineofaction.hardcases import HARD_SCENES, HardScene

@@ -1,7 +1,5 @@
 """Forty odd inputs that can be computed, are: a sound table each. Infeasible ones are in tests/contract."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 from typing import Any

@@ -1,7 +1,5 @@
 """Largest pressure of plane flank results against full contact that resolves the strip."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

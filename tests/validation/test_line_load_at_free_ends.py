@@ -1,7 +1,5 @@
 """Largest line load and K_Hbeta of misaligned pairs against full contact that resolves the free ends."""
 
-from __future__ import annotations
-
 import pytest
 
 from benchmarks.full_contact_line_load import LineLoadCase, compared, line_load_cases

@@ -1,7 +1,5 @@
 """The scene of Palermo et al. (ISMA 2010) on the finite-element table: both techniques, force, damping."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Gear pairs typed as they are printed are computed; what rounding makes is told from what jams."""
 
-from __future__ import annotations
-
 import csv
 import math
 from dataclasses import replace

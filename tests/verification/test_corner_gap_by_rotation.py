@@ -5,8 +5,6 @@ wheel's tooth points down from a center on +y; a ring's stands on +y of a center
 that its loaded flank is the left one here.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any

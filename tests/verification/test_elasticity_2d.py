@@ -1,7 +1,5 @@
 """Plane elasticity against exact solutions: patch test, and a clamped ring (level and rate)."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

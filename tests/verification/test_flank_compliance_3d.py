@@ -1,7 +1,5 @@
 """Three-dimensional flank compliance against plane strain, under refinement, and over plane strain by 3 %."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise

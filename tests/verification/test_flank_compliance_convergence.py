@@ -1,7 +1,5 @@
 """Self compliance of a contact patch converges under refinement, and is smooth in where the patch lies."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """The closed form of a free end against finite elements of a quarter space, and its laws."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The gear case that the two-stage example writes: bores where the bearings are, its mass, its first mode."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path

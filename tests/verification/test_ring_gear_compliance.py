@@ -1,7 +1,5 @@
 """Compliance of ring gears: annulus in torsion, 2-D against 3-D, refinement, thickness of the rim."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The finite elements of a tip corner yield as the wedge that the local law takes it for."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """A gearbox from its REXS file to the sound of its case before and after `optimize`, by the verbs."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys

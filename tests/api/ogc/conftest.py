@@ -5,8 +5,6 @@ is offered: asynchronous execution of processes with one output. The marker `req
 identifiers that it states.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import pytest

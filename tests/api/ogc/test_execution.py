@@ -1,7 +1,5 @@
 """Executions and their inputs; what is not offered is refused by name."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

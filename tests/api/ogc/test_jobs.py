@@ -1,7 +1,5 @@
 """Jobs: their status, the list and its filters, dismissal."""
 
-from __future__ import annotations
-
 import pytest
 from fastapi.testclient import TestClient
 from ogc_jobs import EXCEPTIONS, executed, link

@@ -1,7 +1,5 @@
 """The list of processes and their descriptions, the landing page and the definition of the API."""
 
-from __future__ import annotations
-
 import pytest
 from fastapi.testclient import TestClient
 from ogc_jobs import EXCEPTIONS, REL, link

@@ -1,7 +1,5 @@
 """Results of jobs, in the form that the execution or the request asks for."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

@@ -1,7 +1,5 @@
 """The benchmark's table says what was measured and whether it meets its target."""
 
-from __future__ import annotations
-
 import ast
 import re
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The cluster that a benchmark starts: small, with the same results, and gone after a failure."""
 
-from __future__ import annotations
-
 import subprocess
 from types import SimpleNamespace
 from typing import Any

@@ -1,7 +1,5 @@
 """Pairs drawn at random are the same every time, of the kinds that are promised, and none is drawn twice."""
 
-from __future__ import annotations
-
 from benchmarks.drawn_pairs import assessed_pairs, drawn_pairs, fresh_pairs, in_plane
 from fe_contact.analysis.request.request_check import check_request
 

@@ -1,7 +1,5 @@
 """The study of influence estimates of dynamic effects counts what it states."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

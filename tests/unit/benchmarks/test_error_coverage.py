@@ -1,7 +1,5 @@
 """The study of stated errors counts what it says it counts."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

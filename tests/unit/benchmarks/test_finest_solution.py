@@ -1,7 +1,5 @@
 """The finest solution has the quantities of its curve, also where a position failed."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The study of influence estimates counts what it says it counts."""
 
-from __future__ import annotations
-
 import pytest
 from analysis_requests import table_request
 

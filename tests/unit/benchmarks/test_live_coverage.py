@@ -1,7 +1,5 @@
 """The study of live answers asks what it says it asks."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from benchmarks import live_coverage

@@ -1,7 +1,5 @@
 """The study of two tolerances counts pairs for which the looser is dearer, and predictions that are off."""
 
-from __future__ import annotations
-
 from benchmarks.looser_tolerance import LOOSE, TIGHT, ToleratedRun, counts
 
 CHEAPER = [ToleratedRun("spur", LOOSE, 2.0, 1.5, 1.9), ToleratedRun("spur", TIGHT, 4.0, 2.6, 3.9)]

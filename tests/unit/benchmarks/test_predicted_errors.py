@@ -1,7 +1,5 @@
 """The study of predictions compares what it says it compares."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Programs that benchmarks keep as texts, for processes of their own, import what there is."""
 
-from __future__ import annotations
-
 import ast
 import re
 from collections.abc import Iterator

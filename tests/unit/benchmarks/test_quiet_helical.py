@@ -1,7 +1,5 @@
 """The study of quiet helical pairs assesses in um what has no per cent."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """The study of the tolerance counts what it says it counts."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

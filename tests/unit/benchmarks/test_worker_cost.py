@@ -1,7 +1,5 @@
 """The jobs whose cost is measured are such as the service takes, one of every process."""
 
-from __future__ import annotations
-
 from contextlib import closing
 from pathlib import Path
 

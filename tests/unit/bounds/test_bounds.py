@@ -1,7 +1,5 @@
 """Bounds and quantities: written for their reader, and accepted when they are typed as they are written."""
 
-from __future__ import annotations
-
 import math
 import pickle
 import re

@@ -1,7 +1,5 @@
 """Records in a dozen lines."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, make_dataclass
 from enum import Enum
 from typing import Any

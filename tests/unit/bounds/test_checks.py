@@ -1,7 +1,5 @@
 """Checks that both libraries offer: names among others, findings by a list of limits."""
 
-from __future__ import annotations
-
 import pytest
 
 from bounds import Check, Checklist, Checks, RefusedValue

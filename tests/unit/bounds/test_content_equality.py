@@ -1,7 +1,5 @@
 """Equality of records by content: what their files give back is equal, any other number is not."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Numbers for people: as plain as can be, and exponents of engineers."""
 
-from __future__ import annotations
-
 import math
 import re
 from pathlib import Path

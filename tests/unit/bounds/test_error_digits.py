@@ -1,7 +1,5 @@
 """A number ends with the second digit of its error, and reads back within half of its last place."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

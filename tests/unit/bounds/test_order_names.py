@@ -1,7 +1,5 @@
 """Orders have the names of what makes them."""
 
-from __future__ import annotations
-
 import pytest
 
 from bounds import order_name, order_words

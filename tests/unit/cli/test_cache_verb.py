@@ -1,7 +1,5 @@
 """``loa cache``: what is kept, what goes first, and that reading counts as use."""
 
-from __future__ import annotations
-
 import json
 import os
 import time

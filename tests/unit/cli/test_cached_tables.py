@@ -1,7 +1,5 @@
 """The table of a case is computed once: by this program, as long as its file is whole."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

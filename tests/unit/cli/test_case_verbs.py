@@ -1,7 +1,5 @@
 """What the verbs of studies of cases find, beyond the contract of all studies: effects, roots, tolerances."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

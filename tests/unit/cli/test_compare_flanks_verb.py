@@ -1,7 +1,5 @@
 """``loa compare BEFORE AFTER --scene``: the options reach the study of a change of flanks."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

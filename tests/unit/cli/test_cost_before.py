@@ -1,7 +1,5 @@
 """What a study costs is said before it begins, and by the status of a folder; it grows with the work."""
 
-from __future__ import annotations
-
 import json
 import re
 import tomllib

@@ -1,7 +1,5 @@
 """The summary of `loa analyze` says what it cost."""
 
-from __future__ import annotations
-
 from lineofaction.cli.analyze import _cost
 
 

@@ -1,7 +1,5 @@
 """loa deflect: load cases, what it prints and writes, its record, the inputs of an optimization, a rotor."""
 
-from __future__ import annotations
-
 import json
 import tomllib
 from collections.abc import Callable

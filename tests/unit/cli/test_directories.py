@@ -1,7 +1,5 @@
 """Where verbs keep what can be computed again: one place, which the environment names."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path

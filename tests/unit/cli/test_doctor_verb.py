@@ -1,7 +1,5 @@
 """What `loa doctor` says of an installation, and which verbs it says work."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 from typing import Any

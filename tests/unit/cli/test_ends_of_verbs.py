@@ -1,7 +1,5 @@
 """Every verb begins with its result, main figures with their errors, and ends with the files."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """``loa export`` of an FMU: what it writes and prints, and how it refuses."""
 
-from __future__ import annotations
-
 import re
 import zipfile
 from pathlib import Path

@@ -1,7 +1,5 @@
 """``loa export --for``: mesh stiffness for rotor and torsion libraries, and the libraries that take it."""
 
-from __future__ import annotations
-
 import math
 import runpy
 from pathlib import Path

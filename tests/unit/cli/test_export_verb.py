@@ -1,7 +1,5 @@
 """``loa export``: what it writes and prints, and how it refuses."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import meshlane

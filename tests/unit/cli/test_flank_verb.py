@@ -1,7 +1,5 @@
 """``loa flank`` and ``loa report --flank``: what they write and print, and how they refuse."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """``loa geometry``: the data sheet against published and hand-worked values, and the drawing."""
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

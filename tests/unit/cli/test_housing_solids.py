@@ -1,7 +1,5 @@
 """Housings of a scene by the file of their solid: reduced as in Python, once, refused by name; their cost."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

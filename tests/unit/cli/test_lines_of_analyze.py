@@ -1,7 +1,5 @@
 """Lines for people: the ledger of effects, what is known early, and whether the tolerance is met."""
 
-from __future__ import annotations
-
 import json
 import re
 from dataclasses import replace

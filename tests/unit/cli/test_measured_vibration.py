@@ -1,7 +1,5 @@
 """``loa vibration`` of a measured housing: a rigid mass by hand, what is absent and why, refusals."""
 
-from __future__ import annotations
-
 import csv
 import math
 from pathlib import Path

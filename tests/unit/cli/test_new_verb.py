@@ -1,7 +1,5 @@
 """``loa new``: what is written can be run, keeps its rules, and says no to what does not exist."""
 
-from __future__ import annotations
-
 import math
 import tomllib
 from pathlib import Path

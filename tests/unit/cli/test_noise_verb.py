@@ -1,7 +1,5 @@
 """``loa noise``: what it prints and writes, its levels, and how it refuses."""
 
-from __future__ import annotations
-
 import re
 import sys
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """``loa optimize``: tables, files of every kind, and a design that the case file takes as it is."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager

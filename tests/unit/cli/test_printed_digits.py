@@ -3,8 +3,6 @@
 Day: one case in the plane. Night: twelve kinds of cases, all verbs that print results.
 """
 
-from __future__ import annotations
-
 import json
 import shutil
 import tomllib

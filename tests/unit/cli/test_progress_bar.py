@@ -1,7 +1,5 @@
 """Progress of the verbs on a terminal: what a stage says of itself, on the stage's own bar."""
 
-from __future__ import annotations
-
 import io
 import sys
 

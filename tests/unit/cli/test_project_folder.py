@@ -1,7 +1,5 @@
 """A folder in place of a file: verbs find what they take in it and leave their results there."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

@@ -1,7 +1,5 @@
 """The verbs of a service's jobs: what a person reads, and what a program does."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

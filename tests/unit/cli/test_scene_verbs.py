@@ -1,7 +1,5 @@
 """What the verbs of studies of scenes find, beyond the contract of all studies: modes, response, steady."""
 
-from __future__ import annotations
-
 import json
 import re
 from dataclasses import replace

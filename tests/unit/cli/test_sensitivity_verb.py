@@ -1,7 +1,5 @@
 """``loa sensitivity``: what it writes and prints, and how it refuses."""
 
-from __future__ import annotations
-
 import csv
 import json
 from dataclasses import replace

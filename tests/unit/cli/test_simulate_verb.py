@@ -1,7 +1,5 @@
 """``loa simulate``: Ctrl-C keeps what was computed, ``--resume`` goes on from there."""
 
-from __future__ import annotations
-
 import signal
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What a curve says stands in one look: figures with errors, harmonics in decibels, load sharing."""
 
-from __future__ import annotations
-
 import math
 import re
 from pathlib import Path

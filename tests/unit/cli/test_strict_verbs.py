@@ -1,7 +1,5 @@
 """What is implausible comes before the numbers, into JSON and files, and decides the exit code if asked."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """loa study: many scenes from two files, equal to single runs, taken up after a kill; of other flanks too."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal

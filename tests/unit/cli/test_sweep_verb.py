@@ -1,7 +1,5 @@
 """``loa sweep``: names as in the case file or short, the same numbers in every form, three lines."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """At 80 and at 120 columns a verb answers in its first lines, and nothing is cut."""
 
-from __future__ import annotations
-
 import contextlib
 import io
 import os

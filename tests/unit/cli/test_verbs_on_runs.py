@@ -1,7 +1,5 @@
 """``loa noise --run`` and ``loa vibration --run``: bearing forces of a run, not of the linear response."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """``loa vibration``: what it prints and writes, and how it refuses."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Iterator

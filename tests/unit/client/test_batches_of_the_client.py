@@ -1,7 +1,5 @@
 """Batches from both clients, against the service itself with fake work."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any

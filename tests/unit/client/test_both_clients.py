@@ -1,7 +1,5 @@
 """What the blocking and the awaited client share: names, answers, order, bounds, retries."""
 
-from __future__ import annotations
-
 import inspect
 import json
 import time

@@ -1,7 +1,5 @@
 """The client against a real app in the same process, and against a network that fails."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """The client on a network that fails: what is asked again, what is told, and how a job is waited for."""
 
-from __future__ import annotations
-
 import base64
 import hashlib
 import re

@@ -1,7 +1,5 @@
 """Figures of results as the client has them: typed by kind, whole, and read by name as before."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any, get_type_hints

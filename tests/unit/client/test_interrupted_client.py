@@ -1,7 +1,5 @@
 """Services that go away in the middle, and callers that do: no job is lost, none is left unsaid."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import time

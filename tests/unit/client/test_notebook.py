@@ -1,7 +1,5 @@
 """What a notebook shows of a result, and of jobs that are waited for."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 from xml.etree import ElementTree as Xml

@@ -1,7 +1,5 @@
 """An address of the page is the case and the result that it shows; a hostile one is an error."""
 
-from __future__ import annotations
-
 import base64
 import json
 import zlib

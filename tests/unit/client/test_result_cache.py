@@ -1,7 +1,5 @@
 """The client's cache: what it gives is what was kept, whoever else writes, whatever happened to the disk."""
 
-from __future__ import annotations
-
 import hashlib
 import threading
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Results that are kept by the identity of what they are made from."""
 
-from __future__ import annotations
-
 import gc
 import weakref
 from dataclasses import dataclass

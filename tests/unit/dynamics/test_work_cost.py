@@ -1,7 +1,5 @@
 """Predicted and measured cost: speed of the host, log of earlier work, growth of memory, announcement."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Plausibility in Python: warned of once in SI units, kept with the result; numbers stay as they are."""
 
-from __future__ import annotations
-
 import warnings
 from pathlib import Path
 

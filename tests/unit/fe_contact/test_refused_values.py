@@ -4,8 +4,6 @@ Far ends of bounds are walked in tests/contract/test_every_bound_in_python.py, t
 test_bad_input.py beside it.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """From a case to the library: every unit, field and grid of a flank, and errors in the user's words."""
 
-from __future__ import annotations
-
 import json
 import math
 import random

@@ -1,7 +1,5 @@
 """What a change of flanks brings: laws of levels over one sample of tolerances."""
 
-from __future__ import annotations
-
 import copy
 from dataclasses import replace
 from functools import cache

@@ -1,7 +1,5 @@
 """Better flanks lower what is complained of, on the grid of the drawing, in the form typed."""
 
-from __future__ import annotations
-
 import tomllib
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Complaints: the mesh and the harmonic that teeth, ratios and speeds give by hand, and bad questions."""
 
-from __future__ import annotations
-
 import json
 import math
 import tomllib

@@ -1,7 +1,5 @@
 """A coefficient of friction on a mesh in closed form acts."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Components of a REXS file: the account of an import, one line for every value, and their frames."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Bearings and housing of a REXS file: sides, seats, clearances, stiffnesses, and why some are bushings."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType

@@ -1,7 +1,5 @@
 """The pages on REXS files list what the import reads, no more and no less of each component."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Which flank of a REXS gear carries, where its face coordinates lie, and what its modifications become."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Mapping

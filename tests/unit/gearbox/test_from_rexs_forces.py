@@ -1,7 +1,5 @@
 """External loads of a REXS file as forces of a scene and its load cases: axes, signs, places, reactions."""
 
-from __future__ import annotations
-
 import tomllib
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A REXS file as a scene: laws of place, sense, load and stiffness."""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 from typing import Any

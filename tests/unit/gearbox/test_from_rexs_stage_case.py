@@ -1,7 +1,5 @@
 """Cases of the cylindrical stages of a REXS model: macro geometry, driver and load levels."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Gears drawn within a class are within it, and service and client state what `loa measured` does."""
 
-from __future__ import annotations
-
 import pickle
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Flanks that are heard least in a scene: laws of levels, their derivatives and the search."""
 
-from __future__ import annotations
-
 import copy
 from collections import Counter
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Ctrl-C in Python keeps what is done: the draft of a table, the run so far, finished tasks."""
 
-from __future__ import annotations
-
 import signal
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A live answer of teeth that differ is what its schema declares, with the loads of each tooth."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from pathlib import Path

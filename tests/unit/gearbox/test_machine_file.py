@@ -1,7 +1,5 @@
 """Curve files of measuring machines say the same of a gear as its sheet; every line has its fate."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

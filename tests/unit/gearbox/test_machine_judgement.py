@@ -1,7 +1,5 @@
 """Files of measuring machines judge how they are read: by printed values, or by their tips."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Callable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Sheets of an inspection: every line has its fate, and what a case holds comes back from its sheet."""
 
-from __future__ import annotations
-
 import json
 import math
 import tomllib

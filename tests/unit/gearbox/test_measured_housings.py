@@ -1,7 +1,5 @@
 """Frequency responses of a universal file: the modal answer back, senses and units by hand, attacks."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any

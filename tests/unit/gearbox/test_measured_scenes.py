@@ -1,7 +1,5 @@
 """Measured housings of scene files: their fields, their files, and what they leave as it is."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Callable
 from pathlib import Path

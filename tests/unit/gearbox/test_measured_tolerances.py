@@ -1,7 +1,5 @@
 """Tolerance studies of measured gears: a population equal to a class gives the pairs of that class."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Misalignments of a table by a class: the axis of the request, its refusals, the sentence about it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

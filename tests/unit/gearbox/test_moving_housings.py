@@ -1,7 +1,5 @@
 """The surface of a housing by the freedoms of a system: what it does in a mode is what its reduction says."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from housed_tubes import OFF, mount_of, subject_of, tube_on

@@ -1,7 +1,5 @@
 """Texts with the files that they name: read as beside one another on disk, and nothing else is read."""
 
-from __future__ import annotations
-
 import base64
 import tomllib
 import zlib

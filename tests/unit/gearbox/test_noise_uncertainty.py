@@ -1,7 +1,5 @@
 """Bands and sensitivities of a scene with a solid housing: guesses, flanks, and what is left out."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from pathlib import Path

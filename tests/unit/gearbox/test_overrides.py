@@ -1,7 +1,5 @@
 """``--set`` and its shorthands: a value on the command line does what it does in the file."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Nonsense cases and scenes are refused or warned of by name; ordinary ones pass without a word."""
 
-from __future__ import annotations
-
 import math
 import re
 import tomllib

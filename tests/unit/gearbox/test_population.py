@@ -1,7 +1,5 @@
 """Populations of measured gears: a known one is read back, damaged files fall out one by one."""
 
-from __future__ import annotations
-
 import math
 import random
 from pathlib import Path

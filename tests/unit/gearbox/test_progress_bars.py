@@ -1,7 +1,5 @@
 """Progress in notebooks and scripts: a bar where somebody sees it, else nothing."""
 
-from __future__ import annotations
-
 import io
 import sys
 from collections.abc import Iterator

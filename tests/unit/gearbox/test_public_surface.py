@@ -1,7 +1,5 @@
 """`import lineofaction as loa`: its names, what they load, and that they compute without a server."""
 
-from __future__ import annotations
-
 import ast
 import json
 import re

@@ -1,7 +1,5 @@
 """REXS files: every form gives the model back, upgrades rename and keep; the same bytes at every time."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

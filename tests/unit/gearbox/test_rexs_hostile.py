@@ -1,7 +1,5 @@
 """Damaged and hostile REXS files: opened, or one clear error in bounded time, and nothing else is read."""
 
-from __future__ import annotations
-
 import json
 import math
 import random

@@ -1,7 +1,5 @@
 """Values of REXS in SI: mixed units read the same, other quantities and doubt are refused by name."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

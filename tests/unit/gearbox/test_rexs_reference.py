@@ -1,7 +1,5 @@
 """Tables, example files and written files against what REXS publishes, and cases of the examples."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

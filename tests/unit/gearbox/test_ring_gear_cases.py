@@ -1,7 +1,5 @@
 """Cases: a ring gear as wheel, modifications over a part of the flank, and the light check of loads alone."""
 
-from __future__ import annotations
-
 import copy
 import math
 import tomllib

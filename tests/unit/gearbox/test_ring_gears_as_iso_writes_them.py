@@ -1,7 +1,5 @@
 """Ring gears with the negative teeth, diameters and center distance of ISO 21771-1."""
 
-from __future__ import annotations
-
 import tomllib
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Bearings of a scene file: matrices, preload and housings, from the file or beside it."""
 
-from __future__ import annotations
-
 import json
 import math
 import tomllib

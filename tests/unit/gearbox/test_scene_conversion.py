@@ -1,7 +1,5 @@
 """From a scene file and its tables to the scene of dynamics, planetary sets too; faults by name."""
 
-from __future__ import annotations
-
 import math
 import tomllib
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Shafts of a scene file, torques at their places, and meshes in closed form; what does not fit."""
 
-from __future__ import annotations
-
 import math
 import tomllib
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Temperatures of a scene file: what they make, and attacks on their fields."""
 
-from __future__ import annotations
-
 import copy
 import math
 import tomllib

@@ -1,7 +1,5 @@
 """Sound pressure beside sound power: by the same transfer functions, at the place of the complaint."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

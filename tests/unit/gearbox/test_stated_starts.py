@@ -1,7 +1,5 @@
 """Starts of reliefs as on a drawing: diameter, roll length and roll angle name one point of the flank."""
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

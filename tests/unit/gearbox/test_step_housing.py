@@ -1,7 +1,5 @@
 """A housing from a STEP file: where it stands is found by its bores; seats, foot, and what is refused."""
 
-from __future__ import annotations
-
 import json
 import tomllib
 from collections.abc import Sequence

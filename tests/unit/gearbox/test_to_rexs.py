@@ -1,7 +1,5 @@
 """Results in REXS documents: they read back in the axes of the file, and leave the unit as it was."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Phases of trains of scene files: thickness from the tables, stated angles, contradictions by field."""
 
-from __future__ import annotations
-
 import copy
 import math
 from typing import Any

@@ -1,7 +1,5 @@
 """The types of a study, of its function and of the client's process follow from its row of the registry."""
 
-from __future__ import annotations
-
 from importlib import import_module
 from inspect import signature
 

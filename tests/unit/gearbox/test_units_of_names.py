@@ -1,7 +1,5 @@
 """The ending of a name states its unit, which one table knows."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import pytest

@@ -1,7 +1,5 @@
 """Scenes of a study: each is the scene of its own file to the last bit, and shares what its values leave."""
 
-from __future__ import annotations
-
 import json
 import math
 import sys

@@ -1,7 +1,5 @@
 """One scene that breaks does not end the suite, nothing passes by having run; which ends are good."""
 
-from __future__ import annotations
-
 import json
 import multiprocessing
 

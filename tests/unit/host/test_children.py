@@ -1,7 +1,5 @@
 """Child processes: messages come as they were sent, whatever came before, and an end has its reason."""
 
-from __future__ import annotations
-
 import os
 import resource
 import signal

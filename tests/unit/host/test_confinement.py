@@ -1,7 +1,5 @@
 """A confined process keeps its own folder and Python's files, and nothing else a reader could be led to."""
 
-from __future__ import annotations
-
 import json
 import platform
 import signal

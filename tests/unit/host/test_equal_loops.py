@@ -1,7 +1,5 @@
 """A table and a run are the same by loops of the family, of the processor by name, and by numba as it is."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

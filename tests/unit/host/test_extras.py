@@ -1,7 +1,5 @@
 """Extras: what a base install does without, and what it is told."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys

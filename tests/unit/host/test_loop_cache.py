@@ -1,7 +1,5 @@
 """Compiled loops are found by the content of all that they call, also those that an installation brings."""
 
-from __future__ import annotations
-
 import importlib
 import os
 import pickle

@@ -1,7 +1,5 @@
 """Compiled loops: one process compiles for all, and inner loops become part of their callers."""
 
-from __future__ import annotations
-
 import gc
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """What systems that the tests do not run on are requested, and what they are told."""
 
-from __future__ import annotations
-
 import pickle
 import sys
 from pathlib import Path

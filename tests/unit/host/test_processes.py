@@ -1,7 +1,5 @@
 """Costs, locks, limits and ends of processes, by laws that hold on every POSIX system."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

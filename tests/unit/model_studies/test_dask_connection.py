@@ -1,7 +1,5 @@
 """A Dask scheduler with certificates: who has them may use it, who has not is told what is missing."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Work that is divided where that pays: who does it, its errors, its end by a cancel or a kill."""
 
-from __future__ import annotations
-
 import os
 import re
 import signal

@@ -1,7 +1,5 @@
 """The front of error against time, and its knee."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Files that reach out of themselves are refused by every reader, and none says what it read."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any

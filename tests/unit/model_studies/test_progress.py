@@ -1,7 +1,5 @@
 """Progress of parts by their cost."""
 
-from __future__ import annotations
-
 import pytest
 
 from model_studies.progress import by_cost

@@ -1,7 +1,5 @@
 """The band between two quantiles of a sample holds the share of the population that it says."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.stats import norm

@@ -1,7 +1,5 @@
 """A record comes back from its file as it was, and its numbers are variables with units and dimensions."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace

@@ -1,7 +1,5 @@
 """Changes are those of the figures; the worst known error counts."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Variants and fidelities run one by one: reasons, memory, progress, errors against the finest."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The same bits whoever works, here, in a pool or interrupted, and its cost (on clusters: tests/flow)."""
 
-from __future__ import annotations
-
 import gc
 import os
 import signal

@@ -1,7 +1,5 @@
 """A small STE database and a small run in closed form."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

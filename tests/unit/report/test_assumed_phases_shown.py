@@ -1,7 +1,5 @@
 """What phases assume is in the text of a run and on its page."""
 
-from __future__ import annotations
-
 from lineofaction.report.drawing.tables import ledger_section
 from lineofaction.report.presentation import effect_text
 

@@ -1,7 +1,5 @@
 """Reports of the pairs of a unit as one: nothing of any is left out, what is common stands once."""
 
-from __future__ import annotations
-
 from collections import Counter
 from dataclasses import replace
 from pathlib import Path

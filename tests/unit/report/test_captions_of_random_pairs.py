@@ -1,7 +1,5 @@
 """What stands under a picture is true: over 30 random pairs (22 of them at night) and three computed ones."""
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import asdict, replace

@@ -1,7 +1,5 @@
 """Laws of comparisons, of measurements too: what is equal is not shown to differ, what moved is found."""
 
-from __future__ import annotations
-
 import math
 import warnings
 from dataclasses import replace

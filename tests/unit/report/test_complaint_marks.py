@@ -1,7 +1,5 @@
 """Marks of a complaint: lines at its speed and frequency, its order bold, and words for what is beyond."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A document says what it is about and whether it suffices, is small, and holds its receipts."""
 
-from __future__ import annotations
-
 import json
 import re
 import tomllib

@@ -1,7 +1,5 @@
 """The drawing of a gearbox: names of gears stand free, and the drawing holds them."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any

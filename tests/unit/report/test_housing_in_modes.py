@@ -1,7 +1,5 @@
 """The housing in the modes of a unit: the picture of the report, and what the page is sent."""
 
-from __future__ import annotations
-
 import base64
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Labels at lines, texts beside points, bars of modes: none covers another, and each is where it belongs."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np

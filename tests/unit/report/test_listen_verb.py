@@ -1,7 +1,5 @@
 """loa listen: files of stated quantity and level, through housings too; figures of the sound pressure."""
 
-from __future__ import annotations
-
 import json
 import sys
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Plots by one call: figures of the report on axes, on axes of the caller, by plotly."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A recording beside the run that it was made from: levels of orders agree, whatever the format."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Both ways of drawing one figure description agree with it; names are shown as they are."""
 
-from __future__ import annotations
-
 import json
 import struct
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """Laws that the figures of a run obey."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import pairwise
 

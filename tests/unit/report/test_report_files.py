@@ -1,7 +1,5 @@
 """The report from files, as a page and as JSON: what they are is read from them, what is wrong is said."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Callable

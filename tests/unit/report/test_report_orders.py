@@ -1,7 +1,5 @@
 """Figures of orders, and runs that hold too little for them: what is missing is said in a sentence."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from pathlib import Path

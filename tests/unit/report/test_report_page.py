@@ -1,7 +1,5 @@
 """The page stands alone, says what figures and metadata say, in one order, and no content can break it."""
 
-from __future__ import annotations
-
 import json
 import re
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Laws that the figures of an STE database obey, and their captions."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import asdict, replace

@@ -1,7 +1,5 @@
 """Laws of the spectrum over torque: its rows hold the energy of the curves, and nothing below its error."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

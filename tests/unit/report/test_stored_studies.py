@@ -1,7 +1,5 @@
 """Studies kept as netCDF files: the same figures and the same page as fresh ones."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import field, fields, make_dataclass, replace
 from pathlib import Path

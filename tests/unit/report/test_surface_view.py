@@ -1,7 +1,5 @@
 """Pictures of surfaces: what is in front, edges in sight."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hulls import sphere

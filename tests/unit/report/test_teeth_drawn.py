@@ -1,7 +1,5 @@
 """The transverse section of a pair as it is drawn: every tooth in it has its form."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

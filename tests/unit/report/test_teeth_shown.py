@@ -1,7 +1,5 @@
 """Report, answers and `loa ste` name the most loaded tooth of each gear, where teeth differ."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable
 from dataclasses import replace

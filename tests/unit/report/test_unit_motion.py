@@ -1,7 +1,5 @@
 """The surface of a housing as the page gets it: nodes, normals, motion, levels."""
 
-from __future__ import annotations
-
 import base64
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The picture of a gear unit: sizes and what hides what, and where it stands in reports."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

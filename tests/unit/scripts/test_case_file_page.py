@@ -1,7 +1,5 @@
 """The lists of fields on the page of case files are those of the declarations."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import case_file_page

@@ -1,7 +1,5 @@
 """The client as a distribution of its own: it needs three packages, and runs from its own files alone."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 import tomllib

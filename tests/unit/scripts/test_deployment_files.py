@@ -1,7 +1,5 @@
 """Dockerfile, compose.yaml and the manifests for Kubernetes agree with the program and with each other."""
 
-from __future__ import annotations
-
 import importlib
 import os
 import re

@@ -1,7 +1,5 @@
 """A drawn test runs a fifth of its cases by day, all within five versions, and all at night."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import drawn_cases

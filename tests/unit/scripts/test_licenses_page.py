@@ -1,7 +1,5 @@
 """The page of licenses has every locked package, and only such as let the image be passed on."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The moving picture of the README moves, is small, and is drawn by its script."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import moving_picture

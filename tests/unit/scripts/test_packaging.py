@@ -1,7 +1,5 @@
 """What is packaged is all that the packages need: files that are no Python are easily forgotten."""
 
-from __future__ import annotations
-
 import tomllib
 from fnmatch import fnmatch
 from pathlib import Path, PurePath

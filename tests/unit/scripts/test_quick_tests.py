@@ -1,7 +1,5 @@
 """`scripts/test --quick` leaves out files by what they import."""
 
-from __future__ import annotations
-
 import subprocess
 from types import ModuleType
 

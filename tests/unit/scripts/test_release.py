@@ -1,7 +1,5 @@
 """A release is refused, and changes nothing, where the tree is not ready for it."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """The resolver of platforms, without the network: its requirements, its verdicts."""
 
-from __future__ import annotations
-
 import subprocess
 from pathlib import Path
 from typing import Any

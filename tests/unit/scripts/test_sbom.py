@@ -1,7 +1,5 @@
 """The bill of materials of an image keeps to the schema of its format."""
 
-from __future__ import annotations
-
 import json
 from itertools import islice
 

@@ -1,7 +1,5 @@
 """The tables of verbs, routes and processes on their pages are those of the program."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """The page of the hard scenes holds each scene, and the random pairs that were run."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

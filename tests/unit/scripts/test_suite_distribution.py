@@ -1,7 +1,5 @@
 """Workers share a run out by files; by day all files of the browser go to one."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 from typing import Any
 

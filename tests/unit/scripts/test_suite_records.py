@@ -1,7 +1,5 @@
 """What a run puts on record of the tests that it ran, and keeps of those that it left out."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any

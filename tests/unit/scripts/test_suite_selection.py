@@ -1,7 +1,5 @@
 """What a run of the tests has, and what it leaves to the nightly run."""
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """The validation page holds every figure, in an order that reads."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

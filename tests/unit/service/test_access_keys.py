@@ -1,7 +1,5 @@
 """Access keys: what is kept, who is let in, how often."""
 
-from __future__ import annotations
-
 import json
 import stat
 from datetime import datetime, timedelta

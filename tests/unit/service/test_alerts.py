@@ -1,7 +1,5 @@
 """Alerts and dashboard: they name what the service tells, and each alert fires on its case alone."""
 
-from __future__ import annotations
-
 import json
 import re
 import shutil

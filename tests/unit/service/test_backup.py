@@ -1,7 +1,5 @@
 """A backup while the service works (how-to/back-up-and-upgrade.md): what was entered before is in it."""
 
-from __future__ import annotations
-
 import shutil
 import sqlite3
 import subprocess

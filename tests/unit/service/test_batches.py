@@ -1,7 +1,5 @@
 """Batches in the job table, on each database: progress by cost, ends, expiry."""
 
-from __future__ import annotations
-
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest

@@ -1,7 +1,5 @@
 """A process validates, converts and checks a case once on its way from the body to the contact solver."""
 
-from __future__ import annotations
-
 import json
 import sys
 from collections.abc import Callable, Iterator

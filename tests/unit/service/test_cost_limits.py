@@ -1,7 +1,5 @@
 """Cost limits of jobs: refused by the plan, ended by the CPU time, extended by jobs that share the work."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Iterator
 from pathlib import Path

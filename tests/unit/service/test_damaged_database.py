@@ -1,7 +1,5 @@
 """A database that has to be mended: said at the start and at every request, and nobody waits for it."""
 
-from __future__ import annotations
-
 import resource
 import shutil
 import sqlite3

@@ -1,7 +1,5 @@
 """A lost connection: outlasted if it comes back, answered with a time to try again if it does not."""
 
-from __future__ import annotations
-
 import os
 import socket
 import sqlite3

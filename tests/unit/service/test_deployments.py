@@ -1,7 +1,5 @@
 """One database and one place of results belong together: neither is served, nor removed, beside another's."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import shutil

@@ -1,7 +1,5 @@
 """What sets a job apart: differences of inputs, and the words for them."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A worker of Dask that is told to end finishes its job first."""
 
-from __future__ import annotations
-
 import os
 import signal
 import time

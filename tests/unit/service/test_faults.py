@@ -1,7 +1,5 @@
 """Faults: in the words and units of the reader, by the line of the file, and no more than are of use."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

@@ -1,7 +1,5 @@
 """The fraction reported of work follows the time that its stages take, and of a table its CPU time."""
 
-from __future__ import annotations
-
 import itertools
 import math
 import resource

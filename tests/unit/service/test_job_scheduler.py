@@ -1,7 +1,5 @@
 """The scheduler: work is done once, ends for a stated reason, and leaves no process behind."""
 
-from __future__ import annotations
-
 import errno
 import itertools
 import os

@@ -1,7 +1,5 @@
 """The job table: single flight, shared dismissal, bounded queue, order."""
 
-from __future__ import annotations
-
 import uuid
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor

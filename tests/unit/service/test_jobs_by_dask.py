@@ -1,7 +1,5 @@
 """Whole jobs done by workers of a real Dask scheduler: each ends, whoever is killed meanwhile."""
 
-from __future__ import annotations
-
 import asyncio
 import errno
 import json

@@ -1,7 +1,5 @@
 """Lists of jobs: what the database keeps for them is right after any history; their work does not grow."""
 
-from __future__ import annotations
-
 import random
 import uuid
 from collections.abc import Callable, Iterator, Sequence

@@ -1,7 +1,5 @@
 """The live worker: one question at a time, an obsolete one stopped, and no death of it is for long."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal

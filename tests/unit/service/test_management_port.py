@@ -1,7 +1,5 @@
 """The management port: it tells health, readiness and metrics to those without a key, for both programs."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import socket

@@ -1,7 +1,5 @@
 """Limits of a server within the files that it may open: lowered and said, or refused at the start."""
 
-from __future__ import annotations
-
 import socket
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """loa open: what it prints and writes; what it leaves out of a scene is named first and last."""
 
-from __future__ import annotations
-
 import base64
 import json
 import re

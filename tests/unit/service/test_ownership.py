@@ -1,7 +1,5 @@
 """One server owns the job table; what it starts ends with it, and a lock that is lost is acquired again."""
 
-from __future__ import annotations
-
 import fcntl
 import os
 import signal

@@ -1,7 +1,5 @@
 """What the page is made of: examples that can be computed, files, drawing, TOML."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

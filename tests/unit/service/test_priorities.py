@@ -1,7 +1,5 @@
 """Turns of jobs: the oldest of the highest priority is next, shared work has its highest; bounds of keys."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

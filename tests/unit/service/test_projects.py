@@ -1,7 +1,5 @@
 """Projects: each computes, keeps, finds and lists its own, whatever others have."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace

@@ -4,8 +4,6 @@ tests/reference/waiting_jobs_VERSION.sql.gz are dumps of the SQLite files of dat
 twenty analyses over HTTP, from 50 to 145 N m, and did none.
 """
 
-from __future__ import annotations
-
 import gzip
 import sqlite3
 from contextlib import closing

@@ -1,7 +1,5 @@
 """Readers of foreign bytes: a child a question, shares by caller, limits that end it, nothing left behind."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal

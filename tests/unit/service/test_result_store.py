@@ -1,7 +1,5 @@
 """The result store: what is read is what was written, or it is refused; the same in every place."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 from collections.abc import Callable, Iterator

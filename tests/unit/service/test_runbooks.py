@@ -1,7 +1,5 @@
 """The runbooks: each tells the same four things, names what exists, and its commands do what they say."""
 
-from __future__ import annotations
-
 import os
 import re
 import subprocess

@@ -1,7 +1,5 @@
 """Upgrades of the schema: nothing is lost, and what a newer program made is left alone."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import re

@@ -1,7 +1,5 @@
 """Secrets of the settings in files: one mechanism for all, one clear error where it cannot be used."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The pages say what the code does: every field, path, verb, setting and exit code is in them."""
 
-from __future__ import annotations
-
 import inspect
 import re
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Before a service or a verb loads the libraries that compute: what it answers, loads later, and sets."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """The command line in a process of its own: serving, stopping, interrupting."""
 
-from __future__ import annotations
-
 import errno
 import json
 import os

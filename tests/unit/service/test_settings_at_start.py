@@ -1,7 +1,5 @@
 """Settings of the service that are refused, or read as unset, at its start."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

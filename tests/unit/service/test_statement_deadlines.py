@@ -1,7 +1,5 @@
 """Each statement ends by its deadline, on each database; what needs longer says so."""
 
-from __future__ import annotations
-
 import math
 import time
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Verification and collection: what is needed stays, also while the service works."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os

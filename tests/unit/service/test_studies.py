@@ -1,7 +1,5 @@
 """What follows from a row of the registry, what a study takes, and answers that are as declared."""
 
-from __future__ import annotations
-
 import json
 from inspect import signature
 from pathlib import Path

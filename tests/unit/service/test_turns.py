@@ -1,7 +1,5 @@
 """Whose turn it is: keys in turn, sliders within a key, submissions first, nobody refused for another."""
 
-from __future__ import annotations
-
 import random
 from itertools import pairwise
 

@@ -1,7 +1,5 @@
 """The watcher of jobs: all followers get every state at the cost of one, and an outage is outlasted."""
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Iterator
 from contextlib import ExitStack

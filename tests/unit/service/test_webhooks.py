@@ -1,7 +1,5 @@
 """Calls about jobs: claims on each database, addresses that may be called, settings, signatures."""
 
-from __future__ import annotations
-
 import base64
 import socket
 from concurrent.futures import ThreadPoolExecutor

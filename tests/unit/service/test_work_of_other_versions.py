@@ -1,7 +1,5 @@
 """What another version left in the job table: it runs under the name of this one, or says why not."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

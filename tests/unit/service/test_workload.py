@@ -1,7 +1,5 @@
 """Figures of the load: each computation is counted once, on the one database, and stays counted."""
 
-from __future__ import annotations
-
 from datetime import UTC, datetime, timedelta
 from itertools import pairwise
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Writers of one file take turns in the order in which they came, each within its patience."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """`loa validate`: cases are files, data that is missing is no agreement, a difference needs its cause."""
 
-from __future__ import annotations
-
 import json
 from contextlib import suppress
 from dataclasses import replace

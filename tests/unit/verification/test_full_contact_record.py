@@ -1,7 +1,5 @@
 """Records of full contact: what is solved for them, and what they cannot hold."""
 
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The condensed peer against resolved full contact of two independent codes, and against its own meshes."""
 
-from __future__ import annotations
-
 import csv
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The plane corrected for a finite width against three dimensions, on held-out pairs."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Stated errors against full contact: pairs of six regimes, half of which set no constant."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Helical full contact against that of spur pairs over the face, and tables over the face against it."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Three dimensions against full contact over the face: external and internal spur pairs, misaligned too."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

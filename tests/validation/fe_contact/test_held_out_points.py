@@ -1,7 +1,5 @@
 """The table against solves at positions and loads it does not hold."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from spur_gears import PAIR

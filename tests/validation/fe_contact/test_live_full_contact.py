@@ -1,7 +1,5 @@
 """The condensed peer against CalculiX on the same meshes, where it is installed: penalty against none."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

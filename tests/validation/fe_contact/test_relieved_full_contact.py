@@ -1,7 +1,5 @@
 """Pairs with long reliefs, in ring gears and of soft wheels against full finite-element contact."""
 
-from __future__ import annotations
-
 import csv
 import math
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Root stress beside the nominal tooth-root stress of ISO 6336-3, method B, and its critical section."""
 
-from __future__ import annotations
-
 import math
 import sys
 from collections.abc import Callable

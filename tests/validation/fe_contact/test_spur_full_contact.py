@@ -8,8 +8,6 @@ them 0.1 to 0.16 % softer than whole gears. The error of the method is that on b
 tables, which are of whole gears, lie below by so much.
 """
 
-from __future__ import annotations
-
 import csv
 from dataclasses import dataclass, replace
 from functools import cache

@@ -1,7 +1,5 @@
 """Tip edges that touch off the line of action, against full contact."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -4,8 +4,6 @@ The mesh force acts along the line on which its points of application move. Alon
 change the moments of its axial part and of friction alone; both are in the tables.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

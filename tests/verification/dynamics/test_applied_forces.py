@@ -1,7 +1,5 @@
 """Forces by time, speed and angle, fixed in space or turning: closed forms of linear systems."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Ball bearings whose ring slides in its seat: no axial force, and the laws of an elastic contact."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

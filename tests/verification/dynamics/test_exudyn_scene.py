@@ -1,7 +1,5 @@
 """The pair in its bushings, by this package's integrator and by Exudyn's, on the same mesh-force table."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

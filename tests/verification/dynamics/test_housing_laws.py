@@ -3,8 +3,6 @@
 Scenes are pairs without gyroscopic moments in a housing of random full matrices.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 

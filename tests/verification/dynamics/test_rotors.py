@@ -1,7 +1,5 @@
 """Rotors: geared, unbalanced, and scenes of textbooks."""
 
-from __future__ import annotations
-
 import math
 import tomllib
 from dataclasses import replace

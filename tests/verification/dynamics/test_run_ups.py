@@ -1,7 +1,5 @@
 """Runs at changing speed: up a ramp, through resonances, their phase and their samples."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 

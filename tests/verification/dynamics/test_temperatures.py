@@ -1,7 +1,5 @@
 """The size of temperatures in the ledger against the scene solved with and without them."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

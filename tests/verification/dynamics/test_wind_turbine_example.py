@@ -3,8 +3,6 @@
 On substitute tables: forces at rest follow from the balance of torques, whatever the tables.
 """
 
-from __future__ import annotations
-
 import math
 import tomllib
 from collections.abc import Callable

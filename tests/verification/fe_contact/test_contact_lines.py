@@ -1,7 +1,5 @@
 """Contact lines: what slices and points keep exactly, and how fast the ripple of helical pairs converges."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Derivatives of transmission error and load arm: of the contact, of the flanks, of the quantities."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Contact over the face against closed forms: uncoupled slices, tilting shafts, lengths of contact lines."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 

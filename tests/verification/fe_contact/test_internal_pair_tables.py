@@ -1,7 +1,5 @@
 """Tables of internal pairs: kinematics, Hertz, scaling, mirror images, the rack that both kinds end in."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import lru_cache

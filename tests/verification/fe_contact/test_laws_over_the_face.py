@@ -1,7 +1,5 @@
 """Laws of tables over the face: symmetries of space, scaling, and loads that grow."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 

@@ -1,7 +1,5 @@
 """Root stress under refinement, its stated error, and the middle of a wide gear against plane strain."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Callable
 from dataclasses import replace

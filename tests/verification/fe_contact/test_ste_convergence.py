@@ -1,7 +1,5 @@
 """STE converges under mesh refinement at the element's rate, and does not ripple with the element length."""
 
-from __future__ import annotations
-
 import dataclasses
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Rounded and chamfered tips against sharp ones, against tips that are cut off, and against Hertz."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Effects of a scene toggled one by one: the changes are those of two runs."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Boundary elements: spheres, sources inside a box, irregular frequencies, energy, reciprocity."""
 
-from __future__ import annotations
-
 import sys
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The models side by side: errors against the finest, and what is left out with its reason."""
 
-from __future__ import annotations
-
 import sys
 import time
 

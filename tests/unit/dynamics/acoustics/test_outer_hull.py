@@ -1,7 +1,5 @@
 """Outer hull of a housing: areas of hollow boxes in closed form, rigid motion, coarse panels."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

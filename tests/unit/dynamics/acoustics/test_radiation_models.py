@@ -1,7 +1,5 @@
 """Radiation models: closed forms of sphere and piston, and the laws that hold for every one of them."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hulls import box, sphere

@@ -1,7 +1,5 @@
 """Recordings: of spectra as WAV, and of bearing forces of runs."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from types import SimpleNamespace
 from typing import cast

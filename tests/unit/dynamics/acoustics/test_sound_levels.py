@@ -1,7 +1,5 @@
 """Levels of sound: their sums and weights, of orders and pressures, and their bands."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Psychoacoustics against the definitions of sone and acum, and what has no loudness."""
 
-from __future__ import annotations
-
 import sys
 
 import numpy as np

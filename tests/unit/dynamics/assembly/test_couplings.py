@@ -1,7 +1,5 @@
 """Couplings, gravity, idle rattle, and matrices that are sparse."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Bodies and tables agree: the last tables are exact where the meshes run."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 from typing import Any
 

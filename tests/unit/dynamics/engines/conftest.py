@@ -1,7 +1,5 @@
 """What the tests of other engines share."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from mesh_elements import helical_element

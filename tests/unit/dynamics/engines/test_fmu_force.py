@@ -1,7 +1,5 @@
 """The FMU's force is the library's: everywhere on the table, below it and beyond it."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Meshes of housings: made here, of other programs, and their surfaces."""
 
-from __future__ import annotations
-
 import builtins
 import re
 import subprocess

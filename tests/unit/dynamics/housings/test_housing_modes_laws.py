@@ -1,7 +1,5 @@
 """Reduced housings against closed forms and the whole mesh: frequencies, statics, response, damping."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import cache

@@ -1,7 +1,5 @@
 """Reduced housings on disk, in matrices of other programs, and what they cost."""
 
-from __future__ import annotations
-
 import math
 import time
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Bores and planes of the solid in a STEP file: what they are, however the file stands and is split."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path

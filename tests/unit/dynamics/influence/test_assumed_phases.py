@@ -1,7 +1,5 @@
 """What the effect ledger says of angles that nobody states, against the response at every angle."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

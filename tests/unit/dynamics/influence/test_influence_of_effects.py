@@ -1,7 +1,5 @@
 """Estimated influence of effects, and the decision by a tolerance."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Sizes of effects in dB: of nothing 0, and what runs with and without them show."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Sizes of effects that decide by a tolerance of levels, are kept by content, and are screened."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Equilibrium and step control where loads are small: by their size, not by that of a usual drive."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Whole runs: their status, what they cost, knots of laws and pitches that hunt."""
 
-from __future__ import annotations
-
 import pickle
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Where runs start: static equilibria, motions at rest, and freedoms by modes."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

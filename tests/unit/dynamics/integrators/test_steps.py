@@ -1,7 +1,5 @@
 """Steps of the integrators: tableaus, step control, choice of method, blocks, and the filter of samples."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from types import SimpleNamespace
 

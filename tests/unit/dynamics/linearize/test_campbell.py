@@ -1,7 +1,5 @@
 """Whirl modes over speed: closed forms of a disc, branches that cross, critical speeds, files."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

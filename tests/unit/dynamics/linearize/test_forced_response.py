@@ -1,7 +1,5 @@
 """Forced response as a study: peaks, error estimate, blocks of speeds, where the tables are read, files."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The floor of long tables: the power of the lines left out, its error, what has none."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 

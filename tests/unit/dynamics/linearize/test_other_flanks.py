@@ -1,7 +1,5 @@
 """Other flanks of a mesh in a scene that is assembled once: as in one assembled with them."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 

@@ -1,7 +1,5 @@
 """Transfer functions of flanks: the response of other flanks, linearity, reciprocity, their file."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 

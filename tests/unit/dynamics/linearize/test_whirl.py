@@ -1,7 +1,5 @@
 """Whirl, terms of speed, modes left out, and motions that stiffness excites."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Matrices of foreign files: none is unpickled, none unpacks to more than it says, none is told of."""
 
-from __future__ import annotations
-
 import io
 import struct
 import tracemalloc

@@ -1,7 +1,5 @@
 """Kinematics of mechanisms: speeds of trees and planetary sets, lines of action, base pitches."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from fractions import Fraction

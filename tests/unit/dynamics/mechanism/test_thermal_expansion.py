@@ -1,7 +1,5 @@
 """A scene at temperature against closed forms."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Phases of meshes against a count by hand: gears drawn at random are turned until their flanks touch."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """By which orders what turns repeats: meshes, gears against their carrier, shafts."""
 
-from __future__ import annotations
-
 import pytest
 from planetary_scenes import planetary_scene, published_set
 

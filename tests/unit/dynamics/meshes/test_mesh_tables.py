@@ -1,7 +1,5 @@
 """Tables of meshes: their laws, look-up, decimation, and the force of a flank."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Sliding of pairs in closed form: against the loss factor of Ohlendorf, and in a run."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

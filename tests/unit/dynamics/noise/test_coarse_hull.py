@@ -1,7 +1,5 @@
 """Hulls with fewer panels: closed and fine enough where walls are thin too, and as loud as the fine hull."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

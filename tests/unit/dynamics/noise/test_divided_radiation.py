@@ -1,7 +1,5 @@
 """The radiation of a housing by workers: the frequencies are tasks, the resistance is the same."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any

@@ -1,7 +1,5 @@
 """What monopoles and equivalent radiated power both allow: spheres in closed form, a housing by its modes."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from sounding_scene import AIR, housing, radiation, response

@@ -1,7 +1,5 @@
 """Boundary elements at the loudest lines: they hold there alone, narrow the band, keep to their budget."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable
 from dataclasses import replace

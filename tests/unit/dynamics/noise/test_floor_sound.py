@@ -1,7 +1,5 @@
 """Sound and vibration of long tables: totals with the orders left out are those of all orders."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

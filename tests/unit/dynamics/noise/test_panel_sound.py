@@ -1,7 +1,5 @@
 """Sound power by panels and by regions of a hull: they add up to the power of the map."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hulls import box, sphere

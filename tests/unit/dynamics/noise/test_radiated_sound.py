@@ -1,7 +1,5 @@
 """Sound power of a scene: closed form of a rigid sphere, scaling, superposition, shares, its file."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

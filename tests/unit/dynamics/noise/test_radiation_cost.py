@@ -1,7 +1,5 @@
 """Cost of a radiation resistance over a range: predicted before, in the result after, growing as it does."""
 
-from __future__ import annotations
-
 import math
 from functools import cache
 

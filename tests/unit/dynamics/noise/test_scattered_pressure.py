@@ -1,7 +1,5 @@
 """Sound pressure by boundary elements: spheres in closed form, and what monopoles are off."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hulls import box, sphere

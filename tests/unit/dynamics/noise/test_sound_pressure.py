@@ -1,7 +1,5 @@
 """Sound pressure at a microphone, and what levels rest on: sensitivities and bands."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import cache

@@ -1,7 +1,5 @@
 """Sound of runs: of their orders, over time, from recordings of a housing, and where it is loudest."""
 
-from __future__ import annotations
-
 import tracemalloc
 from dataclasses import replace
 from functools import cache

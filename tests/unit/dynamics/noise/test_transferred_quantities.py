@@ -1,7 +1,5 @@
 """What is heard of other flanks by transfer functions, against a whole response of the scene with them."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Orders of a recording: amplitudes of known tones, nothing folded onto them, noise found and removed."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

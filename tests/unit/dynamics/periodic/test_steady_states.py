@@ -1,7 +1,5 @@
 """Steady states as a study: jumps beside the folds, linear limit, flanks of several rows, status, files."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 

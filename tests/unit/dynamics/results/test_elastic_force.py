@@ -1,7 +1,5 @@
 """The static part of the mesh force: what the table gives, with the impulses of the handover of teeth."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Housings of a scene beside those of a run."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 

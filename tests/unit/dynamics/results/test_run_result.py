@@ -1,7 +1,5 @@
 """Results of runs: their quantities, orders that are fitted, figures of contact."""
 
-from __future__ import annotations
-
 from dataclasses import fields, replace
 from pathlib import Path
 

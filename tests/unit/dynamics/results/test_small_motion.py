@@ -1,7 +1,5 @@
 """Runs beyond small motion end with the part, its value and the bound; others say what comes nearest."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

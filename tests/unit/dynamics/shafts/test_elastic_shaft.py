@@ -1,7 +1,5 @@
 """Elastic shafts: stiffness, inertia, conical sections."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """What a repetition goes on from, and the checks of neglected effects for a tolerance or by name."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Runs streamed to a file: the same bits as in memory, however often cancelled, killed and resumed."""
 
-from __future__ import annotations
-
 import math
 import signal
 import subprocess

@@ -1,7 +1,5 @@
 """A run that shows one of its assumptions to be wrong is repeated, refused or reported."""
 
-from __future__ import annotations
-
 import threading
 from dataclasses import replace
 from pathlib import Path

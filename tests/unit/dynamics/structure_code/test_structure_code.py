@@ -1,7 +1,5 @@
 """Runs in code of their own: the bits of ordinary loops, the structure by which it is found, its files."""
 
-from __future__ import annotations
-
 import gc
 import math
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Code written out for a structure does what compiled loops do, to the last bit."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

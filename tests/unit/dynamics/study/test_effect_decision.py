@@ -1,7 +1,5 @@
 """Effects of a study: decided once, on in all runs where they are on at an end of a factor."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Responses of a run: what each is, of one part or of the largest."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene

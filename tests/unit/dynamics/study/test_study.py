@@ -1,7 +1,5 @@
 """A study of scenes: its figures are those of single runs, whoever does them and whatever fails."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace

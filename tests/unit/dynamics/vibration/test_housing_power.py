@@ -1,7 +1,5 @@
 """Power of bearings in a housing: balance, the split between housing and mounts, the whole mesh's mounts."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cache

@@ -1,7 +1,5 @@
 """Measured mobilities in place of modes: lines, what lies between them, what is left out."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from types import SimpleNamespace
 

@@ -1,7 +1,5 @@
 """The main flow: laws of its results, support loads, condition numbers, and other bodies."""
 
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Hunting cycles by derivatives, held against all their pitches solved."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Rim, web and hub of a gear: what fits, what is the same gear, and closed forms of a web."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Compliances of small gears, condensed each time."""
 
-from __future__ import annotations
-
 import pytest
 
 from fe_contact.compliance import reduced_harmonics

@@ -1,7 +1,5 @@
 """What seat and key of the bore do to the flank compliance: exact turns, limits, symmetry."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Rings closed by a few harmonics against rings of which every harmonic is solved."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The disk cache of compliances returns what was computed, or computes it again; all is in the key."""
 
-from __future__ import annotations
-
 import os
 import tracemalloc
 from concurrent.futures import ThreadPoolExecutor

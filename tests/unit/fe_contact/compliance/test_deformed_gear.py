@@ -1,7 +1,5 @@
 """Expanded gears move as their compliance says, are in equilibrium, and stress exactly where they must."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

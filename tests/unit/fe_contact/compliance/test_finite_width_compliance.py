@@ -1,7 +1,5 @@
 """Laws of the compliance that a finite face width adds to plane strain."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import pairwise
 

@@ -1,7 +1,5 @@
 """Laws that a three-dimensional flank compliance keeps on every mesh."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Laws that a flank compliance keeps on every mesh."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 

@@ -1,7 +1,5 @@
 """Memory of fronts: as large as the tree says, whatever it held before, and summed like dense matrices."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What rim and web do to the flank compliance of a gear, in the plane and over the face."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import cache, partial

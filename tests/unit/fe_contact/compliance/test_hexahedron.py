@@ -1,7 +1,5 @@
 """Hexahedra of swept layers against scikit-fem's own assembly, rigid motion and constant strain."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Laws that unit-load root stresses keep on every mesh, in the plane and over the face."""
 
-from __future__ import annotations
-
 import functools
 import math
 from dataclasses import fields, replace

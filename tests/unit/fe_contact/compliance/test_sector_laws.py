@@ -1,7 +1,5 @@
 """A sector that is cut out of a gear, its cut planes and bore fixed, in the plane."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Substructures and cyclic harmonics against dense algebra, orderings, and what rounding leaves."""
 
-from __future__ import annotations
-
 import gc
 import math
 import weakref

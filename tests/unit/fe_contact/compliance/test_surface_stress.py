@@ -1,7 +1,5 @@
 """Stress of a free surface from the displacement of its nodes: exact fields, rates, and finite elements."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Curves over the face and sizes of a mesh are those of scipy, whose modules a first table need not load."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 

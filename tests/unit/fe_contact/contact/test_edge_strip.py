@@ -1,7 +1,5 @@
 """Strips at tip edges: where their pressure acts, and the energy whose derivatives their motions are."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

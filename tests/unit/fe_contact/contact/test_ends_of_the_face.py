@@ -1,7 +1,5 @@
 """Free ends of the face in the contact problem: where they are, and that no reference length remains."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Load patches: nodal forces along the profile and over the face, and the pressure of their strips."""
 
-from __future__ import annotations
-
 import math
 from types import SimpleNamespace
 

@@ -1,7 +1,5 @@
 """The contact solver on problems with known answers: outcomes, sweeps, and where it starts."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """Patches over the face that follow the slope of the flanks: how the compliance changes along them."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """How many teeth have to be condensed so that every contact finds its tooth."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

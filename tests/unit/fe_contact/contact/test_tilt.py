@@ -1,7 +1,5 @@
 """Flanks that tilt under load: how compliance changes along the flank, and the energy it belongs to."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Where flanks with measured traces come closest, against nothing but many samples of the true gap."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from tooth_traces import KINDS, SHAPES, on_profile, pair_with, sampled_gap, traced_pair

@@ -1,7 +1,5 @@
 """Effects of the bodies: bore seat, thin rim and finite width, called for where they act."""
 
-from __future__ import annotations
-
 import dataclasses
 from dataclasses import fields, replace
 

@@ -1,7 +1,5 @@
 """Composition of effects: order, neutrality, refusals, the ledger, and a scene without one of them."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """What each effect on flanks contributes, when it is called for, and that neutral settings change no bit."""
 
-from __future__ import annotations
-
 from dataclasses import fields, is_dataclass, replace
 from typing import Any
 

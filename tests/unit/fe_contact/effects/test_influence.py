@@ -1,7 +1,5 @@
 """Influence of effects and parts of the deflection without finite elements: springs, and laws of both."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Misalignment is a tilt of the axes: its gap is that of rigid gears rotated in space."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

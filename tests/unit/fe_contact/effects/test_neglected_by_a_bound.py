@@ -1,7 +1,5 @@
 """An effect is left out by a bound: by the pair's moduli and bodies, and by the largest gap anywhere."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import Any

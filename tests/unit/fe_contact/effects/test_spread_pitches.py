@@ -1,7 +1,5 @@
 """Base pitches by which effects are estimated where teeth differ: few, with both gears at all angles."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Corner contact and sliding, against rates of the gap and velocities of rigid bodies."""
 
-from __future__ import annotations
-
 import importlib
 import math
 from collections.abc import Callable

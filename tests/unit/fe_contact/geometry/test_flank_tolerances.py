@@ -1,7 +1,5 @@
 """Pitch, run-out and form of ISO 1328-1:2013 (formulas 5, 6, 8 and 11, and annex E), by hand."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Closed forms of gears and ring gears, of their involutes, and of the mesh stiffness of the standard."""
 
-from __future__ import annotations
-
 import dataclasses
 import json
 import math

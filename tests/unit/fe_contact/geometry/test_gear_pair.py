@@ -1,7 +1,5 @@
 """External and internal pairs: path of contact, backlash, forces, and what a refusal suggests."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 import re

@@ -1,7 +1,5 @@
 """Addendum modification for generating x_E: where the cutter stands that removes a thickness allowance."""
 
-from __future__ import annotations
-
 import json
 import math
 import random

@@ -1,7 +1,5 @@
 """Interference of internal pairs against brute force: exact outlines, turned and moved, point by point."""
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 from typing import Any

@@ -1,7 +1,5 @@
 """Misalignment that a class allows: by hand from the formulas of the standards, and how sources add up."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Modified flanks, free-form flanks and pitch deviations: amounts, places, sums."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import asdict, fields, replace

@@ -1,7 +1,5 @@
 """The laws of reliefs and of rounded and chamfered tips: their ends, tangency, means, sides, corners."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any, get_args

@@ -1,7 +1,5 @@
 """Outlines of teeth: their coordinate, normals and joints, and that the tool which cuts them touches all."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from typing import Any

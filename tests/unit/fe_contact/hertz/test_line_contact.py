@@ -1,7 +1,5 @@
 """Laws of line contact and of the contact at a tip edge: equilibrium, scaling, limits."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

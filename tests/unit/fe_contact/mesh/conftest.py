@@ -1,7 +1,5 @@
 """Gears and meshes to test with."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """Laws of the mesh of a gear."""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 from typing import Any

@@ -1,7 +1,5 @@
 """The gmsh child: triangles and blocks of quadrilaterals, and what its failures become."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from dataclasses import replace

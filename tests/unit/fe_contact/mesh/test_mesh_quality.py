@@ -1,7 +1,5 @@
 """Element quality, recipes, division of curves, and meshes in files."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from dataclasses import fields, replace

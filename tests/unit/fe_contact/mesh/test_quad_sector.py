@@ -1,7 +1,5 @@
 """The transverse section of a tooth sector: exact profile, matching cuts, good elements on odd gears."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Layers and numbering of a swept tooth sector, and meshes of gears with rim, web and hub."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Errors of largest pressure, K_Hbeta and root stress of a design cover finer discretizations of it."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Designs kept on disk: a search that was stopped finds the same, and pays only for the rest."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import Any

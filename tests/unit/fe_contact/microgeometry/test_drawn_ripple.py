@@ -1,7 +1,5 @@
 """Pairs within a class on bodies in memory: no tolerance, no band; the band of a tolerance Monte Carlo."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The amplitude of one harmonic as an objective, and designs on the grid of a drawing."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Designs in three dimensions of a misaligned pair: symmetries, loads of unlike misalignment."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace

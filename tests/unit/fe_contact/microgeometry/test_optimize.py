@@ -1,7 +1,5 @@
 """Optimized micro-geometry against scans, known trends, and the analysis that assesses it in the end."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Scatter, tolerances of ISO 1328-1:2013 (formulas 7 and 10, by hand) and loads with a misalignment each."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Orders beside the mesh of pairs as made: what one tooth does, and which pairs are above a limit."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Tolerance Monte Carlo and sweeps: every sample and point is the pair analyzed alone."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path

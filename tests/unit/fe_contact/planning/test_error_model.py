@@ -1,7 +1,5 @@
 """A tolerance, its floor, and the errors that a plan predicts beside it, in parts and in um."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 

@@ -1,7 +1,5 @@
 """A helix of next to no overlap has the errors and the meshes of a spur pair."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """What a plane leaves out of a finite width: its sign and size, and the figures that it corrects."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

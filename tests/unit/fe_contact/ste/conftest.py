@@ -5,8 +5,6 @@ and e the gap (corner contact beyond the path of contact, linear tip relief befo
 add up. The deflection at a given load follows by bisection, the tangent in closed form.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """What a Python prompt shows of a database and of a number with its error."""
 
-from __future__ import annotations
-
 import copy
 import math
 import pickle

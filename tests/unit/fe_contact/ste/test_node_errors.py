@@ -1,7 +1,5 @@
 """Errors at nodes are linear between them; those of an interval are nothing on its nodes."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import product
 

@@ -1,7 +1,5 @@
 """Tables over all axes: joined, compiled to the same bits, and where the load slides."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Curves: mean, peak-to-peak, harmonics, load shares, error bands, and errors by source."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

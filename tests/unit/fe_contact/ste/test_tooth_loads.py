@@ -1,7 +1,5 @@
 """Laws of the loads of each tooth: they sum to the load, follow the deviations, and are alike without."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

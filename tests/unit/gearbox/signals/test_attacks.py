@@ -1,7 +1,5 @@
 """Recordings that lie, point elsewhere, or swell: each is refused in a sentence that names the file."""
 
-from __future__ import annotations
-
 import struct
 import zlib
 from collections.abc import Callable

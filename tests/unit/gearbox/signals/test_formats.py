@@ -1,7 +1,5 @@
 """Recordings of other programs come back as they were written, with their units."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

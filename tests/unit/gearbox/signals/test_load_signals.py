@@ -1,7 +1,5 @@
 """Speeds and torques of a scene from recordings: the numbers that a hand would write, or a refusal."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """A worker loads what its own work needs: one of a small job starts soon and holds little memory."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

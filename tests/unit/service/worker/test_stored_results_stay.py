@@ -1,7 +1,5 @@
 """What is stored stays as it is, whatever a later attempt of the same computation writes."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from service.store.files import DirectoryFiles, digest_of

@@ -1,7 +1,5 @@
 """Children forked from a warm process are as those started anew, and nothing is lost if it dies."""
 
-from __future__ import annotations
-
 import os
 import signal
 import time

@@ -1,7 +1,5 @@
 """CalculiX as a child: the deck it reads, how it ended, and results that come back."""
 
-from __future__ import annotations
-
 import re
 import stat
 from pathlib import Path

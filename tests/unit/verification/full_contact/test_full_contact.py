@@ -1,7 +1,5 @@
 """CalculiX on the mesh of one position: equilibrium, and the condensed peer."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """Line loads of full contact: forces on hats become loads whose integral is the force."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

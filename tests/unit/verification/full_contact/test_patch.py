@@ -1,7 +1,5 @@
 """Plane strain elements, the patch test of two blocks, and contact of a given compliance."""
 
-from __future__ import annotations
-
 import itertools
 from functools import cache
 

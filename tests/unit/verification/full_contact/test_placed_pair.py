@@ -1,7 +1,5 @@
 """Both gears in conjugate position: they touch, external and internal, and an approach turns the driver."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What tables, flank results and root stress took for granted is checked: set right, refused or reported."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import Any

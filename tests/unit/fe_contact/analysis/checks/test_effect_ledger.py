@@ -1,7 +1,5 @@
 """The effect ledger: every effect with its decision, influence, cost, price and check."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from pathlib import Path

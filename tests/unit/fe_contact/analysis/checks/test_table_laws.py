@@ -1,7 +1,5 @@
 """A table that breaks a law of mechanics is no result: planted breaks fail it, tables as solved do not."""
 
-from __future__ import annotations
-
 import copy
 from collections.abc import Callable
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """A tolerance is kept: plan, run, measure, refine what dominates, and say why it ends."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What the next pass refines: a pure function of what ran and of the errors it measured."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 

@@ -1,7 +1,5 @@
 """A table cut between its positions and put together again has the bits of one that was not."""
 
-from __future__ import annotations
-
 import pickle
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace

@@ -1,7 +1,5 @@
 """Errors between positions: of fixed ones, told from half of them, and of those that gather at kinks."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

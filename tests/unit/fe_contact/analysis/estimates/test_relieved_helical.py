@@ -1,7 +1,5 @@
 """Laws of the errors that meshes leave of quiet helical pairs: a sign of the mean, a size of the ripple."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 

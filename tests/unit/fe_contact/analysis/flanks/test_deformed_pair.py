@@ -1,7 +1,5 @@
 """Both gears as they bend in mesh: work, placement, files."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Flank results on disk: every bit comes back, what follows is there for others, damage is refused."""
 
-from __future__ import annotations
-
 from dataclasses import fields
 from pathlib import Path
 

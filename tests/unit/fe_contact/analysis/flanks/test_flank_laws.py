@@ -1,7 +1,5 @@
 """Laws of mechanics on flank results: planted faults break them, and sound results stay within bounds."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace

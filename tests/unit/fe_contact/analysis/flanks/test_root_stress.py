@@ -1,7 +1,5 @@
 """Root stress of a pair: linear in the forces, mirror images, scaling, plane against face, peaks."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

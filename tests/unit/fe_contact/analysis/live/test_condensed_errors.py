@@ -1,7 +1,5 @@
 """A table of a condensed pair says how wrong it is: as an analysis would, and within what is true."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

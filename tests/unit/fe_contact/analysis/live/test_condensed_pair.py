@@ -1,7 +1,5 @@
 """Curves from a compliance in memory are those of a whole analysis, for any flanks, load and alignment."""
 
-from __future__ import annotations
-
 import sys
 from dataclasses import replace
 from pathlib import Path

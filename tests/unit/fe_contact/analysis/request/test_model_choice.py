@@ -1,7 +1,5 @@
 """Which model and mesh an accuracy asks for: the cheapest that promises it, unless chosen explicitly."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from dataclasses import replace

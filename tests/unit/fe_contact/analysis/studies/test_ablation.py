@@ -1,7 +1,5 @@
 """Effects toggled one by one and deviations varied: the figures of single tables, and what changes."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """The accuracy study beside records of full contact: whose they are, and what they differ by."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Sequence
 

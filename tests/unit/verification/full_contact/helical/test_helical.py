@@ -1,7 +1,5 @@
 """Full contact of helical pairs: laws of the turning sections, of the facing flanks, and of solutions."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import cache

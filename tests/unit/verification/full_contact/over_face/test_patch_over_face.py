@@ -1,7 +1,5 @@
 """Patch test over the face, laws of the condensed bodies, and the elimination that condenses them."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

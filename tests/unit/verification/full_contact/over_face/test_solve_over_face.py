@@ -1,7 +1,5 @@
 """Full contact of gears over the face: laws that every solution keeps, and refusals."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 
