@@ -12,6 +12,7 @@ from matplotlib.contour import ContourSet
 from fe_contact.analysis.flanks.load_distribution import FlankErrors, LoadDistribution
 from fe_contact.analysis.flanks.pressure_map import pressure_map
 from fe_contact.ste import SteDatabase
+from lineofaction.gearbox.convert.operating_point import typed
 from lineofaction.report.document import write_report
 from lineofaction.report.drawing.figure import HeatMap, Panel, Strokes, number
 from lineofaction.report.drawing.image import panel_sheet, png
@@ -166,7 +167,8 @@ def test_one_slice_has_a_curve_and_nothing_over_the_face(one_slice: LoadDistribu
         assert np.nanmax(panel.lines[0].y) == pytest.approx(1e-6 * one_slice.pressure.max())
     assert "plane" in section.text
     names = [headline.name for headline in PAGE.page(one_slice).headlines]
-    assert names == ["largest flank pressure", "largest line load"]
+    at = f"at {typed(one_slice.scene.torque)} N m"
+    assert names == [f"largest flank pressure {at}", f"largest line load {at}"]
 
 
 @pytest.fixture
