@@ -2,11 +2,10 @@
 
 import json
 import re
-from pathlib import Path
 
 import pytest
-from page_visit import CASE, Visit, answers, choose_case, control, found_inaccessible, opened, tab
-from playwright.sync_api import Browser, expect
+from page_visit import CASE, answers, choose_case, control, found_inaccessible, opened, tab
+from playwright.sync_api import expect
 from running_service import until
 
 from lineofaction.client import LineOfActionClient
@@ -15,7 +14,7 @@ LONG = CASE | {"accuracy": {"level": "fine", "model": "3d", "positions": 512}}
 
 
 @pytest.mark.law
-def test_a_job_is_cancelled_from_the_list(visit: Visit, address: str) -> None:
+def test_a_job_is_cancelled_from_the_list(visit, address):
     page = visit.page
     tab(page, "Jobs")
     with LineOfActionClient(address) as client:
@@ -32,7 +31,7 @@ def test_a_job_is_cancelled_from_the_list(visit: Visit, address: str) -> None:
     assert first.get_by_role("button", name=re.compile("^(Cancel|Open|Compare)")).count() == 0
 
 
-def test_the_jobs_of_a_batch_are_shown_beneath_it(visit: Visit, address: str) -> None:
+def test_the_jobs_of_a_batch_are_shown_beneath_it(visit, address):
     page = visit.page
     tab(page, "Jobs")
     loads = [{"torque_n_m": [torque]} for torque in (0.5, 0.75)]
@@ -57,7 +56,7 @@ def test_the_jobs_of_a_batch_are_shown_beneath_it(visit: Visit, address: str) ->
     assert visit.complaints == []
 
 
-def test_a_result_opens_again_in_another_window(visit: Visit, browser: Browser, address: str) -> None:
+def test_a_result_opens_again_in_another_window(visit, browser, address):
     page = visit.page
     tab(page, "Jobs")
     tab(page, "Orders")
@@ -74,7 +73,7 @@ def test_a_result_opens_again_in_another_window(visit: Visit, browser: Browser, 
     later.close()
 
 
-def test_a_job_is_renamed_and_found_by_title_and_tag(visit: Visit, address: str) -> None:
+def test_a_job_is_renamed_and_found_by_title_and_tag(visit, address):
     page = visit.page
     tab(page, "Jobs")
     with LineOfActionClient(address) as client:
@@ -100,7 +99,7 @@ def test_a_job_is_renamed_and_found_by_title_and_tag(visit: Visit, address: str)
     assert visit.complaints == []
 
 
-def test_a_job_tells_what_sets_it_apart(visit: Visit, address: str) -> None:
+def test_a_job_tells_what_sets_it_apart(visit, address):
     page = visit.page
     tab(page, "Jobs")
     with LineOfActionClient(address) as client:
@@ -110,7 +109,7 @@ def test_a_job_tells_what_sets_it_apart(visit: Visit, address: str) -> None:
     expect(page.locator("#jobs-rows li").first).to_contain_text("torque 0.5, 1 → 0.5 N m")
 
 
-def test_a_job_under_way_outlasts_a_service_that_is_away(visit: Visit, address: str, tmp_path: Path) -> None:
+def test_a_job_under_way_outlasts_a_service_that_is_away(visit, address, tmp_path):
     page = visit.page
     tab(page, "Jobs")
     with LineOfActionClient(address) as client:
