@@ -7,10 +7,24 @@ import pytest
 from page_visit import CASE, answers, choose_case, control, found_inaccessible, opened, tab
 from playwright.sync_api import expect
 from running_service import until
+from stored_jobs import state
 
-from lineofaction.client import LineOfActionClient
+from lineofaction.client import JobState, LineOfActionClient
 
 LONG = CASE | {"accuracy": {"level": "fine", "model": "3d", "positions": 512}}
+
+
+STATES = """async (jobs) => {
+  const { stateOf } = await import("/page/job.js");
+  return jobs.map((job) => stateOf(job));
+}"""
+
+
+def test_page_and_terminal_say_behind_how_many_a_job_waits(scripts):
+    jobs = [state("a", "accepted") | {"ahead": ahead} for ahead in (0, 1, 2)]
+    behind = ("", " behind 1 job", " behind 2 jobs")
+    assert scripts.evaluate(STATES, jobs) == [f"waits for its turn{words}" for words in behind]
+    assert [JobState.from_json(job).activity for job in jobs] == [f"waits{words}" for words in behind]
 
 
 @pytest.mark.law

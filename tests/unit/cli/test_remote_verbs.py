@@ -35,7 +35,8 @@ def listed(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
     def jobs(_client: LineOfActionClient, **wanted: Any) -> list[JobState]:
         asked.append(wanted)
         begun = {"remaining_s": 240.0, "created": "2026-05-06T07:08:09.123456Z", "subject": "20/20"}
-        return [job("1-2", "running", **begun), job("3-4", "successful", title="EV", subject="31/41")]
+        done = job("3-4", "successful", title="EV", subject="31/41")
+        return [job("1-2", "running", **begun), done, job("5-6", "accepted", ahead=2)]
 
     monkeypatch.setattr(LineOfActionClient, "jobs", jobs)
     return asked
@@ -43,16 +44,18 @@ def listed(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
 
 def test_jobs_are_a_line_each_with_the_time_left(listed):
     shown = loa("jobs", "--process", "analyze", "--status", "running", "--limit", 7)
-    head, running, done = (line.split() for line in shown.stdout.splitlines())
+    head, running, done, waiting = (line.split() for line in shown.stdout.splitlines())
     assert head[0] == "job"
     assert running == ["1-2", "analyze", "mesh", "10", "4", "min", "left", "2026-05-06", "07:08:09", "20/20"]
     assert done[:3] == ["3-4", "analyze", "done"] and done[-1] == "EV"
+    assert waiting[:6] == ["5-6", "analyze", "waits", "behind", "2", "jobs"]
     assert listed == [{"process": ["analyze"], "status": ["running"], "limit": 7}]
 
 
 def test_jobs_for_programs_have_all_that_is_known(listed):
-    running, done = json.loads(loa("jobs", "--json").stdout)["jobs"]
+    running, done, waiting = json.loads(loa("jobs", "--json").stdout)["jobs"]
     assert (running["id"], running["remaining_s"], done["status"]) == ("1-2", 240.0, "successful")
+    assert (running["ahead"], waiting["ahead"]) == (None, 2)
     assert listed == [{"process": (), "status": (), "limit": 20}]
 
 

@@ -26,6 +26,24 @@ def test_the_oldest_of_the_highest_is_next(machine):
     assert turns(machine) == "ceadbf"
 
 
+def test_a_job_that_waits_says_behind_how_many(machine):
+    first, urgent, low = entered(machine, "a"), entered(machine, "b", 2), entered(machine, "c", -1)
+    shared = entered(machine, "a")
+
+    def ahead() -> list[int | None]:
+        listed = {job.id: job.ahead for job in machine.submissions.page(9)}
+        single = {name: machine.submissions.find(name).ahead for name in listed}
+        assert single == listed
+        return [listed[job.id] for job in (urgent, first, shared, low)]
+
+    assert ahead() == [0, 1, 1, 2]
+    claim = machine.claimed()
+    assert ahead() == [None, 1, 1, 2]  # what runs is waited for
+    machine.claims.succeed(claim)
+    machine.submissions.dismiss(shared.id)
+    assert ahead() == [None, 0, None, 1]
+
+
 def test_shared_work_has_the_highest_priority_of_its_jobs(machine):
     low = entered(machine, "a", -1)
     entered(machine, "b", 1)

@@ -64,6 +64,17 @@ def test_a_state_that_was_reached_before_anybody_followed_is_reported(machine, w
     assert _status(received) == "successful"
 
 
+def test_a_job_that_waits_is_reported_as_its_turn_comes(machine, watcher):
+    machine.submit(text="a")
+    job = machine.submit(text="b")
+    received: list[Job | None] = []
+    with watcher.following(job, received.append):
+        claim = machine.claimed()
+        machine.claims.succeed(claim)
+        until(lambda: received and received[-1] is not None and received[-1].ahead == 0)
+    assert {state.mark for state in received if state} == {job.updated + "/0"}
+
+
 def test_a_dismissal_is_reported_to_those_of_that_job_alone(machine, watcher):
     mine, other = machine.submit(text="same"), machine.submit(text="same")
     received: list[Job | None] = []
