@@ -39,7 +39,7 @@ def http(settings: Settings, secret: str) -> Iterator[TestClient]:
         yield found
 
 
-def test_every_path_but_health_readiness_and_the_page_asks_for_a_key(http: TestClient) -> None:
+def test_every_path_but_health_readiness_and_the_page_asks_for_a_key(http):
     paths = {
         (method, path.replace("{", "").replace("}", ""))
         for path, methods in http.app.openapi()["paths"].items()  # type: ignore[attr-defined]
@@ -59,18 +59,18 @@ def test_every_path_but_health_readiness_and_the_page_asks_for_a_key(http: TestC
 @pytest.mark.parametrize(
     "value", ["", "Bearer", "Bearer ", "Basic {}", "{}", "Bearer {}x", "Bearer \xff", "Bearer a,b"]
 )
-def test_what_is_no_key_is_not_taken_for_one(http: TestClient, secret: str, value: str) -> None:
+def test_what_is_no_key_is_not_taken_for_one(http, secret, value):
     answer = http.get("/v1/jobs", headers={"Authorization": value.replace("{}", secret).encode("latin-1")})
     assert answer.status_code == 401
     assert secret not in answer.text
 
 
-def test_the_scheme_may_be_written_in_any_case(http: TestClient, secret: str) -> None:
+def test_the_scheme_may_be_written_in_any_case(http, secret):
     for scheme in ("Bearer", "bearer", "BEARER"):
         assert http.get("/v1/jobs", headers={"Authorization": f"{scheme} {secret}"}).status_code == 200
 
 
-def test_taking_the_last_key_back_opens_nothing(http: TestClient, settings: Settings, secret: str) -> None:
+def test_taking_the_last_key_back_opens_nothing(http, settings, secret):
     assert http.get("/v1/jobs", headers=bearing(secret)).status_code == 200
     KeyFile(settings.key_file).remove("bench")
     assert http.get("/v1/jobs", headers=bearing(secret)).status_code == 401
@@ -79,7 +79,7 @@ def test_taking_the_last_key_back_opens_nothing(http: TestClient, settings: Sett
     assert http.get("/v1/jobs").status_code == 401
 
 
-def test_the_first_key_shuts_a_service_that_was_open(settings: Settings) -> None:
+def test_the_first_key_shuts_a_service_that_was_open(settings):
     with TestClient(create_app(settings, REGISTRY)) as http:
         assert http.get("/v1/jobs").status_code == 200
         secret = KeyFile(settings.key_file).add("late")
@@ -87,7 +87,7 @@ def test_the_first_key_shuts_a_service_that_was_open(settings: Settings) -> None
         assert http.get("/v1/jobs", headers=bearing(secret)).status_code == 200
 
 
-def test_beyond_its_rate_a_key_is_told_when_to_come_again(http: TestClient, secret: str) -> None:
+def test_beyond_its_rate_a_key_is_told_when_to_come_again(http, secret):
     codes = [http.get("/v1/processes", headers=bearing(secret)).status_code for _ in range(60)]
     assert codes[:50] == [200] * 50
     assert 429 in codes
@@ -96,7 +96,7 @@ def test_beyond_its_rate_a_key_is_told_when_to_come_again(http: TestClient, secr
     assert 1 <= int(answer.headers["retry-after"]) <= 2
 
 
-def test_the_log_names_the_key_and_never_holds_it(settings: Settings, secret: str) -> None:
+def test_the_log_names_the_key_and_never_holds_it(settings, secret):
     kept = structlog.testing.LogCapture()
     structlog.configure(processors=[structlog.contextvars.merge_contextvars, kept])
     with TestClient(create_app(settings, REGISTRY)) as http:
@@ -108,9 +108,7 @@ def test_the_log_names_the_key_and_never_holds_it(settings: Settings, secret: st
     assert secret not in str(kept.entries) and "guessed" not in str(kept.entries)
 
 
-def test_the_client_takes_its_key_from_its_caller_or_the_environment(
-    http: TestClient, secret: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_client_takes_its_key_from_its_caller_or_the_environment(http, secret, tmp_path, monkeypatch):
     def client(key: str | None) -> LineOfActionClient:
         return LineOfActionClient("http://testserver", cache_dir=tmp_path, transport=http._transport, key=key)
 
@@ -123,7 +121,7 @@ def test_the_client_takes_its_key_from_its_caller_or_the_environment(
         assert found.submit("fake", {"wish": {"text": "table"}}).process == "fake"
 
 
-def test_a_key_has_as_many_unfinished_jobs_as_it_may_and_leaves_room_for_others(settings: Settings) -> None:
+def test_a_key_has_as_many_unfinished_jobs_as_it_may_and_leaves_room_for_others(settings):
     file = KeyFile(settings.key_file)
     few, many = bearing(file.add("few", unfinished_jobs=2)), bearing(file.add("many"))
 
@@ -149,7 +147,7 @@ def test_a_key_has_as_many_unfinished_jobs_as_it_may_and_leaves_room_for_others(
 # What a key may hold at the same time, and the line that each access leaves in the log.
 
 
-def test_what_is_held_is_counted_by_name_and_given_back() -> None:
+def test_what_is_held_is_counted_by_name_and_given_back():
     held = Usage("streams", in_all=4)
     with held.one("a"), held.one("a"), held.one("b"):
         with pytest.raises(TooManyHeld, match="'a' holds 2 streams, the limit"):
@@ -170,7 +168,7 @@ def at(settings: Settings) -> Iterator[str]:
         yield f"http://127.0.0.1:{port}"
 
 
-def test_a_key_holds_as_many_streams_as_it_may_and_leaves_others_theirs(at: str, settings: Settings) -> None:
+def test_a_key_holds_as_many_streams_as_it_may_and_leaves_others_theirs(at, settings):
     file = KeyFile(settings.key_file)
     few, many = bearing(file.add("few", streams=2)), bearing(file.add("many"))
     body = {"inputs": {"wish": {"mode": "hang"}}}
@@ -199,7 +197,7 @@ def _taken(http: httpx2.Client, events: str, who: dict[str, str]) -> bool:
         return answer.status_code == 200
 
 
-def test_a_key_holds_as_many_connections_as_it_may(at: str, settings: Settings) -> None:
+def test_a_key_holds_as_many_connections_as_it_may(at, settings):
     file = KeyFile(settings.key_file)
     one, other = bearing(file.add("one", connections=1)), bearing(file.add("other"))
     body = {"inputs": {"wish": {"mode": "hang"}}}
@@ -215,7 +213,7 @@ def test_a_key_holds_as_many_connections_as_it_may(at: str, settings: Settings) 
         until(lambda: http.get("/v1/jobs", headers=one).status_code == 200)
 
 
-def test_every_access_leaves_a_line_and_none_the_key(settings: Settings) -> None:
+def test_every_access_leaves_a_line_and_none_the_key(settings):
     file, kept = KeyFile(settings.key_file), structlog.testing.LogCapture()
     structlog.configure(processors=[structlog.contextvars.merge_contextvars, kept])
     reader = file.add("reader", project="axle", scopes=["read"])
@@ -247,7 +245,7 @@ def test_every_access_leaves_a_line_and_none_the_key(settings: Settings) -> None
     assert not any(secret in str(kept.entries) for secret in (reader, ended, "guessed"))
 
 
-def test_a_key_that_asks_too_often_is_in_the_log_too(settings: Settings) -> None:
+def test_a_key_that_asks_too_often_is_in_the_log_too(settings):
     file, kept = KeyFile(settings.key_file), structlog.testing.LogCapture()
     structlog.configure(processors=[structlog.contextvars.merge_contextvars, kept])
     key = bearing(file.add("bench", requests_per_minute=1))

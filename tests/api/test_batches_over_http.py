@@ -54,7 +54,7 @@ def count(http: TestClient) -> int:
 
 
 @pytest.mark.law
-def test_a_batch_is_a_job_whose_results_are_those_of_its_jobs_in_order(http: TestClient) -> None:
+def test_a_batch_is_a_job_whose_results_are_those_of_its_jobs_in_order(http):
     texts = ["c", "a", "b"]
     answer = submitted(http, *({"text": text} for text in texts))
     assert answer.status_code == 201
@@ -70,7 +70,7 @@ def test_a_batch_is_a_job_whose_results_are_those_of_its_jobs_in_order(http: Tes
     assert {job["parentID"] for job in children(http, batch["jobID"])} == {batch["jobID"]}
 
 
-def test_each_job_of_a_batch_is_set_apart_from_the_one_before_it(http: TestClient) -> None:
+def test_each_job_of_a_batch_is_set_apart_from_the_one_before_it(http):
     batch = submitted(http, {"text": "a"}, {"text": "b"}, {"text": "b"}).json()
     first, second, third = children(http, batch["jobID"])
     assert first["differences"]["number"] == 0
@@ -83,7 +83,7 @@ def test_each_job_of_a_batch_is_set_apart_from_the_one_before_it(http: TestClien
     assert [job["jobID"] for job in http.get("/v1/jobs").json()["jobs"]] == [batch["jobID"]]
 
 
-def test_jobs_are_differences_from_what_they_share(http: TestClient) -> None:
+def test_jobs_are_differences_from_what_they_share(http):
     batch = submitted(http, {}, {"number": 2.0}, {"text": None}, text="shared", number=1.0).json()["jobID"]
     assert ended(http, batch)["status"] == "successful"
     submissions = http.app.state.context.submissions  # type: ignore[attr-defined]
@@ -95,7 +95,7 @@ def test_jobs_are_differences_from_what_they_share(http: TestClient) -> None:
     ]
 
 
-def test_a_failed_job_is_said_and_the_rest_goes_on(http: TestClient) -> None:
+def test_a_failed_job_is_said_and_the_rest_goes_on(http):
     batch = submitted(http, {"text": "a"}, {"mode": "input"}, {"text": "b"}).json()["jobID"]
     end = ended(http, batch)
     assert (end["status"], end["progress"], end["message"]) == (
@@ -113,7 +113,7 @@ def test_a_failed_job_is_said_and_the_rest_goes_on(http: TestClient) -> None:
     ]
 
 
-def test_equal_jobs_and_those_of_others_share_their_computation(http: TestClient, tmp_path: Path) -> None:
+def test_equal_jobs_and_those_of_others_share_their_computation(http, tmp_path):
     alone = http.post(EXECUTION, json={"inputs": {"wish": {"text": "x"}}}).json()
     batch = submitted(http, {"text": "x"}, {"text": "x"}, {"text": "y"}).json()["jobID"]
     assert ended(http, batch)["status"] == "successful"
@@ -126,7 +126,7 @@ def test_equal_jobs_and_those_of_others_share_their_computation(http: TestClient
     assert (again["status"], again["progress"]) == ("successful", 100)  # all from the store, at once
 
 
-def test_one_bad_job_keeps_all_out_and_each_is_named(idle: TestClient) -> None:
+def test_one_bad_job_keeps_all_out_and_each_is_named(idle):
     answer = submitted(
         idle, {"text": "a"}, {"mode": "refuse"}, {"number": 11.0}, {"other": 1, "number": -1.0}
     )
@@ -151,13 +151,13 @@ def test_one_bad_job_keeps_all_out_and_each_is_named(idle: TestClient) -> None:
         ({"jobs": [{}]}, "process"),
     ],
 )
-def test_what_is_no_batch_is_refused_by_name(idle: TestClient, body: dict[str, Any], field: str) -> None:
+def test_what_is_no_batch_is_refused_by_name(idle, body, field):
     answer = idle.post("/v1/batches", json=body)
     assert answer.status_code == 422
     assert field in [fault["field"] for fault in answer.json()["errors"]]
 
 
-def test_deep_differences_are_refused_as_others(idle: TestClient) -> None:
+def test_deep_differences_are_refused_as_others(idle):
     deep: Any = 1
     for _ in range(300):
         deep = {"wish": deep}
@@ -165,7 +165,7 @@ def test_deep_differences_are_refused_as_others(idle: TestClient) -> None:
     assert answer.status_code == 422
 
 
-def test_the_limits_count_the_jobs_in_batches(idle: TestClient, tmp_path: Path) -> None:
+def test_the_limits_count_the_jobs_in_batches(idle, tmp_path):
     never = submitted(idle, *({"number": n / 10} for n in range(7)))
     assert (never.status_code, never.json()["errors"][0]["field"]) == (422, "jobs")
     assert submitted(idle, *({"number": n / 10} for n in range(4))).status_code == 201
@@ -178,7 +178,7 @@ def test_the_limits_count_the_jobs_in_batches(idle: TestClient, tmp_path: Path) 
     assert shared.status_code == 201  # two new computations
 
 
-def test_the_limit_of_a_key_counts_the_jobs_in_batches(tmp_path: Path) -> None:
+def test_the_limit_of_a_key_counts_the_jobs_in_batches(tmp_path):
     key = KeyFile(tmp_path / "keys.json").add("bench", unfinished_jobs=3)
     http = TestClient(create_app(Settings(data_directory=tmp_path), REGISTRY))
     http.headers["Authorization"] = f"Bearer {key}"
@@ -189,7 +189,7 @@ def test_the_limit_of_a_key_counts_the_jobs_in_batches(tmp_path: Path) -> None:
     assert submitted(http, {"number": 0.4}).status_code == 429
 
 
-def test_the_same_request_is_the_same_batch(idle: TestClient) -> None:
+def test_the_same_request_is_the_same_batch(idle):
     wishes = [{"number": 0.1}, {"number": 0.2}]
     first, again = submitted(idle, *wishes, name="one"), submitted(idle, *wishes, name="one")
     assert first.json()["jobID"] == again.json()["jobID"] and count(idle) == 1
@@ -199,7 +199,7 @@ def test_the_same_request_is_the_same_batch(idle: TestClient) -> None:
     assert count(idle) == 2
 
 
-def test_dismissal_of_a_batch_is_that_of_its_jobs(http: TestClient) -> None:
+def test_dismissal_of_a_batch_is_that_of_its_jobs(http):
     done = submitted(http, {"text": "kept"}).json()["jobID"]
     ended(http, done)
     alone = http.post(EXECUTION, json={"inputs": {"wish": {"text": "o", "mode": "hang"}}})
@@ -215,14 +215,14 @@ def test_dismissal_of_a_batch_is_that_of_its_jobs(http: TestClient) -> None:
     until(lambda: not {"accepted", "running"} & set(counts()))
 
 
-def test_a_batch_whose_jobs_are_dismissed_one_by_one_ends(http: TestClient) -> None:
+def test_a_batch_whose_jobs_are_dismissed_one_by_one_ends(http):
     batch = submitted(http, {"text": "a"}, {"mode": "hang"}).json()["jobID"]
     http.delete(f"/v1/jobs/{children(http, batch)[1]['jobID']}")
     end = ended(http, batch)
     assert (end["status"], end["message"]) == ("dismissed", "2 of 2 jobs have ended, 1 dismissed.")
 
 
-def test_events_tell_of_the_whole_and_progress_never_falls(http: TestClient) -> None:
+def test_events_tell_of_the_whole_and_progress_never_falls(http):
     batch = submitted(http, {"mode": "slow", "text": "a"}, {"mode": "die_once"}, {"text": "b"}).json()[
         "jobID"
     ]
@@ -234,7 +234,7 @@ def test_events_tell_of_the_whole_and_progress_never_falls(http: TestClient) -> 
     assert states[-1]["status"] == "successful"
 
 
-def test_results_of_a_batch_wait_for_its_last_job(idle: TestClient) -> None:
+def test_results_of_a_batch_wait_for_its_last_job(idle):
     batch = submitted(idle, {"text": "a"}).json()["jobID"]
     answer = idle.get(f"/v1/jobs/{batch}/results")
     assert (answer.status_code, answer.json()["title"]) == (404, "The result is not ready")

@@ -62,7 +62,7 @@ def paths(client: TestClient) -> list[str]:
 
 
 @pytest.mark.law
-def test_with_keys_no_shared_cache_keeps_any_answer(service: tuple[TestClient, dict[str, str]]) -> None:
+def test_with_keys_no_shared_cache_keeps_any_answer(service):
     client, bearer = service
     kept, statuses = {}, set()
     for path in paths(client):
@@ -74,9 +74,7 @@ def test_with_keys_no_shared_cache_keeps_any_answer(service: tuple[TestClient, d
     assert {200, 404} <= statuses
 
 
-def test_with_keys_a_known_version_is_confirmed_to_who_may_have_it(
-    service: tuple[TestClient, dict[str, str]],
-) -> None:
+def test_with_keys_a_known_version_is_confirmed_to_who_may_have_it(service):
     client, bearer = service
     path, accept = f"/v1/results/{KEY}", {"Accept": NETCDF}
     first = client.get(path, headers=bearer | accept)
@@ -88,14 +86,14 @@ def test_with_keys_a_known_version_is_confirmed_to_who_may_have_it(
     assert refused.status_code == 401 and directives(refused) == {"no-store"}
 
 
-def test_an_event_stream_is_kept_by_nobody(service: tuple[TestClient, dict[str, str]]) -> None:
+def test_an_event_stream_is_kept_by_nobody(service):
     client, bearer = service
     job = client.app.state.context.submissions.submit("analyze", KEY, {}, stored=True)  # type: ignore[attr-defined]
     answer = client.get(f"/v1/jobs/{job.id}/events", headers=bearer)
     assert answer.status_code == 200 and "no-store" in directives(answer)
 
 
-def test_what_needs_no_key_holds_nothing_secret(service: tuple[TestClient, dict[str, str]]) -> None:
+def test_what_needs_no_key_holds_nothing_secret(service):
     client, _ = service
     assert [directives(client.get(path)) for path in PUBLIC] == [{"no-store"}] * 2
     for path in ("/", "/page/api.js"):
@@ -103,7 +101,7 @@ def test_what_needs_no_key_holds_nothing_secret(service: tuple[TestClient, dict[
         assert answer.status_code == 200 and directives(answer) == {"no-cache"}
 
 
-def test_without_keys_results_are_kept_for_ever_and_refusals_never(tmp_path: Path) -> None:
+def test_without_keys_results_are_kept_for_ever_and_refusals_never(tmp_path):
     app = create_app(Settings(data_directory=tmp_path), works=False)
     file = tmp_path / "file.nc"
     file.write_text("{}")
@@ -172,13 +170,13 @@ def _listens(path: Path) -> bool:
         return caller.connect_ex(str(path)) == 0
 
 
-def test_a_cache_keeps_results_of_an_open_service(cached: httpx2.Client) -> None:
+def test_a_cache_keeps_results_of_an_open_service(cached):
     """So that the test below can fail: this cache does keep what it may."""
     answers = [cached.get(PATH) for _ in range(2)]
     assert [answer.headers["x-cache"] for answer in answers] == ["MISS", "HIT"]
 
 
-def test_a_cache_serves_nobody_what_was_given_for_a_key(cached: httpx2.Client, tmp_path: Path) -> None:
+def test_a_cache_serves_nobody_what_was_given_for_a_key(cached, tmp_path):
     keys = KeyFile(tmp_path / "data" / "keys.json")
     bearer = {"Authorization": f"Bearer {keys.add('bench')}"}
     allowed = [cached.get(PATH, headers=bearer) for _ in range(2)]

@@ -69,9 +69,7 @@ def written(data: Path) -> float:
 
 
 @pytest.mark.law
-def test_a_long_run_keeps_its_memory_and_ends_when_cancelled(
-    client: LineOfActionClient, tmp_path: Path, data: Path
-) -> None:
+def test_a_long_run_keeps_its_memory_and_ends_when_cancelled(client, tmp_path, data):
     given = read_model(SceneInput, scene_file(tmp_path, duration=DURATION, rate=RATE))
     (mesh,) = given.meshes
     mesh = mesh.model_copy(update={"database_file": None, "database_hash": KEY})

@@ -85,7 +85,7 @@ def verb_writes(runs: StudyRuns) -> None:
         pytest.skip("loa listen takes runs and writes sounds: tests/api/test_housed_runs_over_http.py")
 
 
-def test_every_study_has_a_row_for_each_of_its_subjects() -> None:
+def test_every_study_has_a_row_for_each_of_its_subjects():
     rows = {(row.study, row.subject) for row in ROWS}
     assert rows == {(s.name, subject) for s in STUDIES.values() for subject in s.takes.subject.split(" or ")}
     csv_rows = {row.study for row in ROWS if row.columns is not None}
@@ -95,7 +95,7 @@ def test_every_study_has_a_row_for_each_of_its_subjects() -> None:
 # The same figures each way.
 
 
-def test_figures_are_in_the_units_of_their_names(runs: StudyRuns, table: SteDatabase) -> None:
+def test_figures_are_in_the_units_of_their_names(runs, table):
     figures, result = runs.python.figures, runs.python.result
     pairs = list(runs.row.witness(figures, result, table))
     assert len(pairs) >= 2
@@ -106,7 +106,7 @@ def test_figures_are_in_the_units_of_their_names(runs: StudyRuns, table: SteData
             assert told == expected
 
 
-def test_the_verb_prints_the_figures_of_python_as_json(runs: StudyRuns) -> None:
+def test_the_verb_prints_the_figures_of_python_as_json(runs):
     verb_writes(runs)
     printed, figures = runs.printed, without_file(runs.python.figures)
     assert unmeasured(without_file(printed), runs.row.own) == unmeasured(figures, runs.row.own)
@@ -114,7 +114,7 @@ def test_the_verb_prints_the_figures_of_python_as_json(runs: StudyRuns) -> None:
     assert isinstance(printed["warnings"], list)
 
 
-def test_a_job_has_the_figures_of_python(runs: StudyRuns) -> None:
+def test_a_job_has_the_figures_of_python(runs):
     told, figures = runs.job.figures, without_file(runs.python.figures)
     assert unmeasured(without_file(told), runs.row.own) == unmeasured(figures, runs.row.own)
     check_declared(runs.study.kind, told)
@@ -123,7 +123,7 @@ def test_a_job_has_the_figures_of_python(runs: StudyRuns) -> None:
     assert told["warnings"] == [*runs.job.status["warnings"], *own][: len(told["warnings"])]
 
 
-def test_measured_times_are_there(runs: StudyRuns) -> None:
+def test_measured_times_are_there(runs):
     def times(value: Any) -> Iterator[float]:
         inner = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
         for entry in inner:
@@ -224,7 +224,7 @@ def headlines_shown(page: Page, text: str) -> None:
         assert headline.name in shown and headline.value in shown
 
 
-def test_every_ending_of_the_registry_says_the_same(runs: StudyRuns) -> None:
+def test_every_ending_of_the_registry_says_the_same(runs):
     verb_writes(runs)
     for ending in runs.study.endings:
         file, printed = runs.written(ending)
@@ -232,7 +232,7 @@ def test_every_ending_of_the_registry_says_the_same(runs: StudyRuns) -> None:
         assert str(file) in printed or runs.study.folder
 
 
-def test_the_terminal_shows_tables_headlines_and_files(runs: StudyRuns) -> None:
+def test_the_terminal_shows_tables_headlines_and_files(runs):
     verb_writes(runs)
     shown = presentation_of(runs.study)
     file, printed = runs.written(".nc")
@@ -255,7 +255,7 @@ def test_the_terminal_shows_tables_headlines_and_files(runs: StudyRuns) -> None:
         assert any(re.match(words, line) for line in lines[:4]), lines[:4]
 
 
-def test_strict_ends_by_whether_there_are_warnings(runs: StudyRuns, tmp_path: Path) -> None:
+def test_strict_ends_by_whether_there_are_warnings(runs, tmp_path):
     """Of the question, and of one whose subject is implausible; files carry what is printed."""
     verb_writes(runs)
     assert runs.printed  # the result that both are told of
@@ -279,7 +279,7 @@ def implausible(runs: StudyRuns) -> Any:
     return runs.subject | {"pair": runs.subject["pair"] | {"pinion": relieved}}
 
 
-def test_the_help_says_what_every_option_is_and_has_an_example(runs: StudyRuns) -> None:
+def test_the_help_says_what_every_option_is_and_has_an_example(runs):
     command = LOA.get_command(Context(LOA), runs.study.name)
     text = CliRunner().invoke(app, [runs.study.name, "--help"], terminal_width=400).stdout
     told = "".join(text.split())
@@ -297,9 +297,7 @@ def test_the_help_says_what_every_option_is_and_has_an_example(runs: StudyRuns) 
 # What can go wrong by the verb.
 
 
-def test_an_interrupted_verb_says_so_and_leaves_no_file(
-    runs: StudyRuns, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_interrupted_verb_says_so_and_leaves_no_file(runs, monkeypatch):
     """It reports progress, and Ctrl-C is heeded there; who can end with the best so far writes that."""
     verb_writes(runs)
     own = {name for name, _ in runs.study.stages}
@@ -327,9 +325,7 @@ def test_an_interrupted_verb_says_so_and_leaves_no_file(
         assert done.stdout == "" and not list(runs.folder.glob("stopped*"))
 
 
-def test_outputs_that_cannot_be_are_refused_before_the_work(
-    runs: StudyRuns, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_outputs_that_cannot_be_are_refused_before_the_work(runs, monkeypatch):
     verb_writes(runs)
     monkeypatch.setattr(runs.study.run, "compute", None)  # called: a defect, exit code 5
     for name in ("x.odd", "no/such/x.nc"):
@@ -341,7 +337,7 @@ def test_outputs_that_cannot_be_are_refused_before_the_work(
         assert not (runs.folder / name).exists()
 
 
-def test_another_kind_of_file_is_refused_with_what_it_holds(runs: StudyRuns, tmp_path: Path) -> None:
+def test_another_kind_of_file_is_refused_with_what_it_holds(runs, tmp_path):
     verb_writes(runs)
     if " or " in runs.study.takes.subject:
         return
@@ -358,7 +354,7 @@ def test_another_kind_of_file_is_refused_with_what_it_holds(runs: StudyRuns, tmp
 # The job.
 
 
-def test_a_job_is_served_as_figures_as_its_file_and_as_a_report(runs: StudyRuns) -> None:
+def test_a_job_is_served_as_figures_as_its_file_and_as_a_report(runs):
     job, http = runs.job, runs.served.http
     figures = figures_model(runs.study.kind).model_validate_json(json.dumps(job.figures))
     runs.served.has_figures_and_file(runs.study.kind, figures, job.status["jobID"])
@@ -376,14 +372,14 @@ def test_a_job_is_served_as_figures_as_its_file_and_as_a_report(runs: StudyRuns)
         assert told == [(line.name, line.value) for line in shown.headlines]
 
 
-def test_its_process_is_listed_and_described(runs: StudyRuns) -> None:
+def test_its_process_is_listed_and_described(runs):
     name, http = runs.study.name, runs.served.http
     assert name in [process["id"] for process in http.get("/v1/processes").json()["processes"]]
     inputs = http.get(f"/v1/processes/{name}").json()["inputs"]
     assert set(inputs) == {*runs.study.takes.subject.split(" or "), *runs.study.inputs.model_fields}
 
 
-def test_progress_goes_through_the_stages_and_never_falls(runs: StudyRuns) -> None:
+def test_progress_goes_through_the_stages_and_never_falls(runs):
     stages = default_registry()[runs.study.name].stages
     declared = [stage.name for stage in stages]
     reported = list(dict.fromkeys(stage_name(stage).partition(",")[0] for stage, _ in runs.python.reported))
@@ -400,7 +396,7 @@ def test_progress_goes_through_the_stages_and_never_falls(runs: StudyRuns) -> No
     assert runs.job.status["processID"] == runs.study.name
 
 
-def test_the_same_question_is_one_result_however_it_is_put(runs: StudyRuns) -> None:
+def test_the_same_question_is_one_result_however_it_is_put(runs):
     """Defaults written out, and another order of names; with a key the same request is one job."""
     varied = {name: value for name, value in runs.body.items() if name != runs.row.subject}
     whole = runs.study.inputs.model_validate_json(json.dumps(varied)).model_dump(mode="json")
@@ -423,7 +419,7 @@ def changed(runs: StudyRuns) -> Any:
     return runs.subject | {"loads": [runs.subject["loads"][0] | {"torque_n_m": [0.75]}]}
 
 
-def test_a_dismissed_job_has_no_result(runs: StudyRuns) -> None:
+def test_a_dismissed_job_has_no_result(runs):
     http = runs.served.http
     entered = runs.execute({**runs.body, runs.row.subject: changed(runs)})
     assert (entered.status_code, entered.json()["status"]) == (201, "accepted"), entered.text
@@ -437,7 +433,7 @@ def test_a_dismissed_job_has_no_result(runs: StudyRuns) -> None:
     assert http.get(place).json()["status"] == "dismissed"
 
 
-def test_the_client_reads_the_result_that_python_has(runs: StudyRuns) -> None:
+def test_the_client_reads_the_result_that_python_has(runs):
     client, result = runs.served.client, runs.python.result
     process = getattr(client, runs.study.package)
     further = {"run": runs.body["run"]} if runs.study.name == "listen" else {}

@@ -29,7 +29,7 @@ def client(tmp_path: Path) -> Iterator[TestClient]:
         yield found
 
 
-def test_the_file_is_the_table_and_its_digest_is_told(client: TestClient, tmp_path: Path) -> None:
+def test_the_file_is_the_table_and_its_digest_is_told(client, tmp_path):
     answer = client.get(f"/v1/results/{KEY}", headers=NETCDF)
     digest = base64.b64encode(hashlib.sha256(answer.content).digest()).decode()
     assert answer.headers["content-digest"] == f"sha-256=:{digest}:"
@@ -38,7 +38,7 @@ def test_the_file_is_the_table_and_its_digest_is_told(client: TestClient, tmp_pa
     assert SteDatabase.from_netcdf(file).identical(small_table())
 
 
-def test_the_kind_is_that_of_the_store(client: TestClient, tmp_path: Path) -> None:
+def test_the_kind_is_that_of_the_store(client, tmp_path):
     assert client.get(f"/v1/results/{KEY}").headers["result-kind"] == "database"
     wire = client._transport
     local = LineOfActionClient("http://testserver", cache_dir=tmp_path / "cache", transport=wire)
@@ -48,7 +48,7 @@ def test_the_kind_is_that_of_the_store(client: TestClient, tmp_path: Path) -> No
     assert kind == "database" and SteDatabase.from_netcdf(file).identical(small_table())
 
 
-def test_metadata_is_the_default_and_in_boundary_units(client: TestClient) -> None:
+def test_metadata_is_the_default_and_in_boundary_units(client):
     answer = client.get(f"/v1/results/{KEY}").json()
     table = small_table()
     assert answer["hash"] == KEY
@@ -60,7 +60,7 @@ def test_metadata_is_the_default_and_in_boundary_units(client: TestClient) -> No
     )
 
 
-def test_a_damaged_table_is_refused_not_served(client: TestClient) -> None:
+def test_a_damaged_table_is_refused_not_served(client):
     store = client.app.state.context.store  # type: ignore[attr-defined]
     path = store.verified(KEY, "database").path
     path.write_bytes(path.read_bytes()[:-1] + b"?")
@@ -69,5 +69,5 @@ def test_a_damaged_table_is_refused_not_served(client: TestClient) -> None:
     assert client.get(f"/v1/results/{KEY}", headers=NETCDF).status_code == 404
 
 
-def test_effects_are_listed(client: TestClient) -> None:
+def test_effects_are_listed(client):
     assert "corner_contact" in [effect["name"] for effect in client.get("/v1/effects").json()]

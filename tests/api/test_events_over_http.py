@@ -8,7 +8,6 @@ from functools import partial
 from itertools import pairwise
 from typing import Any
 
-import pytest
 from fastapi.testclient import TestClient
 from running_service import until
 from service_fakes import EXECUTION
@@ -27,7 +26,7 @@ def documents(text: str) -> list[dict[str, Any]]:
     return [json.loads(block.partition("data: ")[2]) for block in blocks]
 
 
-def test_the_stream_tells_every_change_once_and_ends_with_the_job(client: TestClient) -> None:
+def test_the_stream_tells_every_change_once_and_ends_with_the_job(client):
     location = execute(client, text="table")
     answer = client.get(f"{location}/events")
     told = documents(answer.text)
@@ -39,15 +38,13 @@ def test_the_stream_tells_every_change_once_and_ends_with_the_job(client: TestCl
     assert all(one != other for one, other in pairwise(told))
 
 
-def test_who_comes_after_the_end_gets_the_final_state(client: TestClient) -> None:
+def test_who_comes_after_the_end_gets_the_final_state(client):
     location = execute(client, text="table")
     first = documents(client.get(f"{location}/events").text)
     assert documents(client.get(f"{location}/events").text) == first[-1:]
 
 
-def test_who_names_the_last_event_is_not_sent_it_again(
-    client: TestClient, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_who_names_the_last_event_is_not_sent_it_again(client, monkeypatch):
     monkeypatch.setattr(events, "HEARTBEAT_S", 0.05)
     location = execute(client, mode="hang")
     until(lambda: client.get(location).json()["stage_progress"] > 0)  # nothing more happens by itself
@@ -57,7 +54,7 @@ def test_who_names_the_last_event_is_not_sent_it_again(
     assert [status["status"] for status in documents(sent.decode())] == ["dismissed"]
 
 
-def test_a_browser_that_has_the_final_event_is_told_to_connect_no_more(client: TestClient) -> None:
+def test_a_browser_that_has_the_final_event_is_told_to_connect_no_more(client):
     location = execute(client, text="table")
     text = client.get(f"{location}/events").text
     last = text.rpartition("id: ")[2].partition("\n")[0]
@@ -66,7 +63,7 @@ def test_a_browser_that_has_the_final_event_is_told_to_connect_no_more(client: T
     assert client.get(f"{location}/events", headers={"Last-Event-ID": "another"}).status_code == 200
 
 
-def test_a_service_that_stops_ends_its_streams(client: TestClient) -> None:
+def test_a_service_that_stops_ends_its_streams(client):
     location = execute(client, mode="hang")
     until(lambda: client.get(location).json()["stage_progress"] > 0)
     stop = client.app.state.context.stop_waiting  # type: ignore[attr-defined]
@@ -75,12 +72,12 @@ def test_a_service_that_stops_ends_its_streams(client: TestClient) -> None:
     client.delete(location)
 
 
-def test_an_unknown_job_has_no_stream(client: TestClient) -> None:
+def test_an_unknown_job_has_no_stream(client):
     answer = client.get("/v1/jobs/nothing/events")
     assert (answer.status_code, answer.headers["content-type"]) == (404, "application/problem+json")
 
 
-def test_streams_are_bounded_and_given_back(client: TestClient) -> None:
+def test_streams_are_bounded_and_given_back(client):
     streams = client.app.state.context.streams  # type: ignore[attr-defined]
     location = execute(client, text="table")
     streams.maximum = 1
@@ -93,7 +90,7 @@ def test_streams_are_bounded_and_given_back(client: TestClient) -> None:
     assert client.get(f"{location}/events").status_code == 200
 
 
-def test_a_caller_who_leaves_frees_the_stream_while_the_job_goes_on(client: TestClient) -> None:
+def test_a_caller_who_leaves_frees_the_stream_while_the_job_goes_on(client):
     location = execute(client, mode="hang")
     streams = client.app.state.context.streams  # type: ignore[attr-defined]
     sent = _apart(_listen_and_leave(client.app, f"{location}/events"))
@@ -103,7 +100,7 @@ def test_a_caller_who_leaves_frees_the_stream_while_the_job_goes_on(client: Test
     client.delete(location)
 
 
-def test_comments_keep_a_quiet_stream_open(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_comments_keep_a_quiet_stream_open(client, monkeypatch):
     monkeypatch.setattr(events, "HEARTBEAT_S", 0.0)
     location = execute(client, mode="hang")
     sent = _apart(_listen_and_leave(client.app, f"{location}/events", wanted=b": the job goes on\n\n"))

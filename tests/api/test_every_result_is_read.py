@@ -271,9 +271,7 @@ def read(home: Path, http: TestClient, process: str, count: int, folder: Path) -
 @pytest.mark.law
 @pytest.mark.drawn
 @pytest.mark.parametrize("process", PROCESSES)
-def test_a_few_of_every_kind_are_read(
-    home: Path, http: TestClient, process: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_few_of_every_kind_are_read(home, http, process, tmp_path, monkeypatch):
     def undrawn(_figure: Figure, across: int = 1) -> bytes:
         content = BytesIO()
         Image.new("RGB", (across, 1)).save(content, "PNG")
@@ -285,5 +283,5 @@ def test_a_few_of_every_kind_are_read(
 
 @pytest.mark.nightly
 @pytest.mark.parametrize("process", PROCESSES)
-def test_many_of_every_kind_are_read(home: Path, http: TestClient, process: str, tmp_path: Path) -> None:
+def test_many_of_every_kind_are_read(home, http, process, tmp_path):
     assert read(home, http, process, MANY, tmp_path) >= MANY

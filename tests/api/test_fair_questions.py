@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
-from pathlib import Path
 
 import httpx2
 import pytest
@@ -50,9 +49,7 @@ def flooded(address: str, key: dict[str, str], pool: QuestionPool) -> Iterator[C
 
 
 @pytest.mark.law
-def test_a_flood_of_one_key_takes_nothing_from_another(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_flood_of_one_key_takes_nothing_from_another(tmp_path, monkeypatch):
     monkeypatch.setattr(service.routes.queries, "PLAN", PLAN)
     registry = default_registry()
     registry = Registry(replace(registry["analyze"], plan=PLAN))

@@ -68,7 +68,7 @@ def part(name: str) -> ModuleType:
     return importlib.import_module(f"{PACKAGE}.{name}")
 
 
-def test_every_process_is_run() -> None:
+def test_every_process_is_run():
     assert set(INPUTS) == set(default_registry())
 
 
@@ -106,12 +106,12 @@ def check_run_by_owslib(service: Service, process: str, inputs: Json) -> None:
 @pytest.mark.law
 @pytest.mark.drawn
 @pytest.mark.parametrize("process", INPUTS)
-def test_a_generated_client_runs_a_process(service: Service, generated: ModuleType, process: str) -> None:
+def test_a_generated_client_runs_a_process(service, generated, process):
     attributes = run_by_generated_client(service, generated, process, INPUTS[process])
     assert attributes["kind"] == default_registry()[process].kind
 
 
-def test_a_generated_client_reads_a_refusal(service: Service, generated: ModuleType) -> None:
+def test_a_generated_client_reads_a_refusal(service, generated):
     with generated.AuthenticatedClient(service.url, "no key", raise_on_unexpected_status=True) as stranger:
         problem = part("api.jobs.list_jobs").sync(client=stranger)
     assert (type(problem), problem.status) == (part("models").ProblemBody, 401)
@@ -120,7 +120,7 @@ def test_a_generated_client_reads_a_refusal(service: Service, generated: ModuleT
 @pytest.mark.law
 @pytest.mark.drawn
 @pytest.mark.parametrize("process", INPUTS)
-def test_owslib_runs_a_process(service: Service, process: str) -> None:
+def test_owslib_runs_a_process(service, process):
     check_run_by_owslib(service, process, INPUTS[process])
 
 
@@ -132,7 +132,7 @@ def working(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
 
 @pytest.mark.nightly
 @pytest.mark.parametrize("process", INPUTS)
-def test_foreign_clients_get_what_is_computed(working: Service, generated: ModuleType, process: str) -> None:
+def test_foreign_clients_get_what_is_computed(working, generated, process):
     inputs = small_inputs(process)
     if process == "listen":
         with LineOfActionClient(working.url, key=working.key) as client:

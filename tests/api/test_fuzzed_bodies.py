@@ -163,12 +163,12 @@ def _without_surrogates(value: Any) -> Any:
 
 
 @pytest.mark.law
-def test_no_spoiled_body_is_a_defect(target: Target) -> None:
+def test_no_spoiled_body_is_a_defect(target):
     check_answers(150, target, TARGETS)
 
 
 @pytest.mark.nightly
-def test_none_of_ten_thousand_is_a_defect(whole: Target) -> None:
+def test_none_of_ten_thousand_is_a_defect(whole):
     statuses = check_answers(10_000, whole, TARGETS | LIVE_TARGETS)
     Path("out").mkdir(exist_ok=True)
     Path("out/fuzzed_bodies.json").write_text(json.dumps(dict(sorted(statuses.items()))))

@@ -69,9 +69,7 @@ def service(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[KilledSe
         pytest.param("dask", 50, marks=pytest.mark.nightly),
     ],
 )
-def test_nothing_is_lost_when_parts_are_killed_at_random_moments(
-    service: KilledService, tmp_path: Path, database: str, moments: int
-) -> None:
+def test_nothing_is_lost_when_parts_are_killed_at_random_moments(service, tmp_path, database, moments):
     chance, began = random.Random(SEED), time.monotonic()
     kinds = [kind for _ in range(moments) for kind in chance.sample(service.kinds, len(service.kinds))]
     with service:
@@ -112,7 +110,7 @@ def test_nothing_is_lost_when_parts_are_killed_at_random_moments(
     sys.stdout.write(f"{figures}\n")
 
 
-def test_the_witness_knows_a_partial_file_and_a_second_result() -> None:
+def test_the_witness_knows_a_partial_file_and_a_second_result():
     """The test above can fail: results of two attempts differ, and a part of one is none."""
     from service_fake_work import is_slow_content, slow_content  # noqa: PLC0415
 
@@ -129,7 +127,7 @@ def starts(folder: Path) -> int:
 
 
 @pytest.mark.law
-def test_kills_of_the_server_cost_a_job_no_attempt(tmp_path: Path) -> None:
+def test_kills_of_the_server_cost_a_job_no_attempt(tmp_path):
     """Under default settings, which give a job two attempts."""
     service, kills = KilledService(tmp_path, {}), 2
     with service:
@@ -162,7 +160,7 @@ def ended(service: KilledService, batch: str) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("moments", [3, pytest.param(30, marks=pytest.mark.nightly)])
-def test_batches_are_whole_whatever_is_killed(tmp_path: Path, moments: int) -> None:
+def test_batches_are_whole_whatever_is_killed(tmp_path, moments):
     chance = random.Random(BATCH_SEED)
     place = {"LOA_DATABASE_URL": f"sqlite:///{tmp_path / 'shared.sqlite3'}"}
     place["LOA_RESULTS_URL"] = (tmp_path / "results").as_uri()

@@ -46,7 +46,7 @@ def identifiers(page: dict[str, Any]) -> list[str]:
     return [job["jobID"] for job in page["jobs"]]
 
 
-def test_pages_go_on_behind_a_job_that_was_deleted(client: TestClient) -> None:
+def test_pages_go_on_behind_a_job_that_was_deleted(client):
     newest_first = submit(client, 5)
     page = client.get("/v1/jobs", params={"limit": 2}).json()
     assert identifiers(page) == newest_first[:2]
@@ -57,19 +57,19 @@ def test_pages_go_on_behind_a_job_that_was_deleted(client: TestClient) -> None:
     assert following(rest) is None
 
 
-def test_jobs_entered_meanwhile_do_not_shift_the_pages(client: TestClient) -> None:
+def test_jobs_entered_meanwhile_do_not_shift_the_pages(client):
     newest_first = submit(client, 4)
     page = client.get("/v1/jobs", params={"limit": 2}).json()
     submit(client, 3)
     assert identifiers(client.get(following(page)).json()) == newest_first[2:]  # type: ignore[arg-type]
 
 
-def test_a_page_that_is_just_full_is_the_last(client: TestClient) -> None:
+def test_a_page_that_is_just_full_is_the_last(client):
     submit(client, 2)
     assert following(client.get("/v1/jobs", params={"limit": 2}).json()) is None
 
 
-def test_filters_add_up_and_stay_on_the_next_page(client: TestClient) -> None:
+def test_filters_add_up_and_stay_on_the_next_page(client):
     newest_first = submit(client, 6)
     for job in newest_first[:3]:
         client.delete(f"/v1/jobs/{job}")
@@ -82,7 +82,7 @@ def test_filters_add_up_and_stay_on_the_next_page(client: TestClient) -> None:
     assert len(identifiers(client.get("/v1/jobs", params={"type": "process"}).json())) == 6
 
 
-def test_jobs_of_a_time(client: TestClient) -> None:
+def test_jobs_of_a_time(client):
     newest, middle, oldest = submit(client, 3)
     noon = datetime(2026, 1, 31, 12, tzinfo=UTC)
     for job, hours in ((newest, 2), (middle, 1), (oldest, 0)):
@@ -99,7 +99,7 @@ def test_jobs_of_a_time(client: TestClient) -> None:
     assert found("2026-01-31T12:00:00Z/2026-01-31T13:59:59Z") == [middle, oldest]
 
 
-def test_jobs_that_ran_so_long(client: TestClient) -> None:
+def test_jobs_that_ran_so_long(client):
     long, short, waits = submit(client, 3)
     for job, seconds in ((long, 90), (short, 5)):
         key = client.app.state.context.submissions.find(job).key  # type: ignore[attr-defined]
@@ -132,15 +132,13 @@ def test_jobs_that_ran_so_long(client: TestClient) -> None:
         ({"limit": 1001}, "limit"),
     ],
 )
-def test_a_filter_that_is_none_is_refused_by_name(
-    client: TestClient, parameters: dict[str, Any], field: str
-) -> None:
+def test_a_filter_that_is_none_is_refused_by_name(client, parameters, field):
     answer = client.get("/v1/jobs", params=parameters)
     assert (answer.status_code, answer.headers["content-type"]) == (422, "application/problem+json")
     assert [fault["field"] for fault in answer.json()["errors"]] == [field]
 
 
-def test_databases_are_listed_with_their_cases(client: TestClient, tmp_path: Path) -> None:
+def test_databases_are_listed_with_their_cases(client, tmp_path):
     store = client.app.state.context.store  # type: ignore[attr-defined]
     keys = [hashlib.sha256(bytes([n])).hexdigest() for n in range(3)]
     for key in keys:
@@ -155,7 +153,7 @@ def test_databases_are_listed_with_their_cases(client: TestClient, tmp_path: Pat
     assert client.get(entries[0]["href"]).json()["size"] == entries[0]["size"]
 
 
-def test_processes_come_in_pages_too(tmp_path: Path) -> None:
+def test_processes_come_in_pages_too(tmp_path):
     client, seen = TestClient(create_app(Settings(data_directory=tmp_path))), []
     href: str | None = "/v1/processes?limit=3"
     while href is not None:
@@ -167,7 +165,7 @@ def test_processes_come_in_pages_too(tmp_path: Path) -> None:
     assert all(len(names) == 3 for names in seen[:-1])
 
 
-def test_ended_jobs_are_found_by_their_status(client: TestClient) -> None:
+def test_ended_jobs_are_found_by_their_status(client):
     submit(client, 1)
     with client:
         until(lambda: len(client.get("/v1/jobs", params={"status": "successful"}).json()["jobs"]) == 1)
@@ -175,7 +173,7 @@ def test_ended_jobs_are_found_by_their_status(client: TestClient) -> None:
 
 
 @pytest.mark.parametrize("path", ["/v1/jobs", "/v1/jobs?once=true&limit=1", "/v1/databases"])
-def test_a_list_that_a_caller_has_is_not_sent_again(client: TestClient, tmp_path: Path, path: str) -> None:
+def test_a_list_that_a_caller_has_is_not_sent_again(client, tmp_path, path):
     submit(client, 2)
     first = client.get(path)
     tag = {"If-None-Match": first.headers["etag"]}
@@ -189,9 +187,7 @@ def test_a_list_that_a_caller_has_is_not_sent_again(client: TestClient, tmp_path
     assert changed.status_code == 200 and changed.json() != first.json()
 
 
-def test_lists_take_no_thread_from_other_requests(
-    client: TestClient, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_lists_take_no_thread_from_other_requests(client, monkeypatch):
     """Lists that wait for the database, more than there are threads for requests, hold up nobody else."""
     (job,) = submit(client, 1)
     submissions, go_on = client.app.state.context.submissions, threading.Event()  # type: ignore[attr-defined]

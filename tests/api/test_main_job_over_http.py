@@ -61,7 +61,7 @@ def scene(case: dict[str, Any]) -> dict[str, Any]:
 
 
 @pytest.mark.law
-def test_the_service_gives_what_python_gives(client: LineOfActionClient, case: dict[str, Any]) -> None:
+def test_the_service_gives_what_python_gives(client, case):
     job, seen = client.analyze.submit(case), []
 
     def ended() -> bool:
@@ -79,28 +79,24 @@ def test_the_service_gives_what_python_gives(client: LineOfActionClient, case: d
     assert any(state.stage for state in seen)  # on a busy machine the first and last progress may be all
 
 
-def test_a_database_carries_the_hash_it_is_found_under(
-    client: LineOfActionClient, case: dict[str, Any]
-) -> None:
+def test_a_database_carries_the_hash_it_is_found_under(client, case):
     key = client.analysis_key(case)
     assert client.fetch(key).metadata.content_hash == key
 
 
-def test_a_scene_runs_on_the_stored_table(client: LineOfActionClient, case: dict[str, Any]) -> None:
+def test_a_scene_runs_on_the_stored_table(client, case):
     run = client.simulate(scene(case))
     force = run.to_xarray()["mesh_force"].to_numpy()
     assert force.mean() == pytest.approx(100.0 / (0.04 * np.cos(np.radians(20.0))), rel=0.02)
 
 
-def test_the_figures_of_a_run_and_of_its_table_are_as_declared(
-    client: LineOfActionClient, case: dict[str, Any]
-) -> None:
+def test_the_figures_of_a_run_and_of_its_table_are_as_declared(client, case):
     check_declared("run", document(client.simulate.submit(scene(case)).figures()))
     check_declared("database", document(client.analyze.submit(case).figures()))
 
 
 @pytest.mark.law
-def test_a_hash_serves_as_well_as_the_case(client: LineOfActionClient, case: dict[str, Any]) -> None:
+def test_a_hash_serves_as_well_as_the_case(client, case):
     by_hash = scene(case)
     del by_hash["meshes"][0]["case"]
     by_hash["meshes"][0]["database_hash"] = client.analysis_key(case)
@@ -110,9 +106,7 @@ def test_a_hash_serves_as_well_as_the_case(client: LineOfActionClient, case: dic
 
 @pytest.mark.law
 @pytest.mark.parametrize("how", ["case", "case_file", "database_hash", "database_file"])
-def test_a_scene_runs_here_on_tables_of_the_service(
-    client: LineOfActionClient, case: dict[str, Any], tmp_path: Path, how: str
-) -> None:
+def test_a_scene_runs_here_on_tables_of_the_service(client, case, tmp_path, how):
     """However a mesh takes its table, the run is bit by bit the one that the service makes."""
     given, mesh = scene(case), scene(case)["meshes"][0]
     key = client.analysis_key(case)
@@ -127,7 +121,7 @@ def test_a_scene_runs_here_on_tables_of_the_service(
     assert np.array_equal(here.bearing_force, there.bearing_force)
 
 
-def test_faults_of_tables_are_named_by_the_scene(client: LineOfActionClient, case: dict[str, Any]) -> None:
+def test_faults_of_tables_are_named_by_the_scene(client, case):
     wrong = copy.deepcopy(scene(case))
     wrong["meshes"][0]["case"]["pair"]["pinion"]["bore_diameter_mm"] = 95.0
     with pytest.raises(BadInput, match=r"meshes\[0\]\.case\.pair\.pinion\.bore_diameter_mm"):
@@ -138,9 +132,7 @@ def test_faults_of_tables_are_named_by_the_scene(client: LineOfActionClient, cas
         client.scene(wrong)
 
 
-def test_a_scene_that_cannot_be_is_refused_before_it_is_a_job(
-    client: LineOfActionClient, case: dict[str, Any]
-) -> None:
+def test_a_scene_that_cannot_be_is_refused_before_it_is_a_job(client, case):
     wrong = copy.deepcopy(scene(case))
     wrong["shafts"][1]["origin_mm"] = [81.0, 0.0, 0.0]
     with pytest.raises(BadInput, match=r"shafts\[1\]\.origin_mm"):
@@ -151,7 +143,7 @@ def test_a_scene_that_cannot_be_is_refused_before_it_is_a_job(
         client.simulate.submit(wrong)
 
 
-def test_the_service_opens_no_file_for_a_caller(client: LineOfActionClient, case: dict[str, Any]) -> None:
+def test_the_service_opens_no_file_for_a_caller(client, case):
     for field in ("case_file", "database_file"):
         wrong = scene(case)
         del wrong["meshes"][0]["case"]
@@ -160,7 +152,7 @@ def test_the_service_opens_no_file_for_a_caller(client: LineOfActionClient, case
             client.submit("simulate", {"scene": wrong})
 
 
-def test_a_hash_nobody_knows_is_refused(client: LineOfActionClient, case: dict[str, Any]) -> None:
+def test_a_hash_nobody_knows_is_refused(client, case):
     wrong = scene(case)
     del wrong["meshes"][0]["case"]
     wrong["meshes"][0]["database_hash"] = "ab" * 32

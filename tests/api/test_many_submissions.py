@@ -96,7 +96,7 @@ def submitted_at_once(asked: Asked, wishes: Sequence[str], meanwhile: Callable[[
 
 
 @pytest.mark.parametrize("cases", [6, pytest.param(20, marks=pytest.mark.nightly)])
-def test_equal_cases_are_computed_once_and_all_are_answered(asked: Asked, cases: int) -> None:
+def test_equal_cases_are_computed_once_and_all_are_answered(asked, cases):
     wishes = [f"case {n % cases}" for n in range(SUBMISSIONS_PER_CASE * cases)]
     random.Random(7).shuffle(wishes)
     client, waiting = asked.clients[0], []
@@ -130,7 +130,7 @@ def test_equal_cases_are_computed_once_and_all_are_answered(asked: Asked, cases:
         pytest.param(256, 1200, marks=pytest.mark.nightly),
     ],
 )
-def test_many_clients_at_once_are_all_answered(tmp_path: Path, clients: int, submissions: int) -> None:
+def test_many_clients_at_once_are_all_answered(tmp_path, clients, submissions):
     """Of 1200 six were told that the database cannot be reached: others had always come before them."""
     settings = {"LOA_QUEUE_LIMIT": str(submissions)}
     with KilledService(tmp_path, settings) as service, ThreadPoolExecutor(clients) as pool:

@@ -36,7 +36,7 @@ def inputs_of(scene: Path, **housing: Any) -> dict[str, Any]:
     return inputs | SPEEDS
 
 
-def test_velocities_are_those_of_the_command_line(served: tuple[Served, Path]) -> None:
+def test_velocities_are_those_of_the_command_line(served):
     service, scene = served
     job = service.client.submit("vibration", inputs_of(scene))
     done = service.client.wait(job.id)
@@ -65,9 +65,7 @@ ATTACKS = {
 
 
 @pytest.mark.parametrize("name", ATTACKS)
-def test_a_file_that_cannot_be_used_is_a_fault_of_the_job(
-    name: str, served: tuple[Served, Path], tmp_path: Path
-) -> None:
+def test_a_file_that_cannot_be_used_is_a_fault_of_the_job(name, served, tmp_path):
     service, scene = served
     changed, bound = ATTACKS[name]
     job = service.client.submit("vibration", inputs_of(scene, frf_file=sent(tmp_path, mass_lines(**changed))))
@@ -78,7 +76,7 @@ def test_a_file_that_cannot_be_used_is_a_fault_of_the_job(
     assert bound in fault.bound
 
 
-def test_a_node_that_is_not_there_is_a_fault_of_the_job(served: tuple[Served, Path]) -> None:
+def test_a_node_that_is_not_there_is_a_fault_of_the_job(served):
     service, scene = served
     job = service.client.submit("vibration", inputs_of(scene, point_nodes=[{"name": "lid", "node": 5}]))
     with pytest.raises(BadInput) as caught:
@@ -94,9 +92,7 @@ def test_a_node_that_is_not_there_is_a_fault_of_the_job(served: tuple[Served, Pa
         ({"name": "a.uff", "content": "AAAA"}, "frf_file.content"),
     ],
 )
-def test_what_is_no_file_is_refused_at_the_request(
-    file: Any, field: str, served: tuple[Served, Path]
-) -> None:
+def test_what_is_no_file_is_refused_at_the_request(file, field, served):
     """A service reads no files of its callers, and none of another kind or damaged."""
     service, scene = served
     inputs = inputs_of(scene)

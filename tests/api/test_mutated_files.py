@@ -187,12 +187,7 @@ def left(place: Path) -> list[Any]:
 
 
 @pytest.mark.law
-def test_good_files_read_the_same_as_without_confinement(
-    http: TestClient,
-    files: list[tuple[str, bytes, Asked]],
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_good_files_read_the_same_as_without_confinement(http, files, tmp_path, monkeypatch):
     pool, orders, answers = http.app.state.context.reader, [], []  # type: ignore[attr-defined]
     ask = pool.ask
     monkeypatch.setattr(pool, "ask", lambda order, *rest: orders.append(order) or ask(order, *rest))
@@ -215,9 +210,7 @@ def test_good_files_read_the_same_as_without_confinement(
 
 @pytest.mark.law
 @pytest.mark.parametrize("seed", FATAL)
-def test_a_step_file_that_ends_its_reader_is_named(
-    http: TestClient, place: Path, files: list[tuple[str, bytes, Asked]], seed: int
-) -> None:
+def test_a_step_file_that_ends_its_reader_is_named(http, place, files, seed):
     _, content, ask = files[0]
     answer = answered(http, mutated(content, seed), ask)
     assert answer.status_code == 422, answer.text
@@ -229,9 +222,7 @@ def test_a_step_file_that_ends_its_reader_is_named(
 
 @pytest.mark.law
 @pytest.mark.parametrize("count", [12, pytest.param(480, marks=pytest.mark.nightly)])
-def test_spoiled_files_are_refused_or_read(
-    http: TestClient, place: Path, files: list[tuple[str, bytes, Asked]], count: int
-) -> None:
+def test_spoiled_files_are_refused_or_read(http, place, files, count):
     """As many of every format, of a mesh and a gear unit in turn of one of their files.
 
     All by one warm process, which is replaced after 500 forks.

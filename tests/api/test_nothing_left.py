@@ -254,7 +254,7 @@ ENDS: list[Callable[[Place, int], None]] = [
 
 @pytest.mark.law
 @pytest.mark.parametrize("count", [8, pytest.param(200, marks=pytest.mark.nightly)])
-def test_nothing_is_left_of_requests_that_end_badly(place: Place, count: int) -> None:
+def test_nothing_is_left_of_requests_that_end_badly(place, count):
     for number, end in enumerate(islice(cycle(ENDS), count)):
         end(place, 1000 * count + number)
     assert place.is_empty()
@@ -264,7 +264,7 @@ def test_nothing_is_left_of_requests_that_end_badly(place: Place, count: int) ->
 
 
 @pytest.mark.law
-def test_no_question_brings_the_canary(place: Place) -> None:
+def test_no_question_brings_the_canary(place):
     http, folder = place.http, place.folder
     data = folder / "data"
     canary = write_canary(data)

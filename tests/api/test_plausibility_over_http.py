@@ -36,7 +36,7 @@ def messages(body: dict[str, Any]) -> list[str]:
     return [warning["message"].partition(":")[0] for warning in body["warnings"]]
 
 
-def test_a_case_is_assessed_from_plan_to_result(served: tuple[LineOfActionClient, TestClient]) -> None:
+def test_a_case_is_assessed_from_plan_to_result(served):
     client, http = served
     said = ["pair.pinion.tip_relief_um = 0.02 µm"]
     inputs = {"inputs": {"case": CASE}}
@@ -54,9 +54,7 @@ def test_a_case_is_assessed_from_plan_to_result(served: tuple[LineOfActionClient
         assert messages({"warnings": json.loads(content.attrs["warnings"])}) == said
 
 
-def test_studies_in_json_and_netcdf_carry_it(
-    served: tuple[LineOfActionClient, TestClient], tmp_path: Path
-) -> None:
+def test_studies_in_json_and_netcdf_carry_it(served, tmp_path):
     client, http = served
     for process, kind, further in (
         ("flank", "flanks", {"torque_n_m": 100.0}),
@@ -70,9 +68,7 @@ def test_studies_in_json_and_netcdf_carry_it(
         assert messages(http.get(result.href).json()) == ["pair.pinion.tip_relief_um = 0.02 µm"]
 
 
-def test_what_an_import_left_out_goes_with_every_answer(
-    served: tuple[LineOfActionClient, TestClient],
-) -> None:
+def test_what_an_import_left_out_goes_with_every_answer(served):
     client, http = served
     said = "left out of the scene"
     scene = ROTOR | {"left_out": ["shaft 5 (line 143): nothing joins it to the train"]}
@@ -86,7 +82,7 @@ def test_what_an_import_left_out_goes_with_every_answer(
     assert http.get(f"{result.href}/figures").json()["alarms"][0].startswith(f"Warning: {said}")
 
 
-def test_a_plausible_case_has_an_empty_list(served: tuple[LineOfActionClient, TestClient]) -> None:
+def test_a_plausible_case_has_an_empty_list(served):
     _, http = served
     plain = CASE | {"pair": CASE["pair"] | {"pinion": GEAR}}
     assert http.post("/v1/plans", json={"inputs": {"case": plain}}).json()["warnings"] == []

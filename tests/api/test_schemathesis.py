@@ -158,7 +158,7 @@ def kind_of(fault: dict[str, Any]) -> str:
 
 @pytest.mark.drawn
 @parametrized(chosen)
-def test_a_request_is_answered_as_documented(operation: Operation) -> None:
+def test_a_request_is_answered_as_documented(operation):
     @as_long_as(max(EACH * 4 // 5, FEW))
     @given(operation.as_strategy(hooks=right))
     def check_answer(case: schemathesis.Case) -> None:
@@ -172,7 +172,7 @@ def test_a_request_is_answered_as_documented(operation: Operation) -> None:
 
 @pytest.mark.drawn
 @parametrized([one for one in with_body if not one.path.startswith(DRAFTS)])  # there faults are an answer
-def test_a_body_that_breaks_its_schema_is_answered_as_documented(operation: Operation) -> None:
+def test_a_body_that_breaks_its_schema_is_answered_as_documented(operation):
     @as_long_as(max(-(-EACH // 5), FEW // 5))
     @given(operation.as_strategy(generation_mode=GenerationMode.NEGATIVE))
     def check_answer(case: schemathesis.Case) -> None:
@@ -190,7 +190,7 @@ def accepted(*labels: str) -> float:
     return sum(sent[f"{label} 201"] for label in labels) / count
 
 
-def test_at_least_half_of_the_bodies_are_accepted() -> None:
+def test_at_least_half_of_the_bodies_are_accepted():
     if left := set(EXECUTIONS) - asked:
         pytest.skip(f"{len(left)} processes are left to the night, and with them their right bodies")
     assert accepted(*EXECUTIONS) >= 0.5
@@ -198,13 +198,13 @@ def test_at_least_half_of_the_bodies_are_accepted() -> None:
     assert all(share >= 0.5 for share in few.values()), few
 
 
-def test_so_many_bodies_were_sent() -> None:
+def test_so_many_bodies_were_sent():
     assert sent["bodies"] >= BODIES
 
 
 @pytest.mark.drawn
 @parametrized(with_body)
-def test_a_body_drawn_from_the_description_alone_is_answered_as_documented(operation: Operation) -> None:
+def test_a_body_drawn_from_the_description_alone_is_answered_as_documented(operation):
     """Last, as most of these are refused: they are not among those of which half are accepted."""
 
     @as_long_as(max(EACH // 5, FEW // 5))

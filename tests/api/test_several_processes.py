@@ -86,9 +86,7 @@ class Caller(threading.Thread):
 
 
 @pytest.mark.law
-def test_a_killed_process_is_replaced_and_loses_only_what_it_answers(
-    server: tuple[subprocess.Popen[str], str],
-) -> None:
+def test_a_killed_process_is_replaced_and_loses_only_what_it_answers(server):
     process, address = server
     until(lambda: len(serving_pids(process.pid)) == NUMBER)
     job = _submitted(address)
@@ -133,9 +131,7 @@ def _status(address: str, job: str) -> dict[str, Any]:
     return found
 
 
-def test_all_stop_within_five_seconds_of_a_signal(
-    server: tuple[subprocess.Popen[str], str], tmp_path: Path
-) -> None:
+def test_all_stop_within_five_seconds_of_a_signal(server, tmp_path):
     process, address = server
     until(lambda: len(serving_pids(process.pid)) == NUMBER)
     job = _submitted(address)
@@ -151,7 +147,7 @@ def test_all_stop_within_five_seconds_of_a_signal(
     assert "Traceback" not in (tmp_path / "log").read_text()
 
 
-def test_none_outlives_a_supervisor_that_is_killed(server: tuple[subprocess.Popen[str], str]) -> None:
+def test_none_outlives_a_supervisor_that_is_killed(server):
     process, _ = server
     until(lambda: len(serving_pids(process.pid)) == NUMBER)
     family = [*children(process.pid), *serving_pids(process.pid)]
@@ -161,7 +157,7 @@ def test_none_outlives_a_supervisor_that_is_killed(server: tuple[subprocess.Pope
     assert len(family) > NUMBER
 
 
-def test_processes_that_die_at_once_are_not_started_again_and_again(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_processes_that_die_at_once_are_not_started_again_and_again(monkeypatch):
     clock, started = [0.0], list[float]()
     dead = SimpleNamespace(is_alive=lambda: False, pid=1, exitcode=1)
 
@@ -184,7 +180,7 @@ def test_processes_that_die_at_once_are_not_started_again_and_again(monkeypatch:
     )
 
 
-def test_one_management_port_tells_of_all_processes_and_of_their_scheduler(tmp_path: Path) -> None:
+def test_one_management_port_tells_of_all_processes_and_of_their_scheduler(tmp_path):
     with serving(tmp_path, LOA_MANAGEMENT_PORT="0") as (process, address):
         assert process.stdout is not None
         management = process.stdout.readline().rpartition(" ")[2].strip()

@@ -134,7 +134,7 @@ def log_lines(service: Process) -> list[dict[str, Any]]:
 
 
 @pytest.mark.parametrize("kind", EACH)
-def test_four_bodies_that_cost_much_hold_nobody_up(service: Process, kind: str) -> None:
+def test_four_bodies_that_cost_much_hold_nobody_up(service, kind):
     path, body = ATTACKS[kind]()
 
     def post(_: int) -> httpx2.Response:
@@ -150,14 +150,14 @@ def test_four_bodies_that_cost_much_hold_nobody_up(service: Process, kind: str) 
     watch.check()
 
 
-def test_texts_are_read_by_other_processes(service: Process) -> None:
+def test_texts_are_read_by_other_processes(service):
     """The cause of what is seen above: the service has a lock that reading holds."""
     (warm,) = [pid for pid in children(service.pid) if b"reading.child" in command(pid)]
     spent = family_cpu_seconds(warm)
     assert spent is not None and spent - cpu_seconds(warm) > 1.0
 
 
-def test_six_hundred_idle_connections_shut_nobody_out(service: Process) -> None:
+def test_six_hundred_idle_connections_shut_nobody_out(service):
     with ExitStack() as idle:
         for _ in range(600):
             idle.enter_context(socket.create_connection(service.place, timeout=PATIENCE_S))
@@ -169,7 +169,7 @@ def test_six_hundred_idle_connections_shut_nobody_out(service: Process) -> None:
     assert float(dropped.split()[1]) >= 100
 
 
-def test_refusals_are_counted_and_logged(service: Process) -> None:
+def test_refusals_are_counted_and_logged(service):
     body = b'{"toml": "' + b"[" * 60_000 + b'"}'
     headers = {"Content-Type": "application/json"}
     large = httpx2.post(f"{service.address}/v1/cases/from-toml", content=body, headers=headers)

@@ -69,7 +69,7 @@ def body(text: str) -> dict[str, Any]:
 
 
 @pytest.mark.law
-def test_writers_are_told_to_come_again_and_readers_notice_nothing(client: TestClient, address: str) -> None:
+def test_writers_are_told_to_come_again_and_readers_notice_nothing(client, address):
     location = client.post(EXECUTION, json=body("done")).headers["location"]
     until(lambda: client.get(location).json()["status"] == "successful")
     engine = database_engine(address)
@@ -104,7 +104,7 @@ def test_writers_are_told_to_come_again_and_readers_notice_nothing(client: TestC
     engine.dispose()
 
 
-def test_health_is_answered_while_every_thread_waits(tmp_path: Path) -> None:
+def test_health_is_answered_while_every_thread_waits(tmp_path):
     """Else a supervisor would restart a service that is well."""
     app = create_app(Settings(data_directory=tmp_path), REGISTRY)
     with TestClient(app) as client, ThreadPoolExecutor(2) as pool:
@@ -131,7 +131,7 @@ def test_health_is_answered_while_every_thread_waits(tmp_path: Path) -> None:
         assert ready.result().status_code == 200
 
 
-def test_one_who_can_do_without_waits_for_a_fraction_of_the_time(address: str) -> None:
+def test_one_who_can_do_without_waits_for_a_fraction_of_the_time(address):
     engine = database_engine(address)
     of_server = "SELECT setting FROM pg_settings WHERE name = 'lock_timeout'"
     question = "PRAGMA busy_timeout" if address.startswith("sqlite") else of_server

@@ -23,7 +23,7 @@ def address(tmp_path_factory: pytest.TempPathFactory, condensed_bodies: Path) ->
 
 
 @pytest.mark.nightly
-def test_the_result_that_came_with_the_program_is_that_of_a_service(address: str) -> None:
+def test_the_result_that_came_with_the_program_is_that_of_a_service(address):
     known = json.loads((STATIC / "first.json").read_text(encoding="utf-8"))
     computed(address, case=known["case"])
     assert_alike(first_result(address)["curve"], known["curve"])

@@ -29,7 +29,7 @@ def field(page: Page, name: str) -> str:
     return page.locator(f"#f-pair-pinion-{name}").input_value()
 
 
-def test_a_sheet_goes_into_the_fields_and_is_undone(page: Page, tmp_path: Path) -> None:
+def test_a_sheet_goes_into_the_fields_and_is_undone(page, tmp_path):
     sheet = tmp_path / "gear.csv"
     sheet.write_text(SHEET, encoding="utf-8")
     control(page, "#made-file").set_input_files(sheet)
@@ -41,14 +41,14 @@ def test_a_sheet_goes_into_the_fields_and_is_undone(page: Page, tmp_path: Path) 
     expect(page.locator("#f-pair-pinion-pitch_deviation_um")).to_have_value("")
 
 
-def test_a_line_that_is_none_is_said_by_its_number(page: Page, tmp_path: Path) -> None:
+def test_a_line_that_is_none_is_said_by_its_number(page, tmp_path):
     sheet = tmp_path / "gear.csv"
     sheet.write_text(SHEET + "21,right,pitch,0\n", encoding="utf-8")
     control(page, "#made-file").set_input_files(sheet)
     expect(page.locator("#form-errors")).to_contain_text("line 22")
 
 
-def test_drawn_gears_are_in_the_fields_and_the_result_is_theirs(page: Page) -> None:
+def test_drawn_gears_are_in_the_fields_and_the_result_is_theirs(page):
     page.get_by_role("button", name="Draw both gears").press("Enter")
     expect(page.locator("#example-note")).to_have_text(
         "Both gears drawn within class 6 of ISO 1328-1, draw 1"
@@ -61,7 +61,7 @@ def test_drawn_gears_are_in_the_fields_and_the_result_is_theirs(page: Page) -> N
     expect(page.locator("#results-design")).to_be_empty()
 
 
-def test_orders_of_run_out_and_waves_have_names(page: Page, tmp_path: Path) -> None:
+def test_orders_of_run_out_and_waves_have_names(page, tmp_path):
     case = copy.deepcopy(CASE)
     case["pair"]["pinion"] = case["pair"]["pinion"] | {
         "run_out": {"eccentricity_um": 5.0},

@@ -33,7 +33,7 @@ def stops(page: Page, maximum: int) -> list[dict[str, object]]:
     return found
 
 
-def test_the_first_stop_skips_to_the_design(browser: Browser, address: str) -> None:
+def test_the_first_stop_skips_to_the_design(browser, address):
     page = browser.new_page()
     page.route("**/execution", lambda _: None)  # the first example is not computed
     page.goto(address)
@@ -49,7 +49,7 @@ def test_the_first_stop_skips_to_the_design(browser: Browser, address: str) -> N
 
 
 @pytest.mark.law
-def test_every_stop_is_seen_and_the_order_is_that_of_the_page(visit: Visit) -> None:
+def test_every_stop_is_seen_and_the_order_is_that_of_the_page(visit):
     page = visit.page
     tab(page, "Flanks, live")
     page.locator(".skip").focus()
@@ -68,7 +68,7 @@ def test_every_stop_is_seen_and_the_order_is_that_of_the_page(visit: Visit) -> N
 @pytest.mark.parametrize(
     "field", ["#name", "#bar-torque_n_m", "#f-load-torque_n_m", "#f-accuracy-level", "#live-torque_n_m"]
 )
-def test_ctrl_enter_analyzes_from_any_field(visit: Visit, field: str) -> None:
+def test_ctrl_enter_analyzes_from_any_field(visit, field):
     page = visit.page
     submitted: list[str] = []
     page.route("**/analyze/execution", lambda route: submitted.append(route.request.url) or route.abort())
@@ -79,7 +79,7 @@ def test_ctrl_enter_analyzes_from_any_field(visit: Visit, field: str) -> None:
     expect(page.locator("#analyze")).to_be_enabled()
 
 
-def test_arrows_go_from_tab_to_tab_and_the_address_says_which(visit: Visit) -> None:
+def test_arrows_go_from_tab_to_tab_and_the_address_says_which(visit):
     page = visit.page
     page.locator("#ripple-tab").focus()
     page.keyboard.press("End")
@@ -90,7 +90,7 @@ def test_arrows_go_from_tab_to_tab_and_the_address_says_which(visit: Visit) -> N
     assert "tab=" not in page.url
 
 
-def test_rail_and_dock_fold_and_the_split_moves(visit: Visit) -> None:
+def test_rail_and_dock_fold_and_the_split_moves(visit):
     page = visit.page
     width = page.locator("#stage").evaluate("node => node.clientWidth")
     for name in ("rail", "dock"):
@@ -105,7 +105,7 @@ def test_rail_and_dock_fold_and_the_split_moves(visit: Visit) -> None:
     page.locator("#split").press("ArrowDown")
 
 
-def test_a_slider_says_its_value_with_the_unit(visit: Visit) -> None:
+def test_a_slider_says_its_value_with_the_unit(visit):
     slider = control(visit.page, "#live-wheel-tip_relief_um")
     expect(slider).to_have_attribute("aria-valuetext", "0 µm")
     count = answers(visit.page)
@@ -117,7 +117,7 @@ def test_a_slider_says_its_value_with_the_unit(visit: Visit) -> None:
 
 
 @pytest.mark.parametrize("width", [700, 320])  # 200 % of 1400 pixels; what WCAG 1.4.10 asks for
-def test_zoomed_in_nothing_is_cut_off_or_covered(visit: Visit, width: int) -> None:
+def test_zoomed_in_nothing_is_cut_off_or_covered(visit, width):
     page = visit.page
     page.set_viewport_size({"width": width, "height": 450})
     until(lambda: page.evaluate("document.documentElement.scrollWidth") <= width)  # plots follow in a moment

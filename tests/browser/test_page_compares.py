@@ -57,9 +57,7 @@ def change(page: Page) -> str:
 
 
 @pytest.mark.nightly
-def test_another_pair_is_compared_at_the_torque_that_is_looked_at(
-    browser: Browser, address: str, analyzed: str, other: str
-) -> None:
+def test_another_pair_is_compared_at_the_torque_that_is_looked_at(browser, address, analyzed, other):
     visit = opened(browser, f"{address}/#database={other}&a={analyzed}&on=b")
     page = visit.page
     until(lambda: answers(page) > 0)
@@ -74,9 +72,7 @@ def test_another_pair_is_compared_at_the_torque_that_is_looked_at(
 
 
 @pytest.mark.nightly
-def test_in_three_dimensions_misalignment_and_crowning_act(
-    browser: Browser, address: str, other: str
-) -> None:
+def test_in_three_dimensions_misalignment_and_crowning_act(browser, address, other):
     visit = shown(browser, address, other)
     page = visit.page
     before = page.locator("#live-figures dd").first.text_content()
@@ -99,7 +95,7 @@ def test_in_three_dimensions_misalignment_and_crowning_act(
 
 
 @pytest.mark.nightly
-def test_one_button_computes_in_three_dimensions(browser: Browser, address: str, analyzed: str) -> None:
+def test_one_button_computes_in_three_dimensions(browser, address, analyzed):
     visit = opened(browser, f"{address}/#database={analyzed}")
     page = visit.page
     tab(page, "Flanks, live")
@@ -110,7 +106,7 @@ def test_one_button_computes_in_three_dimensions(browser: Browser, address: str,
     assert visit.complaints == []
 
 
-def test_two_analyses_of_the_list_are_compared_with_their_errors(visit: Visit, other: str) -> None:
+def test_two_analyses_of_the_list_are_compared_with_their_errors(visit, other):
     page = visit.page
     page.reload()
     tab(page, "Jobs")
@@ -128,9 +124,7 @@ def test_two_analyses_of_the_list_are_compared_with_their_errors(visit: Visit, o
     assert visit.complaints == []
 
 
-def test_results_without_a_load_in_common_are_not_compared_and_it_says_why(
-    visit: Visit, address: str
-) -> None:
+def test_results_without_a_load_in_common_are_not_compared_and_it_says_why(visit, address):
     computed(address, case=CASE | {"load": {"torque_n_m": [3.0, 4.0]}})
     page = visit.page
     page.reload()
@@ -160,7 +154,7 @@ def figure(page: Page, name: str) -> float:
     return float((node.text_content() or "nan").split()[0])
 
 
-def test_a_misaligned_pair_is_pressed_harder_and_carries_less_evenly(over_face: Visit) -> None:
+def test_a_misaligned_pair_is_pressed_harder_and_carries_less_evenly(over_face):
     page = over_face.page
     for key in PLOTS:
         expect(control(page, f"[data-figure={key}] .plot")).to_have_attribute("data-drawn", "yes")
@@ -178,9 +172,7 @@ def test_a_misaligned_pair_is_pressed_harder_and_carries_less_evenly(over_face: 
     expect(page.locator("#live-figures")).to_have_text(before)
 
 
-def test_in_the_plane_there_is_a_pressure_along_the_profile_and_no_face(
-    browser: Browser, address: str, analyzed: str
-) -> None:
+def test_in_the_plane_there_is_a_pressure_along_the_profile_and_no_face(browser, address, analyzed):
     page = shown(browser, address, analyzed).page
     before = figure(page, "largest pressure")
     expect(page.locator("[data-figure=live_face_load]")).to_be_hidden()
@@ -190,9 +182,7 @@ def test_in_the_plane_there_is_a_pressure_along_the_profile_and_no_face(
     page.close()
 
 
-def test_the_length_of_a_relief_acts_where_there_is_a_relief(
-    browser: Browser, address: str, analyzed: str
-) -> None:
+def test_the_length_of_a_relief_acts_where_there_is_a_relief(browser, address, analyzed):
     page = shown(browser, address, analyzed).page
     plain = page.locator("#live-figures").text_content()
     moved(page, "#live-pinion-tip_relief_length_mm", "End")
@@ -206,7 +196,7 @@ def test_the_length_of_a_relief_acts_where_there_is_a_relief(
     page.close()
 
 
-def test_they_are_accessible_and_nothing_is_complained_about(over_face: Visit) -> None:
+def test_they_are_accessible_and_nothing_is_complained_about(over_face):
     unfold(over_face.page)
     assert not (told := found_inaccessible(over_face.page)), json.dumps(told, indent=1)
     assert over_face.complaints == []

@@ -61,7 +61,7 @@ def typed_digit_by_digit(seen: Visit, key: str, text: str) -> None:
 
 
 @pytest.mark.law
-def test_a_pair_typed_with_slips_logs_no_error(refused: tuple[Visit, list[str]]) -> None:
+def test_a_pair_typed_with_slips_logs_no_error(refused):
     seen, answers = refused
     page = seen.page
     page.locator("#example").select_option("empty")
@@ -85,9 +85,7 @@ def test_a_pair_typed_with_slips_logs_no_error(refused: tuple[Visit, list[str]])
     assert [line for line in seen.console if line.startswith("error")] == []
 
 
-def test_a_slider_typed_beyond_its_range_says_so_and_logs_no_error(
-    browser: Browser, address: str, analyzed: str
-) -> None:
+def test_a_slider_typed_beyond_its_range_says_so_and_logs_no_error(browser, address, analyzed):
     seen = shown(browser, address, analyzed)
     page = seen.page
     exact = control(page, "#live-torque_n_m-exact")

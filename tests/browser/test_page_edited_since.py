@@ -60,11 +60,11 @@ def edited(page: Page, typed: dict[str, Any]) -> list[list[str]]:
 @pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize("name", CASES)
-def test_what_the_service_completes_is_no_edit(page: Page, name: str) -> None:
+def test_what_the_service_completes_is_no_edit(page, name):
     assert edited(page, CASES[name]) == []
 
 
-def test_a_pair_without_a_tolerance_is_not_edited_by_the_usual_one(page: Page) -> None:
+def test_a_pair_without_a_tolerance_is_not_edited_by_the_usual_one(page):
     case = CASES["palermo_spur_20_20"]
     for accuracy in ({}, {"level": "draft"}, {"time_budget_s": 5.0}, {"tolerance": 0.02}):
         assert edited(page, case | {"accuracy": accuracy}) == []
@@ -72,7 +72,7 @@ def test_a_pair_without_a_tolerance_is_not_edited_by_the_usual_one(page: Page) -
     assert [key for key, *_ in found] == ["accuracy.tolerance"]
 
 
-def test_measured_and_drawn_gears_pass_the_form(page: Page) -> None:
+def test_measured_and_drawn_gears_pass_the_form(page):
     drawn = drawn_case(validated(Case, CASES["palermo_spur_20_20"]), 6)
     assert edited(page, case_json(drawn)) == []
     of = Inspected("pinion", "left", None)

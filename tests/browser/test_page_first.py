@@ -8,7 +8,6 @@ from typing import Any
 import pytest
 from page_visit import (
     CASE,
-    Visit,
     answers,
     computed,
     control,
@@ -17,13 +16,11 @@ from page_visit import (
     tab,
     unfold,
 )
-from playwright.sync_api import Browser, CDPSession, Page, Route, expect
+from playwright.sync_api import CDPSession, Page, Route, expect
 
 
 @pytest.mark.law
-def test_the_first_example_stands_there_with_its_errors_when_the_page_opens(
-    browser: Browser, address: str
-) -> None:
+def test_the_first_example_stands_there_with_its_errors_when_the_page_opens(browser, address):
     visit = opened(browser, f"{address}/#")
     page = visit.page
     expect(page.locator("#live-ripple .plot")).to_have_attribute("data-drawn", "yes")
@@ -51,9 +48,7 @@ def test_the_first_example_stands_there_with_its_errors_when_the_page_opens(
 
 
 @pytest.mark.law
-def test_no_figure_of_a_result_stands_under_the_title_of_another(
-    browser: Browser, address: str, analyzed: str
-) -> None:
+def test_no_figure_of_a_result_stands_under_the_title_of_another(browser, address, analyzed):
     page = opened(browser, f"{address}/#").page
     figures = page.locator("#live-figures")
     expect(figures).to_contain_text("peak to peak")
@@ -75,7 +70,7 @@ def test_no_figure_of_a_result_stands_under_the_title_of_another(
 
 
 @pytest.mark.law
-def test_a_design_that_is_opened_leaves_the_result_of_another_behind(browser: Browser, address: str) -> None:
+def test_a_design_that_is_opened_leaves_the_result_of_another_behind(browser, address):
     page = opened(browser, f"{address}/#").page
     figures, note = page.locator("#live-figures"), page.locator(".design-note")
     expect(figures).to_contain_text("peak to peak")
@@ -110,7 +105,7 @@ OUTSIDE = """() => [...document.querySelectorAll(":is(#results-body, .report) .p
 })"""
 
 
-def test_a_phone_has_slider_and_curve_together_and_labels_within_plots(visit: Visit) -> None:
+def test_a_phone_has_slider_and_curve_together_and_labels_within_plots(visit):
     page = visit.page
     page.set_viewport_size({"width": 400, "height": 660})
     curve, slider = (page.locator(name).bounding_box() for name in ("#live-ripple .plot", "#quick .slider"))
@@ -134,7 +129,7 @@ def test_a_phone_has_slider_and_curve_together_and_labels_within_plots(visit: Vi
     page.close()
 
 
-def test_a_section_of_the_page_computes_nothing(browser: Browser, address: str) -> None:
+def test_a_section_of_the_page_computes_nothing(browser, address):
     page = opened(browser, f"{address}/#rail").page
     page.wait_for_selector("#plan dl")
     expect(page.locator("#live-figures")).to_be_empty()
@@ -142,9 +137,7 @@ def test_a_section_of_the_page_computes_nothing(browser: Browser, address: str) 
     page.close()
 
 
-def test_the_examples_begin_with_an_ev_pair_and_an_industrial_spur_pair(
-    browser: Browser, address: str
-) -> None:
+def test_the_examples_begin_with_an_ev_pair_and_an_industrial_spur_pair(browser, address):
     page = opened(browser, address).page
     names = page.locator("#example option:not([hidden])").evaluate_all("all => all.map(one => one.value)")
     assert names[:2] == ["helical_ev_23_67", "industrial_spur_21_59"]
@@ -164,9 +157,7 @@ def other(address: str) -> str:
 
 
 @pytest.mark.law
-def test_the_first_screen_is_light_and_has_no_plots_and_no_description_of_the_service(
-    browser: Browser, address: str
-) -> None:
+def test_the_first_screen_is_light_and_has_no_plots_and_no_description_of_the_service(browser, address):
     page = browser.new_page()
     session = page.context.new_cdp_session(page)
     session.send("Network.enable")
@@ -204,9 +195,7 @@ def weight(session: CDPSession) -> tuple[float, float]:
 
 
 @pytest.mark.nightly
-def test_many_results_add_no_listeners_and_little_memory(
-    browser: Browser, address: str, analyzed: str, other: str
-) -> None:
+def test_many_results_add_no_listeners_and_little_memory(browser, address, analyzed, other):
     page = opened(browser, address).page
     session = page.context.new_cdp_session(page)
     session.send("Performance.enable")

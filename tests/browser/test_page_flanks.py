@@ -90,9 +90,7 @@ def middle_of_line(colors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 @pytest.mark.law
 @pytest.mark.parametrize("position", [0.2, -0.3])
 @pytest.mark.parametrize("name", ["pinion", "wheel"])
-def test_contact_lines_lie_in_the_plane_of_action_where_the_position_has_them(
-    page: Page, outline: dict[str, Any], name: str, position: float
-) -> None:
+def test_contact_lines_lie_in_the_plane_of_action_where_the_position_has_them(page, outline, name, position):
     _, along, across = of_action(outline)
     pitch_mm = outline["path_of_contact"]["base_pitch_mm"]
     pinion = outline["pinion"]
@@ -124,9 +122,7 @@ def legend(page: Page, part: float) -> np.ndarray:
 
 @pytest.mark.law
 @pytest.mark.parametrize("name", STEEL)
-def test_a_flank_has_the_color_of_the_scale_at_its_pressure(
-    page: Page, outline: dict[str, Any], name: str
-) -> None:
+def test_a_flank_has_the_color_of_the_scale_at_its_pressure(page, outline, name):
     """Seven parts of the scale over three of steel, both lit: each channel says how bright a place is."""
     for part in (0.1, 0.4, 0.7, 1.0):
         colors = painted(page, outline, name, of_action(outline)[2], 0.2, part * TOP)
@@ -146,9 +142,7 @@ BENT = """async () => {
 }"""
 
 
-def test_the_switch_bends_as_many_times_as_it_says(
-    drawing_browser: Browser, address: str, analyzed: str
-) -> None:
+def test_the_switch_bends_as_many_times_as_it_says(drawing_browser, address, analyzed):
     seen: Visit = shown(drawing_browser, address, analyzed)
     seen.page.evaluate(BENT)
     stopped(seen.page)
@@ -166,7 +160,7 @@ SHARED = """async (curve) => (await import("/page/live_figures.js")).sharingFigu
 
 
 @pytest.mark.law
-def test_the_share_of_a_pair_goes_on_with_its_place_over_two_pitches(page: Page) -> None:
+def test_the_share_of_a_pair_goes_on_with_its_place_over_two_pitches(page):
     """A pair is a base pitch further with each number and with each pitch of the position."""
 
     def share(place: np.ndarray) -> np.ndarray:

@@ -41,9 +41,7 @@ def seen(browser: Browser, gallery: tuple[str, SteDatabase]) -> Iterator[Visit]:
 
 
 @pytest.mark.law
-def test_a_card_has_the_ripple_and_the_figures_of_its_table(
-    seen: Visit, gallery: tuple[str, SteDatabase]
-) -> None:
+def test_a_card_has_the_ripple_and_the_figures_of_its_table(seen, gallery):
     card = seen.page.locator("#jobs-rows li").first
     table = gallery[1]
     curve = table.curve(torque=float(table.torque[1]))
@@ -76,7 +74,7 @@ def labelled(seen: Visit, *first: dict[str, Any]) -> str:
     return said
 
 
-def test_differences_that_read_alike_are_counted_only(seen: Visit) -> None:
+def test_differences_that_read_alike_are_counted_only(seen):
     alike = {"field": "scene.housings[0].step_file", "before": "text of 9 bytes", "value": "text of 9 bytes"}
     other = {"field": "case.load.torque_n_m", "before": [80], "value": [20, 80]}
     assert labelled(seen, alike, other) == "torque 80 → 20, 80 N m; 1 more"
@@ -84,7 +82,7 @@ def test_differences_that_read_alike_are_counted_only(seen: Visit) -> None:
 
 
 @pytest.mark.law
-def test_a_card_calls_a_field_as_the_form_does(seen: Visit) -> None:
+def test_a_card_calls_a_field_as_the_form_does(seen):
     fields = seen.page.evaluate(CALLED)
     assert len(fields) > 100
     for name, text in fields:
@@ -98,9 +96,7 @@ def test_a_card_calls_a_field_as_the_form_does(seen: Visit) -> None:
     assert labelled(seen, shaft) == "shafts 1 length not set → 90 mm"
 
 
-def test_a_design_that_was_computed_twice_is_shown_once(
-    seen: Visit, gallery: tuple[str, SteDatabase]
-) -> None:
+def test_a_design_that_was_computed_twice_is_shown_once(seen, gallery):
     titles = seen.page.locator("#jobs-rows h3")
     expect(titles).to_have_text(["again", "relieved", "light"])
     seen.page.get_by_label("Find by words").fill("first")
@@ -111,9 +107,7 @@ def test_a_design_that_was_computed_twice_is_shown_once(
 
 
 @pytest.mark.parametrize(("scheme", "width"), [("light", 1400), ("dark", 400)])
-def test_the_gallery_is_for_everybody(
-    browser: Browser, gallery: tuple[str, SteDatabase], scheme: str, width: int
-) -> None:
+def test_the_gallery_is_for_everybody(browser, gallery, scheme, width):
     found = opened(browser, gallery[0], scheme, width)
     page = found.page
     tab(page, "Jobs")

@@ -42,7 +42,7 @@ def stands(page: Page, part: str, place: str) -> None:
 
 
 @pytest.mark.law
-def test_arrow_keys_move_what_is_selected_in_picture_tree_table_and_text(visit: Visit) -> None:
+def test_arrow_keys_move_what_is_selected_in_picture_tree_table_and_text(visit):
     page, canvas = visit.page, visit.page.locator(CANVAS)
     select(page, "wheel 1")
     canvas.press("ArrowUp")
@@ -71,7 +71,7 @@ def test_arrow_keys_move_what_is_selected_in_picture_tree_table_and_text(visit: 
 
 
 @pytest.mark.law
-def test_what_is_typed_while_a_move_comes_to_rest_is_kept_with_it(visit: Visit) -> None:
+def test_what_is_typed_while_a_move_comes_to_rest_is_kept_with_it(visit):
     page = visit.page
     select(page, "wheel 1")
     place = re.search(r"at (\S+) mm", page.locator("#unit [role=status]").inner_text())
@@ -89,7 +89,7 @@ def test_what_is_typed_while_a_move_comes_to_rest_is_kept_with_it(visit: Visit) 
 
 
 @pytest.mark.law
-def test_undo_brings_back_whole_the_scene_whose_place_a_move_takes(visit: Visit) -> None:
+def test_undo_brings_back_whole_the_scene_whose_place_a_move_takes(visit):
     page = visit.page
     text, under = page.locator("#scene-text"), page.get_by_text("A deflection takes the load cases")
     page.locator("#import-file").set_input_files(EXAMPLES / "two_stage_gearbox.rexs")
@@ -117,7 +117,7 @@ def test_undo_brings_back_whole_the_scene_whose_place_a_move_takes(visit: Visit)
 
 
 @pytest.mark.law
-def test_the_picture_moves_a_part_to_an_end_of_its_shaft_and_tables_refuse_more(visit: Visit) -> None:
+def test_the_picture_moves_a_part_to_an_end_of_its_shaft_and_tables_refuse_more(visit):
     page, fact = visit.page, visit.page.locator("#unit [role=status]")
     select(page, "wheel 1")
     for _ in range(6):
@@ -152,7 +152,7 @@ def marked(page: Page) -> np.ndarray:
 
 
 @pytest.mark.law
-def test_the_pointer_drags_what_is_selected_and_turns_the_picture_beside_it(visit: Visit) -> None:
+def test_the_pointer_drags_what_is_selected_and_turns_the_picture_beside_it(visit):
     page = visit.page
     select(page, "output, far side")
     places = marked(page)

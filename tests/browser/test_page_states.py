@@ -1,7 +1,7 @@
 """One address for what is on screen: six kinds of state, reloaded, gone back to, sent, and in mid-job."""
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -126,9 +126,7 @@ NIGHTLY = (choose_example, run_job, show_result)
     ],
     ids=lambda f: f.__name__,
 )
-def test_an_address_shows_the_same_to_everybody_at_any_moment(
-    watched: tuple[Page, Jobs], browser: Browser, analyzed: str, begin: Callable[[Page, str], None]
-) -> None:
+def test_an_address_shows_the_same_to_everybody_at_any_moment(watched, browser, analyzed, begin):
     page, jobs = watched
     begin(page, analyzed)
     known, url = seen(page), page.url
@@ -154,7 +152,7 @@ def test_an_address_shows_the_same_to_everybody_at_any_moment(
 
 
 @pytest.mark.law
-def test_edits_are_undone_and_done_again(watched: tuple[Page, Jobs], analyzed: str) -> None:
+def test_edits_are_undone_and_done_again(watched, analyzed):
     page, _ = watched
     page.evaluate("key => { location.hash = `database=${key}`; }", analyzed)
     answered(page)

@@ -91,7 +91,7 @@ def dragged(hand: Hand, slider: str, steps: list[str]) -> dict[str, float]:
 
 
 @pytest.mark.nightly
-def test_an_own_pair_is_typed_analyzed_relieved_and_sent(seen: Visit, browser: Browser) -> None:
+def test_an_own_pair_is_typed_analyzed_relieved_and_sent(seen, browser):
     page, hand = seen.page, Hand(seen)
     type_pair(hand)
     hand.analyze()
@@ -120,7 +120,7 @@ def test_an_own_pair_is_typed_analyzed_relieved_and_sent(seen: Visit, browser: B
 
 
 @pytest.mark.nightly
-def test_an_own_pair_with_a_run_out_shows_a_revolution_and_its_sidebands(seen: Visit) -> None:
+def test_an_own_pair_with_a_run_out_shows_a_revolution_and_its_sidebands(seen):
     page, hand = seen.page, Hand(seen)
     type_pair(hand)
     hand.show("Teeth as made")
@@ -141,7 +141,7 @@ def test_an_own_pair_with_a_run_out_shows_a_revolution_and_its_sidebands(seen: V
 
 
 @pytest.mark.nightly
-def test_an_own_unit_is_opened_and_its_flanks_are_misaligned(seen: Visit) -> None:
+def test_an_own_unit_is_opened_and_its_flanks_are_misaligned(seen):
     page, hand = seen.page, Hand(seen)
     hand.on("#import-file").set_input_files(UNIT)
     expect(page.locator("#f-pair-pinion-teeth")).to_have_value("20")
@@ -177,7 +177,7 @@ def on_the_grid(page: Page) -> None:
 
 
 @pytest.mark.nightly
-def test_a_search_brings_three_decibels_that_are_heard(seen: Visit) -> None:
+def test_a_search_brings_three_decibels_that_are_heard(seen):
     page, hand = seen.page, Hand(seen)
     for field, text in {"frequency_hz": "1533", "speed_rpm": "4000", "torque_n_m": "120"}.items():
         hand.on(f"#bar-{field}").fill(text)  # 23 teeth: harmonic 1

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from page_numbers import printed
 from page_visit import opened
-from playwright.sync_api import Browser, Page, Route, expect
+from playwright.sync_api import Page, Route, expect
 from running_service import until
 
 SESSIONS = int(os.environ.get("LOA_PAGE_SESSIONS", "2"))
@@ -53,7 +53,7 @@ def deflect_at_no_cost(page: Page) -> list[dict[str, Any]]:
 
 
 @pytest.mark.law
-def test_a_deflection_is_seen_at_its_parts_by_one_click(browser: Browser, address: str) -> None:
+def test_a_deflection_is_seen_at_its_parts_by_one_click(browser, address):
     visit = opened(browser, address, width=1440)
     page = visit.page
     sent = deflect_at_no_cost(page)
@@ -83,9 +83,7 @@ def test_a_deflection_is_seen_at_its_parts_by_one_click(browser: Browser, addres
 
 
 @pytest.mark.law
-def test_the_complaint_of_a_unit_is_answered_in_the_bar_and_follows_to_its_meshes(
-    browser: Browser, address: str
-) -> None:
+def test_the_complaint_of_a_unit_is_answered_in_the_bar_and_follows_to_its_meshes(browser, address):
     visit = opened(browser, address, width=1440)
     page = visit.page
     page.locator("#import-file").set_input_files(UNIT)
@@ -182,7 +180,7 @@ def of_unit(page: Page) -> list[str]:
 
 @pytest.mark.law
 @pytest.mark.parametrize("seed", range(SESSIONS))
-def test_a_unit_has_one_answer_in_bar_tree_and_dock(browser: Browser, address: str, seed: int) -> None:
+def test_a_unit_has_one_answer_in_bar_tree_and_dock(browser, address, seed):
     visit = opened(browser, address, width=1440)
     page = visit.page
     deflect_at_no_cost(page)

@@ -75,7 +75,7 @@ def clicked(of: Locator, part: float) -> float:
     return float(low + part * (high - low))
 
 
-def test_the_sound_lasts_as_long_as_the_run(order_map: Locator) -> None:
+def test_the_sound_lasts_as_long_as_the_run(order_map):
     players = order_map.locator("audio")
     expect(players).to_have_count(1)
     assert players.evaluate("one => one.duration") == pytest.approx(DURATION, abs=1e-3)
@@ -83,7 +83,7 @@ def test_the_sound_lasts_as_long_as_the_run(order_map: Locator) -> None:
     expect(order_map).to_contain_text("Full scale: 28 N")
 
 
-def test_the_cursor_is_at_the_speed_of_the_sound(order_map: Locator) -> None:
+def test_the_cursor_is_at_the_speed_of_the_sound(order_map):
     order_map.locator("audio").evaluate("one => { one.currentTime = 1.2; }")
     expect(order_map.locator("output")).to_have_text("540.0 rpm")  # TOP 1.2 / DURATION
     low, high = order_map.locator(".plot").evaluate("node => node.layout.xaxis.range")
@@ -95,14 +95,14 @@ def test_the_cursor_is_at_the_speed_of_the_sound(order_map: Locator) -> None:
     assert cursor["height"] == pytest.approx(area["height"], abs=1.0)
 
 
-def test_a_click_on_the_map_seeks(order_map: Locator) -> None:
+def test_a_click_on_the_map_seeks(order_map):
     there = clicked(order_map, 0.75)
     order_map.page.wait_for_function("document.querySelector('#order_map audio').currentTime > 1.3")
     assert speed(order_map) == pytest.approx(there, rel=2e-3)
     assert times(order_map)[0] == pytest.approx(DURATION * there / TOP, rel=2e-3)
 
 
-def test_the_player_is_reached_by_the_keyboard(order_map: Locator) -> None:
+def test_the_player_is_reached_by_the_keyboard(order_map):
     order_map.locator("audio").focus()
     before = times(order_map)[0]
     order_map.page.keyboard.press("Home")
@@ -110,7 +110,7 @@ def test_the_player_is_reached_by_the_keyboard(order_map: Locator) -> None:
     assert before > 0.1
 
 
-def test_two_designs_are_heard_in_turn_at_the_same_speed(levels: Locator) -> None:
+def test_two_designs_are_heard_in_turn_at_the_same_speed(levels):
     players = levels.locator("audio")
     expect(players).to_have_count(2)
     there = clicked(levels, 0.5)
@@ -124,7 +124,7 @@ def test_two_designs_are_heard_in_turn_at_the_same_speed(levels: Locator) -> Non
     expect(players.nth(1)).to_be_hidden()
 
 
-def test_both_play_at_their_relative_level(levels: Locator) -> None:
+def test_both_play_at_their_relative_level(levels):
     """Decoded by the browser: the peaks are 1 and one half."""
     page: Page = levels.page
     peaks = page.evaluate(
@@ -137,7 +137,7 @@ def test_both_play_at_their_relative_level(levels: Locator) -> None:
     assert peaks == pytest.approx([1.0, 0.5], rel=1e-6)
 
 
-def test_without_scripts_the_sound_can_be_played(browser: Browser, folder: Path, order_map: Locator) -> None:
+def test_without_scripts_the_sound_can_be_played(browser, folder, order_map):
     context = browser.new_context(java_script_enabled=False)
     page = context.new_page()
     page.goto((folder / "report.html").as_uri())
@@ -194,7 +194,7 @@ def heard(browser: Browser, address: str, runs: Runs) -> Iterator[Visit]:
     found.page.close()
 
 
-def test_a_run_is_heard_under_its_order_map(heard: Visit) -> None:
+def test_a_run_is_heard_under_its_order_map(heard):
     page = heard.page
     page.evaluate(SHOW, [LOUD])
     order_map = page.locator("#shown [data-figure=order_map]")
@@ -214,7 +214,7 @@ def test_a_run_is_heard_under_its_order_map(heard: Visit) -> None:
     assert heard.complaints == []
 
 
-def test_two_runs_are_heard_in_turn(heard: Visit) -> None:
+def test_two_runs_are_heard_in_turn(heard):
     page = heard.page
     page.evaluate(SHOW, [LOUD, QUIET])
     levels = page.locator("#shown [data-figure=levels]")

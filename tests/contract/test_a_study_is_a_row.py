@@ -111,7 +111,7 @@ BEFORE = "\n\nflank = Studies.flank.function\n"
 """Line of the registry after its last row."""
 
 
-def test_verb_process_method_and_page_follow_from_a_row(tree: Path) -> None:
+def test_verb_process_method_and_page_follow_from_a_row(tree):
     done = subprocess.run(
         [sys.executable, "-P", "-c", FOUND, str(tree / "data")],
         cwd=tree, capture_output=True, text=True, check=False, timeout=300,

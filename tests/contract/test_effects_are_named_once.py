@@ -110,7 +110,7 @@ def all_named() -> list[tuple[str, int, str]]:
 
 
 @pytest.mark.law
-def test_no_effect_is_named_outside_its_file_and_the_registry() -> None:
+def test_no_effect_is_named_outside_its_file_and_the_registry():
     places = all_named()
     assert [place for place in places if (place[0], place[2]) not in REMAINS] == []
     assert {(path, name) for path, _, name in places} == set(REMAINS)
@@ -127,19 +127,19 @@ def test_no_effect_is_named_outside_its_file_and_the_registry() -> None:
         "from dynamics.effects.gyroscopic import Gyroscopic",
     ],
 )
-def test_each_way_to_name_an_effect_is_seen(line: str) -> None:
+def test_each_way_to_name_an_effect_is_seen(line):
     names = {effect.name for effect in OF_DYNAMICS}
     assert list(named_in(line, names, {"Gyroscopic"}))
 
 
-def test_what_effects_of_the_contact_bring_is_brought_once() -> None:
+def test_what_effects_of_the_contact_bring_is_brought_once():
     brought = [effect.brings for effect in OF_CONTACT if effect.brings]
     assert len(set(brought)) == len(brought)
     switches = {"across_face", "corner_contact", "finite_width"}
     assert switches <= set(brought) & set(vars(ContactModel()))
 
 
-def test_what_effects_of_dynamics_add_is_added_once() -> None:
+def test_what_effects_of_dynamics_add_is_added_once():
     added = [addition for effect in OF_DYNAMICS for addition in effect.adds]
     assert len(set(added)) == len(added)
 
@@ -181,9 +181,7 @@ def arrays(found: SteDatabase) -> Iterator[tuple[str, np.ndarray]]:
 @pytest.mark.law
 @pytest.mark.parametrize("scene", list(SCENES))
 @pytest.mark.parametrize("name", [effect.name for effect in OF_CONTACT])
-def test_a_table_with_an_effect_off_is_that_of_a_build_without_it(
-    scene: str, name: str, cache: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_table_with_an_effect_off_is_that_of_a_build_without_it(scene, name, cache, monkeypatch):
     if scene == "face" and name == "face_load_distribution":
         pytest.skip("no plane holds what acts across the face")
     off = table(scene, cache, {name: "off"})
@@ -198,7 +196,7 @@ def test_a_table_with_an_effect_off_is_that_of_a_build_without_it(
     assert compared > 100
 
 
-def test_the_registry_goes_with_the_request() -> None:
+def test_the_registry_goes_with_the_request():
     """A module that reads the registry by itself would escape the test above."""
     folder = Path(request.__file__).parent
     reading = {file.stem for file in folder.rglob("*.py") if "EFFECTS" in file.read_text()}
@@ -223,9 +221,7 @@ def everything() -> Scene:
 @pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize("name", [effect.name for effect in OF_DYNAMICS])
-def test_a_run_with_an_effect_off_is_that_of_a_build_without_it(
-    name: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_run_with_an_effect_off_is_that_of_a_build_without_it(name, monkeypatch):
     scene = everything()
     off = simulate(replace(scene, effects={name: "off"}))
     remaining = tuple(effect for effect in OF_DYNAMICS if effect.name != name)
@@ -244,9 +240,7 @@ def test_a_run_with_an_effect_off_is_that_of_a_build_without_it(
     assert off.statistics == without.statistics
 
 
-def test_a_run_with_an_effect_neglected_for_a_tolerance_is_that_of_a_build_without_it(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_run_with_an_effect_neglected_for_a_tolerance_is_that_of_a_build_without_it(monkeypatch):
     whole = everything()
     scene = replace(whole, drives=(replace(whole.drives[0], speed=TimeLaw.constant(40.0 * RPM)),))
     decision = decide_effects(replace(scene, tolerance=0.05))
@@ -263,7 +257,7 @@ def test_a_run_with_an_effect_neglected_for_a_tolerance_is_that_of_a_build_witho
     assert off.statistics == without.statistics
 
 
-def test_the_scene_has_most_effects_on() -> None:
+def test_the_scene_has_most_effects_on():
     entries = simulate(everything()).effect_ledger["entries"]
     on = {entry["effect"] for entry in entries if entry["on"]}
     assert on >= {"lateral", "axial", "tilt", "gyroscopic", "backlash"}

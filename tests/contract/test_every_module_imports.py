@@ -41,7 +41,7 @@ def _run(code: str) -> str:
 
 
 @pytest.mark.law
-def test_every_module_imports_without_the_modules_of_posix() -> None:
+def test_every_module_imports_without_the_modules_of_posix():
     """What others import of them is loaded before: asyncio needs fcntl on POSIX, and not on Windows."""
     code = """
 before = set(import_all())
@@ -53,7 +53,7 @@ print(*before - set(import_all(but=("host.posix",))))
 
 
 @pytest.mark.nightly
-def test_without_them_a_pair_is_computed_to_the_same_last_bit() -> None:
+def test_without_them_a_pair_is_computed_to_the_same_last_bit():
     code = """
 import numpy as np
 from fe_contact import Gear, GearPair, analyze

@@ -9,7 +9,6 @@ import json
 import sys
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 from types import FrameType
 from typing import Any
 
@@ -73,7 +72,7 @@ def _package(frame: FrameType) -> str | None:
 
 
 @pytest.mark.law
-def test_from_a_bearing_force_to_decibels() -> None:
+def test_from_a_bearing_force_to_decibels():
     surface = SurfaceHousing("case", housing(), tuple(seat.name for seat in housing().seats))
     force, part = response(), part_of_scene(housing())
     scene = replace(gear_pair_scene(square_wave_table(), effects=ON), housings=(part,))
@@ -92,7 +91,7 @@ def test_from_a_bearing_force_to_decibels() -> None:
 
 
 @pytest.mark.law
-def test_from_a_relief_to_its_curves(tmp_path: Path) -> None:
+def test_from_a_relief_to_its_curves(tmp_path):
     case = Case.model_validate_json(json.dumps(CASE))
     table = analyze(
         gear_pair(case),

@@ -123,7 +123,7 @@ def table_words(tables: list[Json]) -> dict[str, str]:
 @pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize("name", CASES)
-def test_five_outputs_tell_one_number(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_five_outputs_tell_one_number(name, tmp_path, monkeypatch):
     case = boundary_case(name)
     file, table = tmp_path / "case.json", tmp_path / "ste.nc"
     file.write_text(json.dumps(case), encoding="utf-8")
@@ -199,7 +199,7 @@ OFF = {"tilt": "off"}
 
 @pytest.mark.law
 @pytest.mark.parametrize("sound", [False, True], ids=["bearing forces", "sound"])
-def test_outputs_of_a_run_tell_one_number(sound: bool) -> None:
+def test_outputs_of_a_run_tell_one_number(sound):
     scene = tilting_pair(effects=OFF, outputs=Outputs(energy_audit=False))
     scene = replace(scene, quantity=FirstBearing() if sound else None)
     run = simulate(scene)
@@ -225,7 +225,7 @@ def test_outputs_of_a_run_tell_one_number(sound: bool) -> None:
 
 
 @pytest.mark.law
-def test_a_response_tells_the_number_of_a_run_at_its_speed() -> None:
+def test_a_response_tells_the_number_of_a_run_at_its_speed():
     scene = tilting_pair(outputs=Outputs(energy_audit=False))
     run = simulate(scene).effect_ledger["influences"]
     speed = scene.drives[0].speed.extreme / RPM

@@ -57,7 +57,7 @@ def _as_a_user(
 
 
 @pytest.mark.chain
-def test_the_scripts_of_the_page_run_one_after_the_other(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_scripts_of_the_page_run_one_after_the_other(capsys):
     scripts = re.findall(r"```python\n(.*?)```", RECIPES, re.DOTALL)
     assert len(scripts) == 16  # the first one, and the recipes
     names: dict[str, Any] = {}
@@ -91,7 +91,7 @@ def test_the_scripts_of_the_page_run_one_after_the_other(capsys: pytest.CaptureF
     assert float(run_up) == pytest.approx(100.0 / (0.04 * np.cos(np.radians(20.0))), rel=2e-3)
 
 
-def test_the_sheet_of_an_inspection_goes_into_a_case(tmp_path: Path) -> None:
+def test_the_sheet_of_an_inspection_goes_into_a_case(tmp_path):
     sheet = tmp_path / "pinion.csv"
     rows = "".join(f"{tooth},left,pitch,{tooth % 2}\n" for tooth in range(1, 21))
     sheet.write_text(f"tooth,flank,trace,deviation_um\n{rows}", encoding="utf-8")
@@ -107,12 +107,7 @@ def test_the_sheet_of_an_inspection_goes_into_a_case(tmp_path: Path) -> None:
 
 
 @pytest.mark.chain  # by the bodies that the scripts had condensed
-def test_the_paper_s_flow_runs_again_without_the_service(
-    service: tuple[subprocess.Popen[str], str],
-    monkeypatch: pytest.MonkeyPatch,
-    tmp_path: Path,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
+def test_the_paper_s_flow_runs_again_without_the_service(service, monkeypatch, tmp_path, capsys):
     examples = ROOT / "examples"
     monkeypatch.syspath_prepend(str(examples))
 
@@ -132,7 +127,7 @@ def test_the_paper_s_flow_runs_again_without_the_service(
     assert fundamental and 286.5 < float(fundamental.group(1)) < 302.4  # the paper's figure: 287 to 303 Hz
 
 
-def test_what_the_page_installs_is_enough_to_ask_a_service(tmp_path: Path) -> None:
+def test_what_the_page_installs_is_enough_to_ask_a_service(tmp_path):
     """With what extras bring out of reach, tables are fetched, opened and asked."""
     assert "pip install lineofaction\n" in PAGE
     hidden = [name for names in MODULES.values() for name in names]

@@ -65,7 +65,7 @@ def table(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return file
 
 
-def test_the_example_becomes_a_table(table: Path) -> None:
+def test_the_example_becomes_a_table(table):
     found = SteDatabase.from_netcdf(table)
     assert found.geometry.internal
     assert not found.status.any()
@@ -73,7 +73,7 @@ def test_the_example_becomes_a_table(table: Path) -> None:
     assert found.load_share.sum(axis=-1) == pytest.approx(1.0, abs=1e-12)
 
 
-def test_its_curve_and_its_report_can_be_read(table: Path, tmp_path: Path) -> None:
+def test_its_curve_and_its_report_can_be_read(table, tmp_path):
     curve = json.loads(output_of("ste", table, "--torque", 60, "--json"))
     assert curve
     page = tmp_path / "ring.html"

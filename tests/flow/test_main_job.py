@@ -61,7 +61,7 @@ def number(text: str, label: str) -> float:
     return float(found.group(1))
 
 
-def test_the_summary_holds_the_known_figures(job: tuple[Path, str]) -> None:
+def test_the_summary_holds_the_known_figures(job):
     _, text = job
     assert number(text, "mean STE at 100 N m") == pytest.approx(6.245, rel=0.003)
     assert number(text, "peak-to-peak STE at 100 N m") == pytest.approx(2.799, rel=0.01)
@@ -76,7 +76,7 @@ def test_the_summary_holds_the_known_figures(job: tuple[Path, str]) -> None:
     assert number(helical, "peak-to-peak STE at 100 N m") == pytest.approx(0.392, rel=0.02)
 
 
-def test_the_report_and_its_images_are_written(job: tuple[Path, str]) -> None:
+def test_the_report_and_its_images_are_written(job):
     folder, text = job
     assert str(folder / "report.html") in text
     page = (folder / "report.html").read_text(encoding="utf-8")
@@ -100,7 +100,7 @@ def test_the_report_and_its_images_are_written(job: tuple[Path, str]) -> None:
     assert "Gear pair 23/67" in helical and '<figure id="face_load">' in helical
 
 
-def test_the_page_will_open_on_figures_that_are_drawn(job: tuple[Path, str]) -> None:
+def test_the_page_will_open_on_figures_that_are_drawn(job):
     folder, _ = job
     first = tomllib.loads(HELICAL.read_text(encoding="utf-8"))
     assert first == examples()[0].content
@@ -108,12 +108,12 @@ def test_the_page_will_open_on_figures_that_are_drawn(job: tuple[Path, str]) -> 
     assert json.loads(kept.read_text(encoding="utf-8"))["title"] == "Gear pair 23/67"
 
 
-def test_nothing_is_left_running(job: tuple[Path, str]) -> None:
+def test_nothing_is_left_running(job):
     assert running(job[0]) == []
 
 
 @pytest.mark.law
-def test_stopped_in_the_middle_it_stops_its_service(tmp_path: Path) -> None:
+def test_stopped_in_the_middle_it_stops_its_service(tmp_path):
     started = subprocess.Popen(
         [sys.executable, str(JOB), "--out", str(tmp_path / "out")],
         env=environment(tmp_path),

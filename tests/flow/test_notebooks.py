@@ -33,7 +33,7 @@ def values(file: Path) -> Iterator[object]:
             yield eval(compile(ast.Expression(last.value), f"{file.name}, cell {number}", "eval"), names)
 
 
-def test_there_are_notebooks_without_outputs() -> None:
+def test_there_are_notebooks_without_outputs():
     assert len(NOTEBOOKS) >= 2
     for cell in (cell for file in NOTEBOOKS for cell in cells(file)):
         assert not cell.get("outputs"), cell
@@ -42,7 +42,7 @@ def test_there_are_notebooks_without_outputs() -> None:
 
 @pytest.mark.nightly
 @pytest.mark.parametrize("file", NOTEBOOKS, ids=lambda file: file.stem)
-def test_a_notebook_runs_within_a_minute(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_notebook_runs_within_a_minute(file, monkeypatch):
     monkeypatch.chdir(FOLDER)
     plt.switch_backend("Agg")
     before = cpu_seconds()

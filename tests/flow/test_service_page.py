@@ -35,7 +35,7 @@ def address(tmp_path: Path, condensed_bodies: Path) -> Iterator[str]:
 
 
 @pytest.mark.skipif(shutil.which("curl") is None, reason="curl is not here")
-def test_the_first_steps_work_with_curl(tmp_path: Path, address: str) -> None:
+def test_the_first_steps_work_with_curl(tmp_path, address):
     start, *steps = STEPS
     assert start.strip() == "loa serve"
     assert len(steps) == 3 and ADDRESS in steps[0]

@@ -122,9 +122,7 @@ def pool(request: pytest.FixtureRequest) -> Iterator[Workers]:
 @pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize("row", ROWS, ids=str)
-def test_a_study_gives_the_same_bits_by_any_number_of_processes(
-    row: StudyRow, pool: Workers, ask: Ask, here: Callable[[StudyRow], Figures]
-) -> None:
+def test_a_study_gives_the_same_bits_by_any_number_of_processes(row, pool, ask, here):
     workers, before = Noting(pool), pool.cost.cpu_seconds
     assert ask(row, workers) == here(row)
     assert (len(workers.own(row)) > 0) is (str(row) not in WHOLE)
@@ -134,7 +132,7 @@ def test_a_study_gives_the_same_bits_by_any_number_of_processes(
 @pytest.mark.law
 @pytest.mark.nightly
 @pytest.mark.filterwarnings("ignore")
-def test_a_study_gives_the_same_bits_by_a_cluster(ask: Ask, here: Callable[[StudyRow], Figures]) -> None:
+def test_a_study_gives_the_same_bits_by_a_cluster(ask, here):
     distributed = pytest.importorskip("distributed", reason="the extra dask is not installed")
     rows = [row for row in ROWS if str(row) in BY_DASK]
     assert len(rows) == len(BY_DASK)

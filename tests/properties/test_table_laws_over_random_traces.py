@@ -105,9 +105,7 @@ def true_no_load(case: Solved) -> np.ndarray:
 @pytest.mark.parametrize("side", ["pinion", "wheel"])
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.drawn
-def test_laws_pass_true_touching_points_and_find_out_others(
-    kind: str, side: str, teeth: int, seed: int
-) -> None:
+def test_laws_pass_true_touching_points_and_find_out_others(kind, side, teeth, seed):
     random = np.random.default_rng([seed, teeth, len(kind), len(side)])
     gears = {"pinion": gear(24), "wheel": gear(24)}
     try:

@@ -49,7 +49,7 @@ def both(request) -> tuple[SteDatabase, SteDatabase]:
         return sound, table(**request.param)
 
 
-def test_the_failed_points_are_marked_and_the_rest_is_as_it_would_be(both) -> None:
+def test_the_failed_points_are_marked_and_the_rest_is_as_it_would_be(both):
     _, damaged = both
     at = damaged.position == DAMAGED
     assert at.sum() == 1
@@ -70,7 +70,7 @@ def test_the_failed_points_are_marked_and_the_rest_is_as_it_would_be(both) -> No
     assert len(damaged.metadata.receipt["support_loads_left_out"]) == sound.support_force.size
 
 
-def test_the_table_says_which_failed_and_answers_only_if_asked(both, tmp_path) -> None:
+def test_the_table_says_which_failed_and_answers_only_if_asked(both, tmp_path):
     sound, damaged = both
     assert "3 of" in damaged.summary() and "position 0.25" in damaged.summary()
     assert "SINGULAR" in damaged.summary()
@@ -87,7 +87,7 @@ def test_the_table_says_which_failed_and_answers_only_if_asked(both, tmp_path) -
     assert SteDatabase.from_netcdf(tmp_path / "ste.nc").identical(damaged)
 
 
-def test_flank_results_say_which_position_failed_and_why() -> None:
+def test_flank_results_say_which_position_failed_and_why():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(room, "solve_contact", damaging)
         said = r"1 of 64 positions have no solution \(position 0.25: SINGULAR\)"

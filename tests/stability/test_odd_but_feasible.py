@@ -168,19 +168,19 @@ def judged(odd: Odd) -> Any:
 @pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize("odd", [judged(odd) for odd in ODD])
-def test_what_is_odd_but_feasible_is_computed(odd: Odd) -> None:
+def test_what_is_odd_but_feasible_is_computed(odd):
     figures = assessed(odd.pair(), odd.arguments())
     assert all(f.passed for f in figures if f.name != "CPU time, s"), [
         str(f) for f in figures if not f.passed
     ]
 
 
-def test_there_are_forty_of_either() -> None:
+def test_there_are_forty_of_either():
     assert len({odd.name for odd in ODD}) >= 40
     assert len({bad.name for bad in BAD_INPUTS}) >= 40
 
 
-def test_a_helical_disc_that_bends_as_a_plate_is_refused() -> None:
+def test_a_helical_disc_that_bends_as_a_plate_is_refused():
     disc = {"teeth": 40, "normal_module": 2 * MM, "face_width": 0.3 * MM, "bore_diameter": 20 * MM}
     sides = [Gear(helix_angle=angle * DEG, **disc) for angle in (25.0, -25.0)]
     with pytest.raises(InputError, match=r"pinion.face_width = 0.0003: must be at least 0.000\d+ m"):

@@ -143,7 +143,7 @@ def _overshoots(pair: ParallelAxes, side: Side) -> np.ndarray:
 @pytest.mark.drawn
 @pytest.mark.parametrize("side", ["approach", "exit"])
 @pytest.mark.parametrize("name", PAIRS)
-def test_gap_is_the_lag_that_makes_rigid_flanks_touch(name: str, side: Side, record_figure: Any) -> None:
+def test_gap_is_the_lag_that_makes_rigid_flanks_touch(name, side, record_figure):
     pair = PAIRS[name]
     assembly, path = Assembly(pair), pair.path_of_contact
     over = _overshoots(pair, side)
@@ -159,7 +159,7 @@ def test_gap_is_the_lag_that_makes_rigid_flanks_touch(name: str, side: Side, rec
 
 @pytest.mark.parametrize("side", ["approach", "exit"])
 @pytest.mark.parametrize("name", PAIRS)
-def test_touching_point_slope_and_lever_arms_are_those_of_the_placed_gears(name: str, side: Side) -> None:
+def test_touching_point_slope_and_lever_arms_are_those_of_the_placed_gears(name, side):
     pair = PAIRS[name]
     assembly, path = Assembly(pair), pair.path_of_contact
     for over in _overshoots(pair, side):
@@ -192,7 +192,7 @@ def test_touching_point_slope_and_lever_arms_are_those_of_the_placed_gears(name:
 
 
 @pytest.mark.parametrize("name", PAIRS)
-def test_conjugate_flanks_touch_without_gap_inside_the_path(name: str) -> None:
+def test_conjugate_flanks_touch_without_gap_inside_the_path(name):
     pair = PAIRS[name]
     assembly, path = Assembly(pair), pair.path_of_contact
     for roll in np.linspace(path.start, path.end, 7)[1:-1]:
@@ -212,7 +212,7 @@ def relieved(pair: ParallelAxes) -> ParallelAxes:
     "name",
     ["20/20", pytest.param("36/96 internal", marks=pytest.mark.nightly), "24/70 internal helical"],
 )
-def test_gap_of_a_relieved_wheel_is_the_lag_that_makes_its_flank_touch(name: str, record_figure: Any) -> None:
+def test_gap_of_a_relieved_wheel_is_the_lag_that_makes_its_flank_touch(name, record_figure):
     """The wheel's flank, moved along its normals by the relief, against the plain pinion.
 
     A slope m' moves the touching point off the line of action and turns the normal: the lever arm of the
@@ -264,9 +264,7 @@ RELIEF = FlankModification(tip_relief=DEPTH, tip_relief_length=4e-3)
 @pytest.mark.parametrize("sloped", [False, True])
 @pytest.mark.parametrize("side", ["approach", "exit"])
 @pytest.mark.parametrize("name", ["20/20", "17/43 shifted", "43/17 shifted", "36/96 internal"])
-def test_gap_of_a_relieved_tip_edge_is_the_lag_that_makes_it_touch(
-    name: str, side: Side, sloped: bool, record_figure: Any
-) -> None:
+def test_gap_of_a_relieved_tip_edge_is_the_lag_that_makes_it_touch(name, side, sloped, record_figure):
     """The edge is the end of the relieved flank, moved along its normal; the mate is a plain involute.
 
     A lag closes what is removed from gear 2 by the lever arm of its edge, up to two per cent less than on

@@ -45,7 +45,7 @@ def order_of(sound: RadiatedSound) -> int:
 
 
 @pytest.mark.nightly
-def test_the_unit_is_cast_deflected_optimized_and_heard(tmp_path: Path) -> None:
+def test_the_unit_is_cast_deflected_optimized_and_heard(tmp_path):
     command = [sys.executable, SCRIPT, "-o", tmp_path, "--quick"]
     printed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     rows = {

@@ -24,9 +24,7 @@ def processes(monkeypatch: pytest.MonkeyPatch) -> list[subprocess.Popen[bytes]]:
     return processes
 
 
-def test_a_rate_has_the_time_of_all_and_nothing_stays(
-    processes: list[subprocess.Popen[bytes]], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_rate_has_the_time_of_all_and_nothing_stays(processes, monkeypatch):
     monkeypatch.setattr(cluster_rate, "_TASKS", 20)
     monkeypatch.setattr(cluster_rate, "_TASK_S", 0.01)
     rate = cluster_rate.measured(2)
@@ -34,9 +32,7 @@ def test_a_rate_has_the_time_of_all_and_nothing_stays(
     assert len(processes) == 2 and None not in [process.poll() for process in processes]
 
 
-def test_workers_that_do_not_come_are_not_waited_for(
-    processes: list[subprocess.Popen[bytes]], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_workers_that_do_not_come_are_not_waited_for(processes, monkeypatch):
     monkeypatch.setattr(cluster_rate, "_WORKERS", "raise SystemExit(1)")
     with pytest.raises(RuntimeError, match="did not start"):
         cluster_rate.measured(2)

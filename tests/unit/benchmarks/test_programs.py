@@ -19,7 +19,7 @@ def imports() -> Iterator[tuple[str, str, str]]:
                 yield from ((file.name, module, name) for name in names.split(", "))
 
 
-def test_programs_import_what_there_is() -> None:
+def test_programs_import_what_there_is():
     stated = list(imports())
     assert len(stated) > 20
     missing = [(file, module, name) for file, module, name in stated if not _there(module, name)]

@@ -26,7 +26,7 @@ def ends(*arguments: object, first: int = 2) -> tuple[list[str], str]:
     return lines[:first], lines[-1]
 
 
-def test_a_table_begins_with_mean_and_ripple_and_ends_with_its_file(tmp_path: Path) -> None:
+def test_a_table_begins_with_mean_and_ripple_and_ends_with_its_file(tmp_path):
     file = tmp_path / "ste.nc"
     (mean, ripple), written = ends("analyze", SPUR, "-o", file, "--torque", 100, *COARSE)
     figure = r"([\d.]+) µm ± [\d.]+ µm"
@@ -38,7 +38,7 @@ def test_a_table_begins_with_mean_and_ripple_and_ends_with_its_file(tmp_path: Pa
     assert written == f"written to {file}"
 
 
-def test_a_plan_begins_with_what_it_chose() -> None:
+def test_a_plan_begins_with_what_it_chose():
     done = loa("plan", SPUR)
     size, chosen, *_ = done.stdout.splitlines()
     assert re.fullmatch(r"standard: [\d.]+ CPU s, [\d.]+ GiB; nothing is computed yet", size)
@@ -46,7 +46,7 @@ def test_a_plan_begins_with_what_it_chose() -> None:
     assert [line.split()[:2] for line in done.stdout.splitlines() if ">" in line] == [[">", "standard"]]
 
 
-def test_a_fetched_result_ends_with_its_figures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_fetched_result_ends_with_its_figures(tmp_path, monkeypatch):
     stored, file, key = tmp_path / "stored.nc", tmp_path / "fetched.nc", "ab" * 32
     small_table().to_netcdf(stored)
     monkeypatch.setattr(LineOfActionClient, "fetch_result", lambda *_: (stored, "database"))
@@ -56,7 +56,7 @@ def test_a_fetched_result_ends_with_its_figures(tmp_path: Path, monkeypatch: pyt
     assert written == f"written to {file}"
 
 
-def test_the_help_lists_every_verb_once_in_a_group_with_its_whole_sentence() -> None:
+def test_the_help_lists_every_verb_once_in_a_group_with_its_whole_sentence():
     groups = loa("--help").stdout.partition("Start:\n")[2].partition("\n\n  Start with")[0]
     listed = re.findall(r"^  ([a-z-]+)  +\S", groups, re.M)
     assert sorted(listed) == sorted(VERBS)

@@ -36,7 +36,7 @@ def files(tmp_path: Path) -> tuple[Path, Path]:
     return case, study
 
 
-def test_all_files_say_the_same(files: tuple[Path, Path], tmp_path: Path) -> None:
+def test_all_files_say_the_same(files, tmp_path):
     folder = tmp_path / "optimum"
     ran = loa("optimize", *files, "-o", folder)
     assert ran.exit_code == 0, ran.output
@@ -58,9 +58,7 @@ def test_all_files_say_the_same(files: tuple[Path, Path], tmp_path: Path) -> Non
     assert "Harris map after" in page and "every node of the scatter" in page
 
 
-def test_the_design_in_the_case_file_has_the_ripple_that_was_told(
-    files: tuple[Path, Path], tmp_path: Path
-) -> None:
+def test_the_design_in_the_case_file_has_the_ripple_that_was_told(files, tmp_path):
     case, study = files
     study.write_text(STUDY.replace("profile_slope_um = 2.0", ""), encoding="utf-8")
     best = tmp_path / "best.toml"
@@ -79,9 +77,7 @@ def test_the_design_in_the_case_file_has_the_ripple_that_was_told(
         assert abs(harris["expected_peak_to_peak_um"][index] - curve["peak_to_peak_um"]) <= allowed
 
 
-def test_an_interrupted_search_writes_its_best_and_says_so(
-    files: tuple[Path, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_interrupted_search_writes_its_best_and_says_so(files, tmp_path, monkeypatch):
     asked = [0]
 
     @contextmanager

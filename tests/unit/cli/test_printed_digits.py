@@ -140,7 +140,7 @@ def reported(folder: Path, files: list[Path]) -> Iterator[str]:
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=() if name in DAY else pytest.mark.nightly) for name in CASES]
 )
-def test_a_case_prints_no_digit_beyond_its_error(name: str, tmp_path: Path) -> None:
+def test_a_case_prints_no_digit_beyond_its_error(name, tmp_path):
     case = tmp_path / "case.toml"
     case.write_text(toml_text(CASES[name]), encoding="utf-8")
     found = []
@@ -158,7 +158,7 @@ def test_a_case_prints_no_digit_beyond_its_error(name: str, tmp_path: Path) -> N
 @pytest.mark.nightly
 @pytest.mark.law
 @pytest.mark.parametrize("name", ["planetary", "idler", "rexs"])
-def test_a_unit_prints_no_digit_beyond_its_error(name: str, tmp_path: Path) -> None:
+def test_a_unit_prints_no_digit_beyond_its_error(name, tmp_path):
     scene = tmp_path / "scene.toml"
     if name == "rexs":
         opened = loa("open", EXAMPLES / "two_stage_gearbox.rexs", "-o", tmp_path)

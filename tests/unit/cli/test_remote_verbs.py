@@ -42,7 +42,7 @@ def listed(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
     return asked
 
 
-def test_jobs_are_a_line_each_with_the_time_left(listed: list[dict[str, Any]]) -> None:
+def test_jobs_are_a_line_each_with_the_time_left(listed):
     shown = loa("jobs", "--process", "analyze", "--status", "running", "--limit", 7)
     head, running, done, waiting = (line.split() for line in shown.stdout.splitlines())
     assert head[0] == "job"
@@ -52,20 +52,20 @@ def test_jobs_are_a_line_each_with_the_time_left(listed: list[dict[str, Any]]) -
     assert listed == [{"process": ["analyze"], "status": ["running"], "limit": 7}]
 
 
-def test_jobs_for_programs_have_all_that_is_known(listed: list[dict[str, Any]]) -> None:
+def test_jobs_for_programs_have_all_that_is_known(listed):
     running, done, waiting = json.loads(loa("jobs", "--json").stdout)["jobs"]
     assert (running["id"], running["remaining_s"], done["status"]) == ("1-2", 240.0, "successful")
     assert (running["ahead"], waiting["ahead"]) == (None, 2)
     assert listed == [{"process": (), "status": (), "limit": 20}]
 
 
-def test_dismiss_says_what_became_of_the_job(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_dismiss_says_what_became_of_the_job(monkeypatch):
     monkeypatch.setattr(LineOfActionClient, "dismiss", lambda _client, name: job(name, "dismissed"))
     assert loa("dismiss", "1-2").stdout == "job 1-2, analyze: dismissed\n"
     assert json.loads(loa("dismiss", "1-2", "--json").stdout)["status"] == "dismissed"
 
 
-def test_ctrl_c_while_waiting_says_how_to_go_on_and_how_to_end(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ctrl_c_while_waiting_says_how_to_go_on_and_how_to_end(monkeypatch):
     def interrupted(*_arguments: object) -> None:
         raise KeyboardInterrupt
 
@@ -79,7 +79,7 @@ def test_ctrl_c_while_waiting_says_how_to_go_on_and_how_to_end(monkeypatch: pyte
     assert dismiss.endswith(f"loa dismiss 1-2 --service {ADDRESS}")
 
 
-def test_fetch_waits_if_it_is_to_and_says_so_if_not(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_fetch_waits_if_it_is_to_and_says_so_if_not(tmp_path, monkeypatch):
     stored, file = tmp_path / "stored.nc", tmp_path / "fetched.nc"
     small_table().to_netcdf(stored)
 

@@ -38,7 +38,7 @@ def answer(file: Path, curve: Json) -> list[str]:
     return list(_answer(SteDatabase.from_netcdf(file), f"report {file}", curve))
 
 
-def test_the_answer_is_one_look(file: Path, answer: list[str]) -> None:
+def test_the_answer_is_one_look(file, answer):
     done = loa("ste", file, "--torque", TORQUE)
     assert done.exit_code == 0, done.output
     for lines in (answer, done.stdout.splitlines()):
@@ -48,7 +48,7 @@ def test_the_answer_is_one_look(file: Path, answer: list[str]) -> None:
         assert lines[-1].startswith(f"next: loa report {file}")
 
 
-def test_figures_are_those_of_the_curve_with_two_digits_of_the_error(answer: list[str], curve: Json) -> None:
+def test_figures_are_those_of_the_curve_with_two_digits_of_the_error(answer, curve):
     for name, key in (("mean", "mean_um"), ("peak to peak", "peak_to_peak_um")):
         (line,) = (line for line in answer if line.startswith(f"  {name} "))
         found = re.match(rf"  {name} +([\d.]+) +± ([\d.]+) µm", line)
@@ -60,9 +60,7 @@ def test_figures_are_those_of_the_curve_with_two_digits_of_the_error(answer: lis
         assert float(found[2]) == pytest.approx(curve[key.replace("_um", "_error_um")], abs=last)
 
 
-def test_harmonics_above_their_errors_are_in_decibels_and_the_others_are_named(
-    answer: list[str], curve: Json
-) -> None:
+def test_harmonics_above_their_errors_are_in_decibels_and_the_others_are_named(answer, curve):
     sizes, errors = (dict(enumerate(curve[name][:8], 1)) for name in ("harmonics_um", "harmonics_error_um"))
     sure = {order for order, size in sizes.items() if size > errors[order]}
     assert 1 < len(sure) < 8
@@ -76,7 +74,7 @@ def test_harmonics_above_their_errors_are_in_decibels_and_the_others_are_named(
     assert {int(order) for order in re.findall(r"\d+", rest.partition(":")[0])} == set(sizes) - sure
 
 
-def test_the_ripple_is_drawn_over_two_periods(answer: list[str], curve: Json) -> None:
+def test_the_ripple_is_drawn_over_two_periods(answer, curve):
     (line,) = (line for line in answer if line.endswith("two periods"))
     drawn = line.removesuffix("two periods").split()[-1]
     half, ste = len(drawn) // 2, np.array(curve["ste_um"])
@@ -85,7 +83,7 @@ def test_the_ripple_is_drawn_over_two_periods(answer: list[str], curve: Json) ->
     assert drawn[round(ste.argmin() * half / ste.size)] == min(drawn) == "▁"
 
 
-def test_positions_are_printed_where_they_are_requested(file: Path) -> None:
+def test_positions_are_printed_where_they_are_requested(file):
     whole = loa("ste", file, "--torque", TORQUE, "--table").stdout.splitlines()
     some = loa("ste", file, "--torque", TORQUE, "--at", "0,0.25").stdout.splitlines()
     assert whole[0].split()[:2] == some[0].split()[:2] == ["position", "ste_um"]
@@ -93,7 +91,7 @@ def test_positions_are_printed_where_they_are_requested(file: Path) -> None:
     assert len(whole) == 1 + len(SteDatabase.from_netcdf(file).position)
 
 
-def test_the_error_of_a_point_names_the_part_of_interpolation(file: Path, curve: Json) -> None:
+def test_the_error_of_a_point_names_the_part_of_interpolation(file, curve):
     def said(**bands: Any) -> str:
         lines = _answer(SteDatabase.from_netcdf(file), "report", curve | bands)
         return next(line.strip() for line in lines if "error of a point" in line)
@@ -103,7 +101,7 @@ def test_the_error_of_a_point_names_the_part_of_interpolation(file: Path, curve:
     assert said(**bands | {"interval_error_um": 0.0}) == "error of a point: up to 0.2 µm"
 
 
-def test_every_row_of_a_list_has_the_error_of_its_point(file: Path) -> None:
+def test_every_row_of_a_list_has_the_error_of_its_point(file):
     table = SteDatabase.from_netcdf(file)
     header, *rows = loa("ste", file, "--torque", "30", "--at", "0,0.25,0.6", "--csv").stdout.splitlines()
     assert header.split(",")[-1] == "ste_error_um"

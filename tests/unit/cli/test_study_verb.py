@@ -91,7 +91,7 @@ def studied(tmp_path_factory: pytest.TempPathFactory) -> Studied:
     return Studied(scene, out, result.stdout)
 
 
-def test_figures_are_those_of_loa_simulate(studied: Studied, tmp_path: Path) -> None:
+def test_figures_are_those_of_loa_simulate(studied, tmp_path):
     answer = json.loads(studied.printed)
     check_declared("study", answer)
     made = Study.from_netcdf(studied.out / "study.nc")
@@ -111,14 +111,14 @@ def test_figures_are_those_of_loa_simulate(studied: Studied, tmp_path: Path) -> 
 
 
 @pytest.mark.law
-def test_two_processes_give_the_same_bits(studied: Studied, scene: Path, tmp_path: Path) -> None:
+def test_two_processes_give_the_same_bits(studied, scene, tmp_path):
     assert loa("study", scene, study_file(tmp_path), "-o", tmp_path / "two", "--workers", 2).exit_code == 0
     one, two = (Study.from_netcdf(folder / "study.nc") for folder in (studied.out, tmp_path / "two"))
     np.testing.assert_array_equal(one.figure, two.figure)
 
 
 @pytest.mark.law
-def test_a_killed_study_goes_on_where_it_was(scene: Path, tmp_path: Path) -> None:
+def test_a_killed_study_goes_on_where_it_was(scene, tmp_path):
     many = STUDY.replace("samples = 3", "samples = 40").replace("keep_worst = 1", "")
     arguments = ["study", str(scene), str(study_file(tmp_path, many)), "-o", str(tmp_path / "killed")]
     kept = tmp_path / "cache" / "lineofaction" / "studies"
@@ -163,9 +163,7 @@ def test_a_killed_study_goes_on_where_it_was(scene: Path, tmp_path: Path) -> Non
         ("meshes.mesh.case.pair.pinion.tip_relief_um", "takes a database"),
     ],
 )
-def test_a_path_that_there_is_not_is_refused_with_the_nearest(
-    scene: Path, tmp_path: Path, path: str, said: str
-) -> None:
+def test_a_path_that_there_is_not_is_refused_with_the_nearest(scene, tmp_path, path, said):
     text = STUDY.replace("loads.brake.torque_n_m", path)
     result = loa("study", scene, study_file(tmp_path, text))
     assert result.exit_code == 2
@@ -179,15 +177,13 @@ def test_a_path_that_there_is_not_is_refused_with_the_nearest(
         ("order = 1", "", "order"),
     ],
 )
-def test_a_response_that_there_is_not_is_refused_by_its_field(
-    scene: Path, tmp_path: Path, old: str, new: str, field: str
-) -> None:
+def test_a_response_that_there_is_not_is_refused_by_its_field(scene, tmp_path, old, new, field):
     text = STUDY.replace(old, new)
     result = loa("study", scene, study_file(tmp_path, text))
     assert result.exit_code == 2 and field in result.stderr, result.output
 
 
-def test_a_path_names_parts_entries_and_what_is_left_out(scene: Path) -> None:
+def test_a_path_names_parts_entries_and_what_is_left_out(scene):
     inputs = read_model(SceneInput, scene)
     assert places_of(inputs, "path", "bushings.*.damping_ratio") == (
         ("bushings", 0, "damping_ratio"), ("bushings", 1, "damping_ratio"),
@@ -201,11 +197,11 @@ def test_a_path_names_parts_entries_and_what_is_left_out(scene: Path) -> None:
     assert table["drives"][0]["speed_rpm"] == [5.0] * len(inputs.drives[0].speed_rpm or ())
 
 
-def test_the_quantities_are_those_of_the_library() -> None:
+def test_the_quantities_are_those_of_the_library():
     assert get_args(QuantityName) == tuple(QUANTITIES)
 
 
-def test_a_value_that_the_scene_refuses_is_a_failed_point(scene: Path, tmp_path: Path) -> None:
+def test_a_value_that_the_scene_refuses_is_a_failed_point(scene, tmp_path):
     text = STUDY.replace("levels = [50.0, 100.0]", "levels = [50.0, 1e5]")  # beyond what the table holds
     assert loa("study", scene, study_file(tmp_path, text), "-o", tmp_path / "out").exit_code == 0
     made = Study.from_netcdf(tmp_path / "out" / "study.nc")
@@ -214,7 +210,7 @@ def test_a_value_that_the_scene_refuses_is_a_failed_point(scene: Path, tmp_path:
     assert np.isnan(made.figure[3:]).all() and np.isfinite(made.figure[:3]).all()
 
 
-def test_the_report_has_the_runs_and_their_plots(studied: Studied, tmp_path: Path) -> None:
+def test_the_report_has_the_runs_and_their_plots(studied, tmp_path):
     write_report(studied.out / "study.nc", tmp_path / "again.html")
     for page in (studied.out / "study.html", tmp_path / "again.html"):
         text = page.read_text(encoding="utf-8")
@@ -222,7 +218,7 @@ def test_the_report_has_the_runs_and_their_plots(studied: Studied, tmp_path: Pat
             assert word in text
 
 
-def test_a_grid_without_samples_has_a_report(scene: Path, tmp_path: Path) -> None:
+def test_a_grid_without_samples_has_a_report(scene, tmp_path):
     text = 'factors = [{ path = "loads.brake.torque_n_m", levels = [50.0, 100.0] }]\n'
     text += 'responses = [{ quantity = "dte_rms" }]\n'
     result = loa("study", scene, study_file(tmp_path, text), "-o", tmp_path / "out")
@@ -232,7 +228,7 @@ def test_a_grid_without_samples_has_a_report(scene: Path, tmp_path: Path) -> Non
     assert np.isnan(Study.from_netcdf(tmp_path / "out" / "study.nc").correlation(0)).all()
 
 
-def test_a_study_of_failed_runs_alone_is_still_shown_and_has_failed(scene: Path, tmp_path: Path) -> None:
+def test_a_study_of_failed_runs_alone_is_still_shown_and_has_failed(scene, tmp_path):
     text = STUDY.replace("levels = [50.0, 100.0]", "levels = [1e5, 2e5]")
     result = loa("study", scene, study_file(tmp_path, text), "-o", tmp_path / "out")
     assert result.exit_code == 1 and "No run has figures" in result.stderr
@@ -240,7 +236,7 @@ def test_a_study_of_failed_runs_alone_is_still_shown_and_has_failed(scene: Path,
     assert Study.from_netcdf(tmp_path / "out" / "study.nc").worst.size == 0
 
 
-def test_a_factor_says_whether_it_is_sampled() -> None:
+def test_a_factor_says_whether_it_is_sampled():
     inputs = Inputs.model_validate(tomllib.loads(STUDY))
     assert [factor.sampled for factor in inputs.factors] == [False, True]
 
@@ -274,9 +270,7 @@ def scenes(
     return VariedScene(written.model_dump_json(), {"mesh": database}, places, home)
 
 
-def test_other_flanks_are_other_tables_and_the_designed_ones_agree_with_the_analysis(
-    scenes: VariedScene,
-) -> None:
+def test_other_flanks_are_other_tables_and_the_designed_ones_agree_with_the_analysis(scenes):
     designed, deep = (simulate(scenes.scene({PATH: relief})) for relief in (10.0, 40.0))
     analysis = simulate(dynamic_scene(scenes.inputs({PATH: 10.0}), scenes.databases))
     known, same, other = (responses_of(run, RESPONSES)[0] for run in (analysis, designed, deep))
@@ -285,7 +279,7 @@ def test_other_flanks_are_other_tables_and_the_designed_ones_agree_with_the_anal
     assert abs(other[0] / known[0] - 1.0) > 0.2
 
 
-def test_runs_of_equal_flanks_are_in_a_row_and_equal_to_single_runs(scenes: VariedScene) -> None:
+def test_runs_of_equal_flanks_are_in_a_row_and_equal_to_single_runs(scenes):
     torque = "loads.brake.torque_n_m"
     both = VariedScene(
         scenes.written,
@@ -301,7 +295,7 @@ def test_runs_of_equal_flanks_are_in_a_row_and_equal_to_single_runs(scenes: Vari
         np.testing.assert_array_equal(figures, responses_of(run, RESPONSES)[0])
 
 
-def test_a_class_of_iso_1328_is_a_band_about_the_design(written: SceneInput) -> None:
+def test_a_class_of_iso_1328_is_a_band_about_the_design(written):
     path = "meshes.mesh.case.pair.pinion.profile_slope_um"
     factor = {"path": path, "iso1328_class": 7}
     inputs = Inputs.model_validate(
@@ -313,7 +307,7 @@ def test_a_class_of_iso_1328_is_a_band_about_the_design(written: SceneInput) -> 
     assert points.std() == pytest.approx(11.0 / 3.0, rel=0.1)
 
 
-def test_deviations_of_a_case_with_axes_are_refused(written: SceneInput) -> None:
+def test_deviations_of_a_case_with_axes_are_refused(written):
     table = written.model_dump(mode="json")
     table["meshes"][0]["case"]["errors"]["misalignment_um"] = [0.0, 10.0]
     several = SceneInput.model_validate(table)
@@ -324,7 +318,7 @@ def test_deviations_of_a_case_with_axes_are_refused(written: SceneInput) -> None
         factor_places(several, inputs)
 
 
-def test_responses_may_name_what_a_scene_has_with_all_its_planets() -> None:
+def test_responses_may_name_what_a_scene_has_with_all_its_planets():
     inputs = workbench.read(EXAMPLES / "planetary_scene.toml")
     assert isinstance(inputs, SceneInput)
     meshes = [mesh for _, mesh in inputs.with_database if mesh.case]

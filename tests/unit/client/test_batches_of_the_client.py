@@ -24,7 +24,7 @@ def address(tmp_path: Path) -> Iterator[str]:
         yield f"http://127.0.0.1:{port}"
 
 
-def test_both_clients_get_the_jobs_of_a_batch_in_order(address: str, tmp_path: Path) -> None:
+def test_both_clients_get_the_jobs_of_a_batch_in_order(address, tmp_path):
     assert "fake" not in offers()  # its results are read as files
     jobs = [{"wish": wish} for wish in WISHES]
 
@@ -54,7 +54,7 @@ def test_both_clients_get_the_jobs_of_a_batch_in_order(address: str, tmp_path: P
     assert blocking() == outcome(awaited()) == (["b", "a"], ["successful", "successful", "failed"], 3)
 
 
-def test_the_results_of_a_batch_are_a_list(address: str, tmp_path: Path) -> None:
+def test_the_results_of_a_batch_are_a_list(address, tmp_path):
     with LineOfActionClient(address, cache_dir=tmp_path) as client:
         shared = {"wish": {"text": "x", "number": 1.0}}
         state = client.submit_batch("fake", [{}, {"wish": {"text": "y"}}], shared)
@@ -62,7 +62,7 @@ def test_the_results_of_a_batch_are_a_list(address: str, tmp_path: Path) -> None
         assert [file.read_text() for file in files] == ["x", "y"]
 
 
-def test_a_batch_is_dismissed_and_refused_as_a_whole(address: str, tmp_path: Path) -> None:
+def test_a_batch_is_dismissed_and_refused_as_a_whole(address, tmp_path):
     with LineOfActionClient(address, cache_dir=tmp_path) as client:
         batch = client.batch(client.submit_batch("fake", [{"wish": {"mode": "hang"}}] * 2).id)
         assert batch.dismiss().status == "dismissed"

@@ -8,7 +8,6 @@ from contextlib import aclosing
 from datetime import UTC, datetime, timedelta
 from email.utils import format_datetime
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from pathlib import Path
 from threading import Thread
 
 import httpx2
@@ -43,7 +42,7 @@ class Restarting(StoredJobs):
 
 
 @pytest.mark.parametrize("period", [4, 5, 7, 11])
-def test_a_map_outlasts_restarts_wherever_they_fall(tmp_path: Path, slept: list[float], period: int) -> None:
+def test_a_map_outlasts_restarts_wherever_they_fall(tmp_path, slept, period):
     network = Restarting(slept, period, seconds=10.0)
     with against(network, tmp_path) as client:
         jobs = client.analyze.map(map(case, range(12, 20)), concurrency=3)
@@ -52,7 +51,7 @@ def test_a_map_outlasts_restarts_wherever_they_fall(tmp_path: Path, slept: list[
     assert len(set(network.keys)) == 8  # what is sent again is the same submission
 
 
-def test_a_map_ends_when_the_service_stays_away(tmp_path: Path, slept: list[float]) -> None:
+def test_a_map_ends_when_the_service_stays_away(tmp_path, slept):
     with (
         against(Restarting(slept, 6, seconds=1e6), tmp_path, patience=30.0) as client,
         pytest.raises(Unreachable) as caught,
@@ -62,7 +61,7 @@ def test_a_map_ends_when_the_service_stays_away(tmp_path: Path, slept: list[floa
     assert any("continues at the service" in note for note in caught.value.__notes__)
 
 
-def test_a_full_queue_delays_a_map(tmp_path: Path, slept: list[float]) -> None:
+def test_a_full_queue_delays_a_map(tmp_path, slept):
     network, full = StoredJobs(), QueueFull("100 computations wait already.").as_json()
 
     def answer(request: httpx2.Request) -> httpx2.Response:
@@ -74,7 +73,7 @@ def test_a_full_queue_delays_a_map(tmp_path: Path, slept: list[float]) -> None:
         assert len(list(client.analyze.map(map(case, (12, 13))))) == 2
 
 
-def test_a_restart_while_the_result_is_fetched_is_waited_out(tmp_path: Path, slept: list[float]) -> None:
+def test_a_restart_while_the_result_is_fetched_is_waited_out(tmp_path, slept):
     network = StoredJobs()
     with against(network, tmp_path) as client:
         job = client.analyze.submit(case(20))
@@ -111,7 +110,7 @@ class Endless(StoredJobs):
 UNDER_WAY = {"analyze-14", "analyze-15", "analyze-16"}
 
 
-def test_a_loop_left_early_dismisses_what_is_under_way(tmp_path: Path) -> None:
+def test_a_loop_left_early_dismisses_what_is_under_way(tmp_path):
     network = Endless()
     with against(network, tmp_path) as client:
         for job in client.analyze.map(map(case, range(13, 40)), concurrency=4):
@@ -120,7 +119,7 @@ def test_a_loop_left_early_dismisses_what_is_under_way(tmp_path: Path) -> None:
         assert network.dismissed == network.running == UNDER_WAY
 
 
-def test_an_awaited_loop_left_early_dismisses_what_is_under_way(tmp_path: Path) -> None:
+def test_an_awaited_loop_left_early_dismisses_what_is_under_way(tmp_path):
     network = Endless()
 
     async def left() -> None:
@@ -142,9 +141,7 @@ def noted(error: BaseException) -> set[str]:
 
 
 @pytest.mark.parametrize("looks", [3, 4, 9])
-def test_ctrl_c_in_a_map_says_which_jobs_continue(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, looks: int
-) -> None:
+def test_ctrl_c_in_a_map_says_which_jobs_continue(tmp_path, monkeypatch, looks):
     network, pauses = Endless(), [0]
 
     def stop(_seconds: float) -> None:
@@ -160,7 +157,7 @@ def test_ctrl_c_in_a_map_says_which_jobs_continue(
     assert noted(caught.value) == network.running and network.running and not network.dismissed
 
 
-def test_what_is_cancelled_says_which_jobs_continue(tmp_path: Path) -> None:
+def test_what_is_cancelled_says_which_jobs_continue(tmp_path):
     network = Endless()
 
     async def cancelled() -> tuple[BaseException, BaseException]:
@@ -187,15 +184,13 @@ def test_what_is_cancelled_says_which_jobs_continue(tmp_path: Path) -> None:
     assert noted(of_map) == UNDER_WAY and noted(of_wait) == {"analyze-99"} and not network.dismissed
 
 
-def test_a_map_of_no_jobs_at_once_is_refused(tmp_path: Path) -> None:
+def test_a_map_of_no_jobs_at_once_is_refused(tmp_path):
     with against(StoredJobs(), tmp_path) as client, pytest.raises(BadInput, match="concurrency = 0"):
         list(client.analyze.map([case(20)], concurrency=0))
 
 
 @pytest.mark.parametrize("ahead", [timedelta(hours=-3), timedelta(0), timedelta(hours=3)])
-def test_a_clock_that_is_wrong_does_not_change_the_pause(
-    tmp_path: Path, slept: list[float], ahead: timedelta
-) -> None:
+def test_a_clock_that_is_wrong_does_not_change_the_pause(tmp_path, slept, ahead):
     """The service says when by its own clock, which its answer shows."""
     theirs = datetime.now(UTC) + ahead
     when = {"Date": theirs, "Retry-After": theirs + timedelta(seconds=6)}
@@ -205,9 +200,7 @@ def test_a_clock_that_is_wrong_does_not_change_the_pause(
     assert slept == [6.0]
 
 
-def test_events_that_are_interrupted_say_so_and_those_that_end_do_at_once(
-    tmp_path: Path, slept: list[float]
-) -> None:
+def test_events_that_are_interrupted_say_so_and_those_that_end_do_at_once(tmp_path, slept):
     def stream(status: str, error: type[BaseException] | None) -> httpx2.Response:
         def pieces() -> Iterator[bytes]:
             yield b"data: " + json.dumps(state("j", status)).encode() + b"\n\n"
@@ -223,7 +216,7 @@ def test_events_that_are_interrupted_say_so_and_those_that_end_do_at_once(
     assert last.ended and slept == []
 
 
-def test_a_body_that_ends_too_early_is_asked_for_again(tmp_path: Path) -> None:
+def test_a_body_that_ends_too_early_is_asked_for_again(tmp_path):
     """By a real server: the first answer promises more bytes than come."""
     body = json.dumps(state("j", "running")).encode()
     asked: list[str] = []

@@ -296,9 +296,7 @@ def called(make: Callable[..., object], values: Any) -> object:
 @pytest.mark.parametrize(
     ("make", "values", "field"), ROWS, ids=[f"{make.__name__} {values}" for make, values, _ in ROWS]
 )
-def test_a_value_that_cannot_be_is_refused_by_name(
-    make: Callable[..., object], values: Any, field: str
-) -> None:
+def test_a_value_that_cannot_be_is_refused_by_name(make, values, field):
     with pytest.raises(InputError) as refusal:
         called(make, values)
     assert refusal.value.field == field, refusal.value
@@ -434,9 +432,7 @@ IMPOSSIBLE: list[tuple[str, str, Callable[..., object], Any, Any]] = [
     IMPOSSIBLE,
     ids=[f"{make.__name__} {name}" for name, _, make, _, _ in IMPOSSIBLE],
 )
-def test_a_gear_or_pair_that_cannot_exist_is_refused_by_what_is_wrong(
-    name: str, field: str, make: Callable[..., object], refused: Any, feasible: Any
-) -> None:
+def test_a_gear_or_pair_that_cannot_exist_is_refused_by_what_is_wrong(name, field, make, refused, feasible):
     with pytest.raises(InfeasibleGeometry) as refusal:
         called(make, refused)
     assert (refusal.value.name, refusal.value.field) == (name, field)
@@ -454,9 +450,7 @@ def test_a_gear_or_pair_that_cannot_exist_is_refused_by_what_is_wrong(
         ("trimming interference", "radial_assembly", {"radial_assembly": True}),
     ],
 )
-def test_a_place_where_a_ring_cannot_run_is_refused_by_what_is_wrong(
-    name: str, field: str, fields: dict[str, Any]
-) -> None:
+def test_a_place_where_a_ring_cannot_run_is_refused_by_what_is_wrong(name, field, fields):
     with pytest.raises(InfeasibleGeometry) as refusal:
         inside({"teeth": 70} if "radial_assembly" in fields else {}, {}, **fields)
     assert (refusal.value.name, refusal.value.field) == (name, field)

@@ -79,7 +79,7 @@ MODIFIED: dict[str, Any] = {
 }
 
 
-def test_lengths_and_angles_become_si() -> None:
+def test_lengths_and_angles_become_si():
     pair = gear_pair(case(thickness_allowance_um=50.0, tip_diameter_mm=87.5))
     assert pair.center_distance == pytest.approx(0.08, rel=1e-15)
     assert pair.pinion.normal_module == pytest.approx(0.004, rel=1e-15)
@@ -89,7 +89,7 @@ def test_lengths_and_angles_become_si() -> None:
     assert pair.wheel.tip_diameter is None
 
 
-def test_every_modification_arrives_in_si() -> None:
+def test_every_modification_arrives_in_si():
     modification = gear_pair(case(**MODIFIED)).pinion.modification
     for name, value in MODIFIED.items():
         stem = name.removesuffix("_um").removesuffix("_mm").removesuffix("_deg")
@@ -107,7 +107,7 @@ STARTED = {"tip_relief_um": 12.0, "tip_relief_start_diameter_mm": 86.0}
 @pytest.mark.law
 @pytest.mark.parametrize("name", [*MODIFIED, "tip_rounding_mm"])
 @pytest.mark.parametrize("before", [{}, STARTED], ids=["plain", "started"])
-def test_other_flanks_make_the_pair_of_the_case_that_states_them(name: str, before: Any) -> None:
+def test_other_flanks_make_the_pair_of_the_case_that_states_them(name, before):
     """Of either gear, to the last bit; what no pair can have is refused in the same words."""
     stem = name.removesuffix("_um").removesuffix("_shape")
     change = {other: value for other, value in MODIFIED.items() if other.startswith(stem)}
@@ -130,19 +130,19 @@ def _made(pair: Any) -> Any:
         return error.faults
 
 
-def test_a_pair_without_other_flanks_stays_the_same() -> None:
+def test_a_pair_without_other_flanks_stays_the_same():
     stated = case(**STARTED)
     pair = gear_pair(stated)
     assert with_flanks(pair, stated, {"pinion": {}, "wheel": {}}) is pair
     assert with_flanks(pair, stated, {"pinion": {"tip_relief_um": 1.0}}).wheel is pair.wheel
 
 
-def test_a_gear_without_modifications_is_the_librarys_own_default() -> None:
+def test_a_gear_without_modifications_is_the_librarys_own_default():
     """To the last bit, angles with the rest: equal pairs have equal hashes."""
     assert gear_pair(case()).pinion.modification == FlankModification()
 
 
-def test_every_field_of_the_gear_schema_reaches_the_gear() -> None:
+def test_every_field_of_the_gear_schema_reaches_the_gear():
     """A field that conversion forgets would leave the gear as it is; corners: test_declared_fields."""
     plain = gear_pair(case()).pinion
     changes: dict[str, Any] = {
@@ -184,7 +184,7 @@ def test_every_field_of_the_gear_schema_reaches_the_gear() -> None:
         assert (pair.pinion, pair.shafts[0]) != (plain, None), name
 
 
-def test_rim_web_and_hub_arrive_in_si_and_their_errors_in_mm() -> None:
+def test_rim_web_and_hub_arrive_in_si_and_their_errors_in_mm():
     given = {
         "rim_thickness_mm": 8.0,
         "web_thickness_mm": 10.0,
@@ -200,7 +200,7 @@ def test_rim_web_and_hub_arrive_in_si_and_their_errors_in_mm() -> None:
     assert faults[0].value == pytest.approx(20.0)
 
 
-def test_a_seat_arrives_in_si_and_its_errors_in_mm() -> None:
+def test_a_seat_arrives_in_si_and_its_errors_in_mm():
     given = {
         f"{name}_foundation_n_per_mm3": 1e3 * i for i, name in enumerate(("radial", "tangential", "axial"), 1)
     }
@@ -221,14 +221,14 @@ def test_a_seat_arrives_in_si_and_its_errors_in_mm() -> None:
         gear_pair(case(seat=given | {"key": key | {"width_mm": 200.0}}))
 
 
-def test_mating_gears_have_opposite_hands() -> None:
+def test_mating_gears_have_opposite_hands():
     distance = 80.0 / math.cos(math.radians(15.0))
     pair = gear_pair(changed_case({"pair.helix_angle_deg": 15.0, "pair.center_distance_mm": distance}))
     assert pair.pinion.helix_angle == pytest.approx(math.radians(15.0))
     assert pair.wheel.helix_angle == -pair.pinion.helix_angle
 
 
-def test_a_gears_own_material_wins() -> None:
+def test_a_gears_own_material_wins():
     own = {"youngs_modulus_gpa": 3.0, "poissons_ratio": 0.4}
     pair = gear_pair(changed_case({"material.youngs_modulus_gpa": 206.0, "pair.wheel.material": own}))
     assert pair.pinion.material.youngs_modulus == pytest.approx(206e9)
@@ -237,7 +237,7 @@ def test_a_gears_own_material_wins() -> None:
     )
 
 
-def test_a_shaft_arrives_in_si_on_the_side_of_its_gear() -> None:
+def test_a_shaft_arrives_in_si_on_the_side_of_its_gear():
     shaft = {"length_mm": 200.0, "diameter_mm": 40.0, "position_mm": -20.0}
     on_wheel = {"pair.wheel.shaft": shaft | {"bearing_stiffness_n_per_um": 400.0}}
     first, second = gear_pair(changed_case(on_wheel)).shafts
@@ -252,7 +252,7 @@ def test_a_shaft_arrives_in_si_on_the_side_of_its_gear() -> None:
         check_case(changed_case(inside))
 
 
-def test_arguments_of_the_analysis_are_si() -> None:
+def test_arguments_of_the_analysis_are_si():
     errors = {"misalignment_um": [0.0, 30.0], "center_distance_change_mm": [-0.1, 0.0]}
     accuracy = {"time_budget_s": 3.0, "positions": 64, "model": "plane_stress"}
     stated = changed_case({"errors": errors, "accuracy": accuracy})
@@ -263,7 +263,7 @@ def test_arguments_of_the_analysis_are_si() -> None:
     assert (options.tolerance, options.time_budget, options.positions) == (None, 3.0, 64)
 
 
-def test_the_floor_of_a_tolerance_is_given_in_nm() -> None:
+def test_the_floor_of_a_tolerance_is_given_in_nm():
     def allowed(**accuracy: float) -> AllowedError:
         return analysis_options(validated(Case, GOOD | {"accuracy": accuracy})).tolerance
 
@@ -274,7 +274,7 @@ def test_the_floor_of_a_tolerance_is_given_in_nm() -> None:
         allowed(tolerance=1e-6)
 
 
-def test_the_echo_holds_every_default_and_is_its_own_fixed_point() -> None:
+def test_the_echo_holds_every_default_and_is_its_own_fixed_point():
     echo = case_json(case())
     assert echo["accuracy"]["tolerance"] == 0.01
     assert echo["accuracy"]["tolerance_floor_nm"] == 20.0
@@ -283,7 +283,7 @@ def test_the_echo_holds_every_default_and_is_its_own_fixed_point() -> None:
     assert json.loads(json.dumps(echo, allow_nan=False)) == echo
 
 
-def test_the_key_depends_on_what_decides_the_result_and_on_nothing_else() -> None:
+def test_the_key_depends_on_what_decides_the_result_and_on_nothing_else():
     loads = {"torque_n_m": [10, 100]}
     written_out = GOOD | {"effects": {}, "errors": {"misalignment_um": [0]}, "load": loads}
     keys = [content_key("analyze", "1", case_json(validated(Case, table))) for table in (GOOD, written_out)]
@@ -292,7 +292,7 @@ def test_the_key_depends_on_what_decides_the_result_and_on_nothing_else() -> Non
     assert content_key("analyze", "1", case_json(case(bore_diameter_mm=40.001))) != keys[0]
 
 
-def test_a_change_of_center_distance_at_which_the_gears_do_not_mesh_is_refused_by_its_place() -> None:
+def test_a_change_of_center_distance_at_which_the_gears_do_not_mesh_is_refused_by_its_place():
     good, wrong = (changed_case({"errors.center_distance_change_mm": [0.0, far]}) for far in (0.1, 8.0))
     assert check_case(good).center_distance == pytest.approx(0.08)
     with assert_refused("errors.center_distance_change_mm[1]") as faults:
@@ -302,13 +302,13 @@ def test_a_change_of_center_distance_at_which_the_gears_do_not_mesh_is_refused_b
     assert bound.startswith("a change at which the gears mesh") and bound.endswith("below 1")
 
 
-def test_the_example_is_the_papers_pair() -> None:
+def test_the_example_is_the_papers_pair():
     example = read_model(Case, ROOT / "examples" / "palermo_spur_20_20.toml")
     assert gear_pair(example).transverse_contact_ratio == pytest.approx(1.557, abs=5e-4)
     assert example.load.torque_n_m is not None and len(example.load.torque_n_m) == 12
 
 
-def test_pitch_deviations_arrive_in_si_and_pitches_as_they_are() -> None:
+def test_pitch_deviations_arrive_in_si_and_pitches_as_they_are():
     deviations = [0.5 * tooth for tooth in range(20)]
     found = case(pitch_deviation_um=deviations)
     pair = gear_pair(found)
@@ -332,16 +332,14 @@ def test_pitch_deviations_arrive_in_si_and_pitches_as_they_are() -> None:
         ),
     ],
 )
-def test_bad_pitch_errors_are_refused_by_the_name_of_the_case(
-    pinion: dict[str, Any], accuracy: dict[str, Any], field: str, words: str
-) -> None:
+def test_bad_pitch_errors_are_refused_by_the_name_of_the_case(pinion, accuracy, field, words):
     distance = {"pair.center_distance_mm": 80.0 + 2.0 * (pinion.get("teeth", 20) - 20)}
     own = {f"pair.pinion.{name}": value for name, value in pinion.items()}
     with assert_refused(field, words):
         check_case(changed_case(own | distance | {"accuracy": accuracy}))
 
 
-def test_a_modulus_below_that_of_rubber_is_refused() -> None:
+def test_a_modulus_below_that_of_rubber_is_refused():
     with pytest.raises(BadInput, match=r"youngs_modulus_gpa = 5e-324: must be from 0\.001 to 2000"):
         validated(Case, CASE | {"material": {"youngs_modulus_gpa": 5e-324}})
     assert validated(Case, CASE | {"material": {"youngs_modulus_gpa": 0.001}})
@@ -373,7 +371,7 @@ def written(folder: Path, *lines: str) -> Path:
     return file
 
 
-def test_a_file_is_read_beside_the_case_whatever_the_order_of_its_rows(tmp_path: Path) -> None:
+def test_a_file_is_read_beside_the_case_whatever_the_order_of_its_rows(tmp_path):
     shuffled = random.Random(3).sample(ROWS, len(ROWS))
     case = read_model(Case, written(tmp_path, "\ufeff# measured", HEADING, "", *shuffled))
     grid = gear_pair(case).pinion.modification.flank_grid
@@ -384,7 +382,7 @@ def test_a_file_is_read_beside_the_case_whatever_the_order_of_its_rows(tmp_path:
     assert gear_pair(case).wheel.modification.flank_grid is None
 
 
-def test_columns_may_fake_any_order(tmp_path: Path) -> None:
+def test_columns_may_fake_any_order(tmp_path):
     turned = [",".join(line.split(",")[::-1]) for line in (HEADING, *ROWS)]
     (tmp_path / "a").mkdir()
     (tmp_path / "b").mkdir()
@@ -395,7 +393,7 @@ def test_columns_may_fake_any_order(tmp_path: Path) -> None:
     assert cases[0] == cases[1]
 
 
-def test_the_echo_holds_the_grid_itself_and_needs_no_file(tmp_path: Path) -> None:
+def test_the_echo_holds_the_grid_itself_and_needs_no_file(tmp_path):
     case = read_model(Case, written(tmp_path, HEADING, *ROWS))
     echo = case_json(case)
     assert "flank_grid_csv" not in echo["pair"]["pinion"]
@@ -403,7 +401,7 @@ def test_the_echo_holds_the_grid_itself_and_needs_no_file(tmp_path: Path) -> Non
     assert case_json(validated(Case, echo)) == echo
 
 
-def test_a_grid_of_a_case_inside_a_scene_is_found(tmp_path: Path) -> None:
+def test_a_grid_of_a_case_inside_a_scene_is_found(tmp_path):
     written(tmp_path, HEADING, *ROWS)
     nested = CASE_WITH_GRID.replace("[pair", "[meshes.case.pair").replace("[load]", "[meshes.case.load]")
     (tmp_path / "scene.toml").write_text('[[meshes]]\nname = "m"\n' + nested, encoding="utf-8")
@@ -416,7 +414,7 @@ def test_a_grid_of_a_case_inside_a_scene_is_found(tmp_path: Path) -> None:
     assert caught.value.faults[0].field == "meshes[0].case.pair.pinion.flank_grid_csv.file"
 
 
-def test_a_client_cannot_name_a_file() -> None:
+def test_a_client_cannot_name_a_file():
     with assert_refused("pair.pinion.flank_grid_csv") as faults:
         validated(Case, changed(GOOD, {"pair.pinion.flank_grid_csv": "/etc/passwd"}))
     assert faults[0].bound.startswith("left out")
@@ -439,9 +437,7 @@ def test_a_client_cannot_name_a_file() -> None:
         ([HEADING, *ROWS[:-1], "19,12.5"], "line 10 has 2"),
     ],
 )
-def test_a_file_that_holds_no_grid_is_refused_by_what_is_wrong(
-    tmp_path: Path, lines: list[str], said: str
-) -> None:
+def test_a_file_that_holds_no_grid_is_refused_by_what_is_wrong(tmp_path, lines, said):
     with assert_refused("pair.pinion.flank_grid_csv", said):
         read_model(Case, written(tmp_path, *lines))
 
@@ -457,13 +453,13 @@ def test_a_file_that_holds_no_grid_is_refused_by_what_is_wrong(
         ({"face_position_mm": [0.0]}, "face_position_mm"),
     ],
 )
-def test_an_inline_grid_is_refused_by_the_cases_names(change: dict[str, Any], field: str) -> None:
+def test_an_inline_grid_is_refused_by_the_cases_names(change, field):
     with pytest.raises(BadInput) as caught:
         check_case(validated(Case, changed(GOOD, {"pair.pinion.flank_grid": INLINE | change})))
     assert caught.value.faults[0].field.startswith(f"pair.pinion.flank_grid.{field}")
 
 
-def test_a_grid_that_differs_over_the_face_is_no_matter_of_the_plane() -> None:
+def test_a_grid_that_differs_over_the_face_is_no_matter_of_the_plane():
     plane = GOOD | {"accuracy": {"model": "plane_strain"}}
     even = INLINE | {"removed_um": [[0, 0], [2, 2]]}
     check_case(validated(Case, changed(plane, {"pair.pinion.flank_grid": even})))
@@ -471,7 +467,7 @@ def test_a_grid_that_differs_over_the_face_is_no_matter_of_the_plane() -> None:
         check_case(validated(Case, changed(plane, {"pair.pinion.flank_grid": INLINE})))
 
 
-def test_run_out_and_waves_arrive_in_si() -> None:
+def test_run_out_and_waves_arrive_in_si():
     wave = {"order": 11, "amplitude_um": 0.2, "phase_deg": 90.0, "face_waves": 2.0}
     pair = gear_pair(case(run_out={"eccentricity_um": 5.0, "wobble_angle_deg": 30.0}, waves=[wave]))
     assert pair.pinion.run_out.eccentricity == pytest.approx(5e-6, rel=1e-15)
@@ -482,7 +478,7 @@ def test_run_out_and_waves_arrive_in_si() -> None:
     assert pair.wheel.run_out.neutral and pair.wheel.waves == ()
 
 
-def test_flanks_of_teeth_arrive_in_si() -> None:
+def test_flanks_of_teeth_arrive_in_si():
     flank = {"tooth": 3, "profile_slope_um": 2.0, "helix_form_um": -1.0, "helix_form_waves": 4}
     teeth = {
         "tooth_flanks": [flank | {"flank_grid": INLINE}],
@@ -528,6 +524,6 @@ def test_flanks_of_teeth_arrive_in_si() -> None:
         ),
     ],
 )
-def test_bad_waves_are_refused_by_the_name_of_the_case(gear: dict[str, Any], field: str) -> None:
+def test_bad_waves_are_refused_by_the_name_of_the_case(gear, field):
     with assert_refused(field, ""):
         gear_pair(case(**gear))

@@ -31,7 +31,7 @@ def case(**pinion: Any) -> Case:
 
 
 @pytest.mark.law
-def test_the_complaint_of_a_case_is_the_objective_unless_one_is_given() -> None:
+def test_the_complaint_of_a_case_is_the_objective_unless_one_is_given():
     study = of_case(case(), Inputs())
     assert study.objective.harmonic == 2 and study.torque_n_m == (80.0,)
     given = Inputs.model_validate({"objective": {"kind": "worst"}, "torque_n_m": [50.0]})
@@ -40,7 +40,7 @@ def test_the_complaint_of_a_case_is_the_objective_unless_one_is_given() -> None:
 
 
 @pytest.mark.law
-def test_a_service_that_reads_the_stored_inputs_has_the_same_objective() -> None:
+def test_a_service_that_reads_the_stored_inputs_has_the_same_objective():
     checked = CheckedCase(case())
     stored = RUN.normalized(checked, Inputs())
     again = Inputs.model_validate(stored)
@@ -49,7 +49,7 @@ def test_a_service_that_reads_the_stored_inputs_has_the_same_objective() -> None
 
 
 @pytest.mark.law
-def test_the_complaint_of_a_scene_is_its_mesh_its_order_and_its_speed() -> None:
+def test_the_complaint_of_a_scene_is_its_mesh_its_order_and_its_speed():
     scene = small_inputs("modes")["scene"]
     teeth = scene["meshes"][0]["case"]["pair"]["pinion"]["teeth"]
     mesh = scene["meshes"][0]["name"]
@@ -61,7 +61,7 @@ def test_the_complaint_of_a_scene_is_its_mesh_its_order_and_its_speed() -> None:
 
 
 @pytest.mark.law
-def test_amounts_and_lengths_lie_on_the_grid_in_the_form_in_which_they_are_typed() -> None:
+def test_amounts_and_lengths_lie_on_the_grid_in_the_form_in_which_they_are_typed():
     typed = case(tip_relief_length_mm=None, tip_relief_start_diameter_mm=47.37)
     pair = CheckedCase(typed).pair
     free = (

@@ -25,7 +25,7 @@ def heeded(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
     signal.signal(signal.SIGINT, before)
 
 
-def test_an_interrupted_table_is_its_last_draft(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_interrupted_table_is_its_last_draft(monkeypatch):
     draft = small_table()
 
     def interrupted(_case: Any, _home: Any, _report: Any, _workers: Any, on_draft: Any) -> Any:
@@ -39,7 +39,7 @@ def test_an_interrupted_table_is_its_last_draft(monkeypatch: pytest.MonkeyPatch)
     assert seen == ["finer slices"]
 
 
-def test_without_a_draft_the_interrupt_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_a_draft_the_interrupt_goes_on(monkeypatch):
     def interrupted(*_request: Any) -> Any:
         raise KeyboardInterrupt
 
@@ -48,7 +48,7 @@ def test_without_a_draft_the_interrupt_goes_on(monkeypatch: pytest.MonkeyPatch) 
         loa.analyze(CASE)
 
 
-def test_an_interrupted_run_ends_there() -> None:
+def test_an_interrupted_run_ends_there():
     stages: list[str] = []
 
     def interrupting(stage: str, fraction: float) -> None:
@@ -65,7 +65,7 @@ def test_an_interrupted_run_ends_there() -> None:
     assert np.array_equal(run.displacement[..., :half], whole.displacement[..., :half])
 
 
-def test_a_second_interrupt_ends_the_work(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_second_interrupt_ends_the_work(monkeypatch):
     def twice(_stage: str, _fraction: float) -> None:
         signal.raise_signal(signal.SIGINT)
         signal.raise_signal(signal.SIGINT)
@@ -79,7 +79,7 @@ def _replace_work(monkeypatch: pytest.MonkeyPatch, study: str, compute: Any) -> 
         monkeypatch.setattr(STUDIES[study].run, name, function)
 
 
-def test_a_search_ends_with_the_best_so_far(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_search_ends_with_the_best_so_far(monkeypatch):
     best = object()
 
     def compute(_case: Any, _inputs: Any, means: Any) -> object:
@@ -102,7 +102,7 @@ def _task(_shared: int, item: int) -> int:
     return item
 
 
-def test_finished_tasks_of_a_study_are_kept_for_the_same_call(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_finished_tasks_of_a_study_are_kept_for_the_same_call(monkeypatch):
     ends = [2, 4, 4]  # number of tasks that each call does before it ends
 
     def compute(_case: Any, _inputs: Any, means: Any) -> list[int]:

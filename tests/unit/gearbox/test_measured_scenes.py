@@ -41,7 +41,7 @@ def housing(folder: Path, **fields: Any) -> dict[str, Any]:
     return {"name": "gearcase", "frf_file": content(folder), **NODES} | fields
 
 
-def test_a_scene_file_names_the_file_and_a_request_holds_it(tmp_path: Path) -> None:
+def test_a_scene_file_names_the_file_and_a_request_holds_it(tmp_path):
     """Both are the same scene; files beside it are written again under their names."""
     file = measured_scene(tmp_path)
     scene, _ = scene_of(file)
@@ -60,7 +60,7 @@ def test_a_scene_file_names_the_file_and_a_request_holds_it(tmp_path: Path) -> N
     assert validated(SceneInput, written_out(table, in_folder(folder), READERS)).housings == scene.housings
 
 
-def test_a_text_with_its_files_is_read_as_beside_it_on_disk(tmp_path: Path) -> None:
+def test_a_text_with_its_files_is_read_as_beside_it_on_disk(tmp_path):
     file = measured_scene(tmp_path)
     sent = [FileContentInput.of(tmp_path / "gearcase.uff").model_dump(mode="json")]
     empty = tmp_path / "empty"
@@ -71,7 +71,7 @@ def test_a_text_with_its_files_is_read_as_beside_it_on_disk(tmp_path: Path) -> N
 
 
 @pytest.mark.law
-def test_a_measured_housing_moves_no_shaft(tmp_path: Path) -> None:
+def test_a_measured_housing_moves_no_shaft(tmp_path):
     """The scene of dynamics is the one without it; matrices of other housings keep their bearings."""
     table = {"mesh": small_table()}
     scene, _ = scene_of(measured_scene(tmp_path))
@@ -83,7 +83,7 @@ def test_a_measured_housing_moves_no_shaft(tmp_path: Path) -> None:
     assert frame.name == "frame"
 
 
-def test_errors_of_dynamics_count_housings_as_the_file_does(tmp_path: Path) -> None:
+def test_errors_of_dynamics_count_housings_as_the_file_does(tmp_path):
     """The second and third housing of the file are the first and second of dynamics."""
     scene, _ = scene_of(measured_scene(tmp_path))
     same = {"bushings": ["left"], "stiffness_matrix": MATRIX}
@@ -95,7 +95,7 @@ def test_errors_of_dynamics_count_housings_as_the_file_does(tmp_path: Path) -> N
         raise InputError("meshes[0]", 1, "as it is")
 
 
-def test_the_axes_of_the_file_are_turned_into_the_scene(tmp_path: Path) -> None:
+def test_the_axes_of_the_file_are_turned_into_the_scene(tmp_path):
     """The file's x is the scene's z, its z the scene's y: so its y is the scene's x."""
     given = housing(tmp_path, x_axis=[0.0, 0.0, 0.5], z_axis=[0.0, 1.0, 0.0])
     found = housing_mobility(HousingInput.model_validate(given))
@@ -103,7 +103,7 @@ def test_the_axes_of_the_file_are_turned_into_the_scene(tmp_path: Path) -> None:
     np.testing.assert_allclose(found.mobility[:, 0, 0] * 2j * np.pi * LINES * MASS, 1.0, rtol=1e-5)
 
 
-def test_a_file_is_read_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_file_is_read_once(tmp_path, monkeypatch):
     given = housing(tmp_path, name="once")
     first = housing_mobility(HousingInput.model_validate(given))
     monkeypatch.setattr(measured_housings, "read_frequency_responses", lambda *_: pytest.fail("read again"))
@@ -128,7 +128,7 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
 
 
 @pytest.mark.parametrize("name", REFUSED)
-def test_fields_that_do_not_fit_are_refused(name: str, tmp_path: Path) -> None:
+def test_fields_that_do_not_fit_are_refused(name, tmp_path):
     fields, message = REFUSED[name]
     with pytest.raises(BadInput, match=message):
         validated(HousingInput, housing(tmp_path, **fields))
@@ -175,7 +175,7 @@ FAULTS: dict[str, tuple[Callable[[Path], dict[str, Any]], str]] = {
 
 
 @pytest.mark.parametrize("name", FAULTS)
-def test_a_file_that_cannot_be_used_is_named_by_the_field_of_the_scene(name: str, tmp_path: Path) -> None:
+def test_a_file_that_cannot_be_used_is_named_by_the_field_of_the_scene(name, tmp_path):
     change, message = FAULTS[name]
     scene = tomllib.loads(measured_scene(tmp_path).read_text("utf-8"))
     scene["housings"] = [housing(tmp_path) | change(tmp_path)]
@@ -185,7 +185,7 @@ def test_a_file_that_cannot_be_used_is_named_by_the_field_of_the_scene(name: str
         read_responses(inputs)
 
 
-def test_a_file_that_is_not_beside_the_scene_is_refused(tmp_path: Path) -> None:
+def test_a_file_that_is_not_beside_the_scene_is_refused(tmp_path):
     file = measured_scene(tmp_path)
     (tmp_path / "gearcase.uff").unlink()
     with pytest.raises(

@@ -32,9 +32,7 @@ def mounted() -> ReducedHousing:
 
 @pytest.mark.law
 @pytest.mark.parametrize("maximum", [2000, 60])
-def test_the_surface_by_its_amplitudes_is_that_of_the_reduction(
-    mounted: ReducedHousing, maximum: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_surface_by_its_amplitudes_is_that_of_the_reduction(mounted, maximum, monkeypatch):
     """Under forces on the seats, static and beyond the first mode; also where few points are drawn."""
     monkeypatch.setattr(unit_bodies, "MAX_FACETS", maximum)
     subject = subject_of(mounted)
@@ -56,7 +54,7 @@ def test_the_surface_by_its_amplitudes_is_that_of_the_reduction(
 
 
 @pytest.mark.law
-def test_a_housing_on_soft_mounts_moves_rigidly_and_a_bolted_one_bends() -> None:
+def test_a_housing_on_soft_mounts_moves_rigidly_and_a_bolted_one_bends():
     """Six motions on soft mounts are those of a rigid body; in others walls bend; a bolted foot stands."""
     bent = {}
     for name, mount in {"soft": mount_of(1e4), "bolted": None}.items():
@@ -75,6 +73,6 @@ def test_a_housing_on_soft_mounts_moves_rigidly_and_a_bolted_one_bends() -> None
 
 
 @pytest.mark.law
-def test_a_housing_whose_modes_are_neglected_has_no_motion(mounted: ReducedHousing) -> None:
+def test_a_housing_whose_modes_are_neglected_has_no_motion(mounted):
     subject = subject_of(mounted, OFF)
     assert surface_motion(subject, assemble(subject.scene).freedoms.name).shape == (0, 3, 0)

@@ -47,9 +47,7 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
     return now
 
 
-def test_a_notebook_shows_a_bar_of_work_that_takes_longer_than_a_moment(
-    cell: Shown, clock: SimpleNamespace
-) -> None:
+def test_a_notebook_shows_a_bar_of_work_that_takes_longer_than_a_moment(cell, clock):
     with progress_display(None) as report:
         report("contact", 0.1)
         assert cell == []
@@ -65,7 +63,7 @@ def test_a_notebook_shows_a_bar_of_work_that_takes_longer_than_a_moment(
     assert "100 %" in cell[-1][1]
 
 
-def test_a_notebook_shows_it_at_once_if_told_and_never_if_not(cell: Shown, clock: SimpleNamespace) -> None:
+def test_a_notebook_shows_it_at_once_if_told_and_never_if_not(cell, clock):
     with progress_display(False) as report:
         clock.s += 60.0
         report("contact", 0.5)
@@ -75,7 +73,7 @@ def test_a_notebook_shows_it_at_once_if_told_and_never_if_not(cell: Shown, clock
     assert len(cell) == 1
 
 
-def test_a_script_shows_bars_on_a_terminal_if_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_script_shows_bars_on_a_terminal_if_told(monkeypatch):
     terminal = Terminal()
     monkeypatch.setattr(sys, "stderr", terminal)
     monkeypatch.setenv("TERM", "xterm")
@@ -89,7 +87,7 @@ def test_a_script_shows_bars_on_a_terminal_if_told(monkeypatch: pytest.MonkeyPat
         assert report is silent
 
 
-def test_a_function_of_the_caller_is_called(cell: Shown) -> None:
+def test_a_function_of_the_caller_is_called(cell):
     seen: list[tuple[str, float]] = []
     with progress_display(lambda *step: seen.append(step)) as report:
         report("contact", 0.5)

@@ -29,7 +29,7 @@ def sound(scene: dict[str, Any]) -> RadiatedSound:
 
 
 @pytest.mark.law
-def test_panels_as_monopoles_are_heard_as_the_quantity_of_that_name(scene: dict[str, Any]) -> None:
+def test_panels_as_monopoles_are_heard_as_the_quantity_of_that_name(scene):
     sound = loa.noise(scene, QUICK | {"band": False, "radiation": "monopoles"}, microphone_mm=PLACE)
     subject = tabled(scene)
     (name,) = subject.housings
@@ -44,7 +44,7 @@ def test_panels_as_monopoles_are_heard_as_the_quantity_of_that_name(scene: dict[
     assert [(row["low_db_a"], row["high_db_a"]) for row in pressure["orders"]] == [(None, None)] * 2
 
 
-def test_an_order_has_the_band_of_its_sound_power(sound: RadiatedSound) -> None:
+def test_an_order_has_the_band_of_its_sound_power(sound):
     figures = RUN.figures(sound)
     assert figures["pressure"]["microphone_mm"] == approx(PLACE)
     for own, power in zip(figures["pressure"]["orders"], figures["band"]["orders"], strict=True):
@@ -54,7 +54,7 @@ def test_an_order_has_the_band_of_its_sound_power(sound: RadiatedSound) -> None:
         assert own["speed_rpm"] == approx(600.0)
 
 
-def test_the_order_of_the_complaint_is_said_where_it_is_heard(sound: RadiatedSound) -> None:
+def test_the_order_of_the_complaint_is_said_where_it_is_heard(sound):
     """Order 2 is 24 dB louder."""
     (said,) = [line for line in PAGE.page(sound).headlines if line.name.startswith("sound pressure")]
     assert said.name == "sound pressure level at (10, 10, 400) mm"

@@ -53,7 +53,7 @@ if __name__ == "__main__":
 """
 
 
-def test_a_loop_that_is_read_loads_nothing_of_the_compiler_which_later_ones_get(tmp_path: Path) -> None:
+def test_a_loop_that_is_read_loads_nothing_of_the_compiler_which_later_ones_get(tmp_path):
     file = tmp_path / "loop.py"
     file.write_text(READ, encoding="utf-8")
     house = str(Path(loops.__file__).parents[1])
@@ -69,7 +69,7 @@ def test_a_loop_that_is_read_loads_nothing_of_the_compiler_which_later_ones_get(
     assert read[2:] == [compiled[2], "True", "True"]
 
 
-def test_processes_that_need_a_loop_at_once_compile_it_once(tmp_path: Path) -> None:
+def test_processes_that_need_a_loop_at_once_compile_it_once(tmp_path):
     file = tmp_path / "loop.py"
     file.write_text(LOOP, encoding="utf-8")
     house = str(Path(loops.__file__).parents[1])
@@ -94,7 +94,7 @@ def test_processes_that_need_a_loop_at_once_compile_it_once(tmp_path: Path) -> N
     assert sorted(compiled) == [0, 0, 1]
 
 
-def test_an_inner_loop_is_part_of_its_callers_and_python_may_call_it_too() -> None:
+def test_an_inner_loop_is_part_of_its_callers_and_python_may_call_it_too():
     @loops.inner(error_model="numpy")
     def reciprocal(x: float) -> float:
         return 1.0 / x
@@ -115,7 +115,7 @@ def test_an_inner_loop_is_part_of_its_callers_and_python_may_call_it_too() -> No
         assert not any("cpython" in each.name for each in linked.library.get_defined_functions())
 
 
-def test_what_a_loop_takes_of_numba_becomes_part_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_a_loop_takes_of_numba_becomes_part_of_it(monkeypatch):
     made: list[str] = []
     finalize = JITCodeLibrary._finalize_final_module
 
@@ -137,13 +137,13 @@ def test_what_a_loop_takes_of_numba_becomes_part_of_it(monkeypatch: pytest.Monke
         spread(np.array([1.0]), 4)
 
 
-def test_the_collector_goes_on_after_compiling() -> None:
+def test_the_collector_goes_on_after_compiling():
     with shared_loops._nothing_collected(), shared_loops._nothing_collected():
         assert not gc.isenabled()
     assert gc.isenabled()
 
 
-def test_numba_as_it_is_gives_the_same() -> None:
+def test_numba_as_it_is_gives_the_same():
     code = """
 import numba
 from host import loops

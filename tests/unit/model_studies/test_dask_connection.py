@@ -67,9 +67,7 @@ def port(certificates: dict[str, dict[str, Any]]) -> Iterator[str]:
 
 
 @pytest.mark.law
-def test_tasks_go_to_a_scheduler_whose_certificate_is_ours(
-    port: str, certificates: dict[str, dict[str, Any]]
-) -> None:
+def test_tasks_go_to_a_scheduler_whose_certificate_is_ours(port, certificates):
     with dask.config.set(certificates["ours"]):
         workers = dask_workers(f"tls://{port}")
         with workers.client:
@@ -86,8 +84,6 @@ def test_tasks_go_to_a_scheduler_whose_certificate_is_ours(
         ("none", "tcp", r"No Dask scheduler answers at tcp://"),
     ],
 )
-def test_a_connection_that_does_not_fit_is_refused_with_the_reason(
-    port: str, certificates: dict[str, dict[str, Any]], whose: str, scheme: str, reason: str
-) -> None:
+def test_a_connection_that_does_not_fit_is_refused_with_the_reason(port, certificates, whose, scheme, reason):
     with dask.config.set(certificates[whose]), pytest.raises(WorkersLost, match=reason):
         dask_workers(f"{scheme}://{port}")

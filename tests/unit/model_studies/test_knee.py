@@ -50,7 +50,7 @@ class Result(FidelityResult):
 
 
 @pytest.mark.parametrize(("shared", "knee"), [((), "c"), ((1e-2,), "b"), ((float("nan"),), "c")])
-def test_differences_below_errors_that_all_share_buy_nothing(shared: tuple[float, ...], knee: str):
+def test_differences_below_errors_that_all_share_buy_nothing(shared, knee):
     """Every result is a decade dearer; c is far better than b unless both share an error of b's size."""
     errors = {"a": 1.0, "b": 1e-2, "c": 1e-6, "d": 5e-7, "reference": 5e-7}
     results = [Result(name, str(error), 10.0**k) for k, (name, error) in enumerate(errors.items())]

@@ -380,11 +380,11 @@ def seeds() -> list[object]:
 
 @pytest.mark.drawn
 @pytest.mark.parametrize("seed", seeds())
-def test_findings_are_true_of_random_pairs(seed: int) -> None:
+def test_findings_are_true_of_random_pairs(seed):
     check_findings(*drawn_at_random(seed))
 
 
-def test_the_random_pairs_have_every_figure() -> None:
+def test_the_random_pairs_have_every_figure():
     drawn = [drawn_at_random(seed)[1] for seed in range(EVERY_CHANGE)]
     assert set().union(*drawn) == CHECKS.keys()
 
@@ -403,7 +403,7 @@ def computed() -> list[GearPair]:
 @pytest.mark.law
 @pytest.mark.usefixtures("coarse_sectors")
 @pytest.mark.parametrize("pair", computed(), ids=["spur", "relieved", "helical"])
-def test_findings_are_true_of_computed_pairs(pair: GearPair) -> None:
+def test_findings_are_true_of_computed_pairs(pair):
     model = "plane_strain" if pair.base_helix_angle == 0.0 else "3d"
     database = analyze(pair, torques=[20.0, 45.0, 70.0], level="draft", model=model)
     check_findings(database, figures(database))

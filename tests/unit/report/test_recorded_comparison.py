@@ -60,9 +60,7 @@ def _differences(page: Page) -> dict[int, tuple[float, float]]:
 
 
 @pytest.mark.parametrize("form", WRITERS)
-def test_levels_of_eight_orders_agree_within_a_fifth_of_a_decibel(
-    form: str, recorded: tuple[Path, dict[str, Any]], tmp_path: Path
-) -> None:
+def test_levels_of_eight_orders_agree_within_a_fifth_of_a_decibel(form, recorded, tmp_path):
     """The published target: one measured waterfall, written by other programs, read back and compared."""
     run, recording = recorded
     assert np.abs(recording["acceleration"]).max() < FULL_SCALE
@@ -74,9 +72,7 @@ def test_levels_of_eight_orders_agree_within_a_fifth_of_a_decibel(
     assert sum(abs(value) <= error + 0.005 for value, error in differences.values()) >= 7  # two deviations
 
 
-def test_a_recording_of_twice_the_size_is_six_decibels_louder(
-    recorded: tuple[Path, dict[str, Any]], tmp_path: Path
-) -> None:
+def test_a_recording_of_twice_the_size_is_six_decibels_louder(recorded, tmp_path):
     run, recording = recorded
     twice = recording | {"acceleration": 2.0 * recording["acceleration"]}
     page = compare([run, universal(tmp_path / "t.uff", **twice)], VIEW)
@@ -86,9 +82,7 @@ def test_a_recording_of_twice_the_size_is_six_decibels_louder(
     assert len(page.sections[0].figures[1].content) == 2
 
 
-def test_what_the_file_does_not_say_is_asked_for(
-    recorded: tuple[Path, dict[str, Any]], tmp_path: Path
-) -> None:
+def test_what_the_file_does_not_say_is_asked_for(recorded, tmp_path):
     run, recording = recorded
     without = replace(VIEW, direction="")
     file = universal(tmp_path / "t.uff", **recording, direction=0)
@@ -111,9 +105,7 @@ def test_what_the_file_does_not_say_is_asked_for(
         compare([run, other, file], VIEW)
 
 
-def test_names_of_channels_and_files_are_text_on_the_page(
-    recorded: tuple[Path, dict[str, Any]], tmp_path: Path
-) -> None:
+def test_names_of_channels_and_files_are_text_on_the_page(recorded, tmp_path):
     run, recording = recorded
     file = universal(tmp_path / "<img src=x onerror=alert(1)>.uff", **recording)
     written = html(compare([run, file], VIEW), {"levels": b"", "order_maps": b""}, still=True)

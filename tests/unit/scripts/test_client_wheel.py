@@ -46,7 +46,7 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def test_it_runs_from_its_own_files(tree: Path) -> None:
+def test_it_runs_from_its_own_files(tree):
     packages = str(Path(httpx2.__file__).parents[1])
     code = USE.format(without=WITHOUT, tree=str(tree), packages=packages, examples=str(ROOT / "examples"))
     command = [sys.executable, "-I", "-S", "-c", code]  # no editable install of the project in sight
@@ -57,7 +57,7 @@ def test_it_runs_from_its_own_files(tree: Path) -> None:
     assert "pip install lineofaction" in remedy and "job.figures()" in remedy
 
 
-def test_it_is_small_and_is_of_this_version(tree: Path) -> None:
+def test_it_is_small_and_is_of_this_version(tree):
     project = tomllib.loads((tree / "pyproject.toml").read_text("utf-8"))["project"]
     whole = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     assert project["version"] == whole["version"]

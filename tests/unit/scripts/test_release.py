@@ -2,7 +2,6 @@
 
 import shutil
 import subprocess
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -51,9 +50,7 @@ def ready(_project: Path) -> None:
         ("1.3.0", ready, "must have the page '## Unreleased (1.3.0)'"),
     ],
 )
-def test_a_release_that_is_not_ready_is_refused(
-    project: Path, version: str, prepare: Callable[[Path], None], reason: str
-) -> None:
+def test_a_release_that_is_not_ready_is_refused(project, version, prepare, reason):
     prepare(project)
     before = contents(project)
     ended = subprocess.run(
@@ -64,7 +61,7 @@ def test_a_release_that_is_not_ready_is_refused(
     assert before == contents(project)
 
 
-def test_a_version_follows_its_development_versions_alone(project: Path) -> None:
+def test_a_version_follows_its_development_versions_alone(project):
     (project / "pyproject.toml").write_text('version = "1.1.0.dev3"\n', "utf-8")
     subprocess.run([*GIT, "commit", "-qam", "Another version"], cwd=project, check=True)
     ended = subprocess.run(

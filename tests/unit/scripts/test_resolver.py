@@ -28,7 +28,7 @@ def answered(monkeypatch: pytest.MonkeyPatch, errors: dict[str, str]) -> list[st
     return asked
 
 
-def test_the_package_without_wheels_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_package_without_wheels_is_named(monkeypatch):
     answered(monkeypatch, {"a": GMSH, "b": PYMETIS, "c": "no network"})
     assert resolver.lacking_wheels(["gmsh"], "a", "3.12") == "gmsh"
     assert resolver.lacking_wheels(["gmsh"], "b", "3.12") == "pymetis"
@@ -37,9 +37,7 @@ def test_the_package_without_wheels_is_named(monkeypatch: pytest.MonkeyPatch) ->
         resolver.lacking_wheels(["gmsh"], "c", "3.12")
 
 
-def test_what_is_stated_passes_and_anything_else_does_not(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_what_is_stated_passes_and_anything_else_does_not(monkeypatch, capsys):
     arm = resolver.PLATFORMS["Linux ARM"]
     asked = answered(monkeypatch, {arm: GMSH})
     assert resolver.main() == 0
@@ -51,7 +49,7 @@ def test_what_is_stated_passes_and_anything_else_does_not(
     assert "Windows analysis no wheels of pymetis <- NOT AS STATED" in capsys.readouterr().out
 
 
-def test_the_host_table_names_what_has_no_wheels() -> None:
+def test_the_host_table_names_what_has_no_wheels():
     page = (Path(resolver.ROOT) / "docs" / "architecture.md").read_text("utf-8")
     for (system, _), package in resolver.WITHOUT_WHEELS.items():
         (row,) = [

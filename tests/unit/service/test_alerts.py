@@ -192,12 +192,12 @@ def told(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[dict[str, s
     return samples
 
 
-def test_every_metric_they_name_is_told(told: dict[str, list[dict[str, str]]]) -> None:
+def test_every_metric_they_name_is_told(told):
     expressions = [rule["expr"] for rule in alerts().values()] + dashboard_expressions()
     assert {name for text in expressions for name in METRIC.findall(text)} - set(told) == set()
 
 
-def test_every_label_they_choose_by_is_told(told: dict[str, list[dict[str, str]]]) -> None:
+def test_every_label_they_choose_by_is_told(told):
     missing = []
     for text in [rule["expr"] for rule in alerts().values()] + dashboard_expressions():
         for name, chosen in LABELS.findall(text):
@@ -207,7 +207,7 @@ def test_every_label_they_choose_by_is_told(told: dict[str, list[dict[str, str]]
     assert missing == []
 
 
-def test_every_metric_and_alert_is_documented(told: dict[str, list[dict[str, str]]]) -> None:
+def test_every_metric_and_alert_is_documented(told):
     docs = DEPLOY.parent / "docs"
     text = "".join((docs / page).read_text("utf-8") for page in ("operations.md", "how-to/runbooks.md"))
     parts = re.compile("_(bucket|count|sum)$")
@@ -215,7 +215,7 @@ def test_every_metric_and_alert_is_documented(told: dict[str, list[dict[str, str
     assert {name for name in names if f"`{name}`" not in text} == set()
 
 
-def test_each_alert_has_a_runbook_and_each_runbook_an_alert() -> None:
+def test_each_alert_has_a_runbook_and_each_runbook_an_alert():
     sections = {rule["annotations"]["runbook"].partition("#")[::2] for rule in alerts().values()}
     assert sections - {("operations.md", "log")} == {("how-to/runbooks.md", name) for name in RUNBOOKS}
     assert {rule["labels"]["severity"] for rule in alerts().values()} == {"critical", "warning"}
@@ -244,7 +244,7 @@ def promtool(*arguments: object) -> str:
     return done.stdout
 
 
-def test_each_alert_fires_on_its_case_and_no_other_does(tmp_path: Path) -> None:
+def test_each_alert_fires_on_its_case_and_no_other_does(tmp_path):
     assert set(CASES) == set(alerts())
     tests = []
     for case in (None, *CASES):
@@ -259,7 +259,7 @@ def test_each_alert_fires_on_its_case_and_no_other_does(tmp_path: Path) -> None:
     assert "SUCCESS" in promtool("test", "rules", file)
 
 
-def test_prometheus_reads_its_configuration_and_every_expression(tmp_path: Path) -> None:
+def test_prometheus_reads_its_configuration_and_every_expression(tmp_path):
     promtool("check", "config", RULES.with_name("prometheus.yml"))
     rules = [{"record": f"panel_{n}", "expr": text} for n, text in enumerate(dashboard_expressions())]
     file = tmp_path / "dashboard.yml"

@@ -107,9 +107,7 @@ def _planned(_order: object, _asker: object) -> Future[bytes]:
     return answer
 
 
-def test_a_submission_with_a_cost_limit_checks_once_in_the_server(
-    calls: Calls, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_submission_with_a_cost_limit_checks_once_in_the_server(calls, tmp_path, monkeypatch):
     """Its warnings and its predicted cost are of that check; the plan is made in a process of its own."""
     app = create_app(Settings(data_directory=tmp_path))
     body = {"inputs": {"case": CASE}, "max_cost_s": 1e4}
@@ -126,29 +124,29 @@ def test_a_submission_with_a_cost_limit_checks_once_in_the_server(
     assert calls.counts == (0, 1, 1)
 
 
-def test_a_worker_reads_and_checks_its_case_once(calls: Calls, tmp_path: Path) -> None:
+def test_a_worker_reads_and_checks_its_case_once(calls, tmp_path):
     inputs = {"case": validated(Case, CASE).model_dump(mode="json")}
     order = WorkOrder("", inputs, "key", tmp_path, tmp_path)
     stamp_products(order, analyze_case(order, lambda *_: None))
     assert calls.counts == (1, 1, 1)
 
 
-def test_the_command_line_checks_once(calls: Calls, file: Path, tmp_path: Path) -> None:
+def test_the_command_line_checks_once(calls, file, tmp_path):
     invoked("analyze", file, "-o", tmp_path / "ste.nc")
     assert calls.counts == (0, 1, 1)
 
 
-def test_python_checks_once(calls: Calls) -> None:
+def test_python_checks_once(calls):
     lineofaction.analyze(validated(Case, CASE))
     assert calls.counts == (0, 1, 1)
 
 
-def test_a_plan_checks_once(calls: Calls, file: Path) -> None:
+def test_a_plan_checks_once(calls, file):
     invoked("plan", file)
     assert calls.counts == (0, 1, 1)
 
 
-def test_a_tolerance_goes_on_from_the_check_of_the_submission(calls: Calls) -> None:
+def test_a_tolerance_goes_on_from_the_check_of_the_submission(calls):
     """What it does not need is decided as where the request is checked at once."""
     table = CASE | {"accuracy": {"tolerance": 0.3}}
     submitted, direct = (CheckedCase(validated(Case, table)) for _ in range(2))
@@ -159,7 +157,7 @@ def test_a_tolerance_goes_on_from_the_check_of_the_submission(calls: Calls) -> N
 
 
 @pytest.mark.law
-def test_an_optimization_checks_its_request_once(calls: Calls, file: Path, tmp_path: Path) -> None:
+def test_an_optimization_checks_its_request_once(calls, file, tmp_path):
     """That of its maps, whose torques are more than its own."""
     (tmp_path / "study.json").write_text(json.dumps(STUDY))
     invoked("optimize", file, tmp_path / "study.json", "-o", tmp_path / "best")
@@ -167,7 +165,7 @@ def test_an_optimization_checks_its_request_once(calls: Calls, file: Path, tmp_p
     assert len(calls.checked) == 1
 
 
-def test_a_sweep_checks_once(calls: Calls, file: Path, tmp_path: Path) -> None:
+def test_a_sweep_checks_once(calls, file, tmp_path):
     invoked("sweep", file, "--over", "torque=0.1:0.2:0.1", "-o", tmp_path / "map.nc")
     assert calls.counts == (0, 1, 1)
 
@@ -175,15 +173,13 @@ def test_a_sweep_checks_once(calls: Calls, file: Path, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("verb", "target"), [("flank", "flanks.nc"), ("root-stress", "roots.json"), ("export", "bodies")]
 )
-def test_results_at_a_point_check_once(
-    calls: Calls, file: Path, tmp_path: Path, verb: str, target: str
-) -> None:
+def test_results_at_a_point_check_once(calls, file, tmp_path, verb, target):
     """Flanks, roots and deformed gears go on from the check that refuses what cannot be."""
     invoked(verb, file, "-o", tmp_path / target)
     assert calls.counts == (0, 1, 1)
 
 
-def test_a_plan_goes_on_from_the_check_of_the_submission(calls: Calls) -> None:
+def test_a_plan_goes_on_from_the_check_of_the_submission(calls):
     case = CheckedCase(validated(Case, CASE))
     assert case.feasible.request.pair == plan_of(case, None, None).checked.request.pair
     assert calls.counts == (0, 1, 1)
@@ -195,7 +191,7 @@ def inputs(torque_n_m: float) -> AnalyzeInputs:
     return AnalyzeInputs.model_validate({"case": case})
 
 
-def test_a_case_is_checked_until_its_table_is_stored(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_case_is_checked_until_its_table_is_stored(tmp_path, monkeypatch):
     class Refused:
         @property
         def feasible(self) -> None:

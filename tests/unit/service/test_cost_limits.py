@@ -45,13 +45,13 @@ def spent(machine: Bench) -> float:
 
 
 @pytest.mark.law
-def test_work_ends_at_its_limit_and_says_what_to_lower(machine: Bench) -> None:
+def test_work_ends_at_its_limit_and_says_what_to_lower(machine):
     ended = machine.ended(entered(machine, 1.5))
     assert (ended.status, ended.attempts, ended.max_cost_s) == ("failed", 1, 1.5)
     assert ended.message.startswith("The limit of 1.5 CPU s (max_cost_s) was reached. Select a coarser level")
 
 
-def test_work_may_cost_what_the_most_generous_of_its_jobs_allows(machine: Bench) -> None:
+def test_work_may_cost_what_the_most_generous_of_its_jobs_allows(machine):
     first = entered(machine, 0.5)
     assert entered(machine, 0.3).max_cost_s == 0.5
     assert entered(machine, 5e3).max_cost_s == 5e3
@@ -62,14 +62,14 @@ def test_work_may_cost_what_the_most_generous_of_its_jobs_allows(machine: Bench)
     assert entered(machine, 0.1).max_cost_s is None
 
 
-def test_the_lower_of_both_limits_holds() -> None:
+def test_the_lower_of_both_limits_holds():
     bounded = Holder(name="ann", max_cost_s=60)
     assert cost_limit(None, KEYLESS_CALLER) is None
     assert cost_limit(5.0, KEYLESS_CALLER) == cost_limit(5.0, bounded) == 5.0
     assert cost_limit(None, bounded) == cost_limit(100.0, bounded) == 60
 
 
-def test_a_prediction_beyond_the_limit_is_told_with_its_largest_stages() -> None:
+def test_a_prediction_beyond_the_limit_is_told_with_its_largest_stages():
     stages = {"mesh": 0.5, "compliance": 40.0, "contact": 9.5}
     refuse_beyond(50.0, stages)
     refuse_beyond(0.1, {})  # nothing is predicted
@@ -92,7 +92,7 @@ def analyzed(client: TestClient, **terms: Any) -> Any:
     return client.post("/v1/processes/analyze/execution", json={"inputs": {"case": CASE}, **terms})
 
 
-def test_a_table_that_is_planned_to_cost_more_is_not_entered(client: TestClient, tmp_path: Path) -> None:
+def test_a_table_that_is_planned_to_cost_more_is_not_entered(client, tmp_path):
     plan = client.post("/v1/plans", json={"inputs": {"case": CASE}}).json()["prediction"]["cpu_seconds"]
     refused = analyzed(client, max_cost_s=0.9 * plan)
     assert refused.status_code == 422
@@ -107,7 +107,7 @@ def test_a_table_that_is_planned_to_cost_more_is_not_entered(client: TestClient,
     assert analyzed(client, max_cost_s=1e-3).status_code == 422
 
 
-def test_what_is_stored_costs_nothing(tmp_path: Path) -> None:
+def test_what_is_stored_costs_nothing(tmp_path):
     app = create_app(Settings(data_directory=tmp_path))
     key = app.state.context.registry["analyze"].key(
         app.state.context.registry["analyze"].prepare(_inputs(app), app.state.context.store)

@@ -40,7 +40,7 @@ def machine(tmp_path: Path, server_url: str) -> Iterator[Bench]:
     found.close()
 
 
-def test_steps_go_on_when_their_connections_are_ended(machine: Bench, postgres: PostgresServer) -> None:
+def test_steps_go_on_when_their_connections_are_ended(machine, postgres):
     """Connections that wait in the pool, and one in mid-transaction whose commit is never answered."""
     job = machine.submit(text="kept")
     url = str(machine.settings.database_address)
@@ -60,7 +60,7 @@ def test_steps_go_on_when_their_connections_are_ended(machine: Bench, postgres: 
     assert machine.submissions.counts() == {"accepted": 2}
 
 
-def test_an_answer_to_a_commit_that_is_lost_enters_no_job_twice(machine: Bench) -> None:
+def test_an_answer_to_a_commit_that_is_lost_enters_no_job_twice(machine):
     """The transaction was committed; the connection broke before the answer came: the step runs again."""
     entry, work = machine.submissions.entry(), BatchCase("ab" * 32, {"wish": {}})
     enter = Entry._job.__wrapped__  # type: ignore[attr-defined]
@@ -71,7 +71,7 @@ def test_an_answer_to_a_commit_that_is_lost_enters_no_job_twice(machine: Bench) 
     assert machine.submissions.counts() == {"accepted": 1}
 
 
-def test_jobs_end_while_connections_are_ended_all_the_time(machine: Bench, postgres: PostgresServer) -> None:
+def test_jobs_end_while_connections_are_ended_all_the_time(machine, postgres):
     url, writes = str(machine.settings.database_address), count(1)
 
     def end_at_every_third(connection: Connection) -> None:
@@ -85,7 +85,7 @@ def test_jobs_end_while_connections_are_ended_all_the_time(machine: Bench, postg
     assert next(writes) > 6
 
 
-def test_a_server_that_is_gone_is_said_to_callers_with_a_time_to_try_again(tmp_path: Path) -> None:
+def test_a_server_that_is_gone_is_said_to_callers_with_a_time_to_try_again(tmp_path):
     with running_server() as server:
         url = server.new_database()
         Schema(engine := database_engine(url)).upgrade()
@@ -100,7 +100,7 @@ def test_a_server_that_is_gone_is_said_to_callers_with_a_time_to_try_again(tmp_p
     app.state.context.close()
 
 
-def test_a_network_that_swallows_everything_is_noticed(postgres: PostgresServer) -> None:
+def test_a_network_that_swallows_everything_is_noticed(postgres):
     """The system drops a connection whose packets nobody takes, within a client's patience of 30 s."""
     with relay(postgres.socket) as between:
         url = postgres.new_database().partition("?")[0].replace("@", f"@127.0.0.1:{between.port}")
@@ -115,9 +115,7 @@ def test_a_network_that_swallows_everything_is_noticed(postgres: PostgresServer)
     assert idle + interval * count < 30
 
 
-def test_a_connection_that_is_cut_in_mid_statement_is_outlasted(
-    tmp_path: Path, postgres: PostgresServer
-) -> None:
+def test_a_connection_that_is_cut_in_mid_statement_is_outlasted(tmp_path, postgres):
     with relay(postgres.socket) as between:
         direct = migrated(postgres.new_database())
         url = direct.partition("?")[0].replace("@", f"@127.0.0.1:{between.port}")
@@ -134,9 +132,7 @@ def test_a_connection_that_is_cut_in_mid_statement_is_outlasted(
         machine.close()
 
 
-def test_a_file_that_another_holds_is_waited_for_and_then_refused(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_file_that_another_holds_is_waited_for_and_then_refused(tmp_path, monkeypatch):
     monkeypatch.setattr("service.store.dialects.PATIENCE_MS", 20)
     machine = bench(tmp_path, REGISTRY)
     holder = sqlite3.connect(tmp_path / "service.sqlite3", isolation_level=None)
@@ -149,9 +145,7 @@ def test_a_file_that_another_holds_is_waited_for_and_then_refused(
     holder.close()
 
 
-def test_a_database_that_is_none_is_refused_without_its_password(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_database_that_is_none_is_refused_without_its_password(tmp_path, monkeypatch):
     monkeypatch.setenv("LOA_DATABASE_URL", "mysql://user:geheim@host/name")
     with pytest.raises(BadInput) as caught:
         open_database(str(load_settings(data_directory=tmp_path).database_address))
@@ -160,6 +154,6 @@ def test_a_database_that_is_none_is_refused_without_its_password(
     assert "geheim" not in repr(load_settings(data_directory=tmp_path))
 
 
-def test_a_server_is_not_upgraded_by_the_way(postgres: PostgresServer) -> None:
+def test_a_server_is_not_upgraded_by_the_way(postgres):
     with pytest.raises(BadInput, match=r"it has no tables\. Run loa database upgrade first"):
         open_database(postgres.new_database())

@@ -42,9 +42,7 @@ def starts(dask: DaskProcesses, job: Job) -> int:
 
 
 @pytest.mark.law
-def test_a_worker_that_is_told_to_end_finishes_its_job_and_begins_no_other(
-    dask: DaskProcesses, server: Bench
-) -> None:
+def test_a_worker_that_is_told_to_end_finishes_its_job_and_begins_no_other(dask, server):
     (worker,) = dask.workers
     job = server.submit(mode="slow", text="one")
     until(lambda: starts(dask, job) == 1)
@@ -59,9 +57,7 @@ def test_a_worker_that_is_told_to_end_finishes_its_job_and_begins_no_other(
     assert starts(dask, other) == 1
 
 
-def test_a_worker_without_a_job_leaves_at_once_and_a_second_signal_ends_one_with_a_job(
-    dask: DaskProcesses, server: Bench
-) -> None:
+def test_a_worker_without_a_job_leaves_at_once_and_a_second_signal_ends_one_with_a_job(dask, server):
     (first,) = dask.workers
     dask.start_workers(nanny=False, preload=PRELOAD)
     dask.await_workers(2)

@@ -28,9 +28,7 @@ def settings(tmp_path: Path, database_url: str | None) -> Iterator[dict[str, Any
     yield {"database_url": url, "results_url": (tmp_path / "results").as_uri()}
 
 
-def test_a_second_server_is_refused_by_name_until_the_first_has_stopped(
-    tmp_path: Path, settings: dict[str, Any]
-) -> None:
+def test_a_second_server_is_refused_by_name_until_the_first_has_stopped(tmp_path, settings):
     first = job_machinery(Settings(data_directory=tmp_path / "one", **settings), REGISTRY)
     other = Settings(data_directory=tmp_path / "other", **settings)
     with pytest.raises(BadInput) as caught:
@@ -47,7 +45,7 @@ def test_a_second_server_is_refused_by_name_until_the_first_has_stopped(
     first.close()
 
 
-def test_two_tables_of_one_database_have_an_owner_each(tmp_path: Path, postgres: PostgresServer) -> None:
+def test_two_tables_of_one_database_have_an_owner_each(tmp_path, postgres):
     """The lock is of the table: another one, here in another schema, is another's."""
     url = postgres.emptied_database()
     first = bench(tmp_path / "one", REGISTRY, database_url=url)
@@ -83,9 +81,7 @@ def owners(machine: Bench) -> int:
         return int(connection.execute(text(locks)).scalar_one())
 
 
-def test_a_lock_that_is_lost_is_acquired_again_and_the_work_goes_on(
-    server: Bench, postgres: PostgresServer
-) -> None:
+def test_a_lock_that_is_lost_is_acquired_again_and_the_work_goes_on(server, postgres):
     job = server.submit(mode="hang")
     child = child_of(server, job.key)
     postgres.end_connections(str(server.settings.database_address))
@@ -98,8 +94,8 @@ def test_a_lock_that_is_lost_is_acquired_again_and_the_work_goes_on(
 
 @pytest.mark.law
 def test_who_has_lost_the_table_to_another_server_ends_its_work_and_starts_none(
-    tmp_path: Path, server: Bench, postgres: PostgresServer, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    tmp_path, server, postgres, monkeypatch
+):
     """The other one puts the work back and does it: never do two write to the table."""
     job = server.submit(mode="hang")
     child = child_of(server, job.key)
@@ -129,7 +125,7 @@ def test_who_has_lost_the_table_to_another_server_ends_its_work_and_starts_none(
     assert server.ended(next_one).status == "successful"
 
 
-def test_what_runs_by_the_table_but_not_here_waits_again(tmp_path: Path) -> None:
+def test_what_runs_by_the_table_but_not_here_waits_again(tmp_path):
     """A claim was committed, and no answer came however often it was tried."""
     machine = bench(tmp_path, REGISTRY)
     machine.scheduler.start()
@@ -144,7 +140,7 @@ def test_what_runs_by_the_table_but_not_here_waits_again(tmp_path: Path) -> None
     machine.close()
 
 
-def test_a_worker_waits_until_the_earlier_one_in_its_workspace_is_gone(tmp_path: Path) -> None:
+def test_a_worker_waits_until_the_earlier_one_in_its_workspace_is_gone(tmp_path):
     machine = bench(tmp_path, REGISTRY)
     job = machine.submit(text="after")
     (row,) = machine.claims.waiting()
@@ -177,7 +173,7 @@ machine.scheduler._thread.join()
 """
 
 
-def test_kill_minus_nine_leaves_no_orphan(tmp_path: Path) -> None:
+def test_kill_minus_nine_leaves_no_orphan(tmp_path):
     service = python("-c", SERVICE, tmp_path, stdout=None)
     try:
         until(lambda: any(f.read_text() for f in tmp_path.glob("grandchild_*")))

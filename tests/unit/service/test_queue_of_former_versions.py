@@ -36,7 +36,7 @@ def upgraded(folder: Path, version: str, change: str = "") -> Bench:
 
 @pytest.mark.law
 @pytest.mark.parametrize("version", ["0.2.0", "0.3.0.dev442"])
-def test_twenty_waiting_jobs_are_done_after_an_upgrade(tmp_path: Path, version: str) -> None:
+def test_twenty_waiting_jobs_are_done_after_an_upgrade(tmp_path, version):
     machine = upgraded(tmp_path, version)
     before = machine.submissions.page(100)
     assert [job.status for job in before] == ["accepted"] * NUMBER
@@ -51,7 +51,7 @@ def test_twenty_waiting_jobs_are_done_after_an_upgrade(tmp_path: Path, version: 
     machine.close()
 
 
-def test_what_no_longer_validates_ends_with_its_field_and_the_others_run(tmp_path: Path) -> None:
+def test_what_no_longer_validates_ends_with_its_field_and_the_others_run(tmp_path):
     """The oldest job has another number of teeth here, as if a former version had allowed it."""
     teeth = """replace(inputs, '"teeth": 20', '"teeth": -20')"""
     which = "(SELECT computation_id FROM job ORDER BY created LIMIT 1)"

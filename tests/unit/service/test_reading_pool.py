@@ -57,7 +57,7 @@ def pool(tmp_path: Path) -> Iterator[QuestionPool]:
     made.stop()
 
 
-def test_each_question_has_a_process_and_a_folder_that_are_gone_after_it(pool: QuestionPool) -> None:
+def test_each_question_has_a_process_and_a_folder_that_are_gone_after_it(pool):
     answers = [answer(pool.ask(order("echo", word=word))) for word in "ab"]
     assert [found["word"] for found in answers] == ["a", "b"]
     assert len({found["pid"] for found in answers}) == len({found["folder"] for found in answers}) == 2
@@ -77,9 +77,7 @@ def test_each_question_has_a_process_and_a_folder_that_are_gone_after_it(pool: Q
         ("defect", Unexpected, "unexpected failure"),
     ],
 )
-def test_a_question_that_fails_says_why_and_leaves_nothing(
-    pool: QuestionPool, tmp_path: Path, name: str, error: type[ServiceError], text: str
-) -> None:
+def test_a_question_that_fails_says_why_and_leaves_nothing(pool, tmp_path, name, error, text):
     with pytest.raises(error, match=text):
         pool.ask(order(name, word="canary")).result(timeout=PATIENCE_S)
     assert not left(pool)
@@ -102,9 +100,7 @@ HOUSINGS = [{"step_file": file} for file in FILES]
         ({"measured": {"csv": "tooth,"}}, [], "measured.csv", "tooth,"),
     ],
 )  # fmt: skip
-def test_a_file_that_ends_its_reader_is_named(
-    pool: QuestionPool, inputs: dict[str, Any], announced: list[str], field: str, value: str
-) -> None:
+def test_a_file_that_ends_its_reader_is_named(pool, inputs, announced, field, value):
     """Not by what the reader says it reads, unless that was sent."""
     with pytest.raises(BadInput) as refused:
         pool.ask(order("die_at", fields=announced, **inputs)).result(timeout=PATIENCE_S)
@@ -127,9 +123,7 @@ def test_a_file_that_ends_its_reader_is_named(
         (b"", 1, 0.1, ""),
     ],
 )
-def test_ends_that_are_not_the_files_fault_may_be_repeated(
-    sent: bytes, code: int, cpu_seconds: float, bound: str
-) -> None:
+def test_ends_that_are_not_the_files_fault_may_be_repeated(sent, code, cpu_seconds, bound):
     """A kill from outside, and an end before the order was read."""
     course, frames = Course(), FrameBuffer()
     course.take(frames.take(sent))
@@ -138,9 +132,7 @@ def test_ends_that_are_not_the_files_fault_may_be_repeated(
     assert bound in found and bool(bound) == bool(found)
 
 
-def test_cpu_time_ends_a_question_and_nobody_else_waits_for_it(
-    pool: QuestionPool, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_cpu_time_ends_a_question_and_nobody_else_waits_for_it(pool, monkeypatch):
     """Three callers loop as long as they may; the fourth is answered before them."""
     looping = [pool.ask(order("loop"), Asker(f"caller {number}")) for number in range(AT_ONCE - 1)]
     begin = time.monotonic()
@@ -154,13 +146,13 @@ def test_cpu_time_ends_a_question_and_nobody_else_waits_for_it(
 
 
 @pytest.mark.nightly
-def test_ten_seconds_of_cpu_time_are_the_limit(pool: QuestionPool) -> None:
+def test_ten_seconds_of_cpu_time_are_the_limit(pool):
     with pytest.raises(BadInput, match="read within 10 s of CPU time"):
         pool.ask(order("loop")).result(timeout=3 * PATIENCE_S)
     assert not left(pool)
 
 
-def test_a_caller_has_one_read_and_one_waiting(pool: QuestionPool) -> None:
+def test_a_caller_has_one_read_and_one_waiting(pool):
     futures = [pool.ask(order("echo", word=word, seconds=0.3), Asker("caller")) for word in "ab"]
     with pytest.raises(TooManyHeld) as refused:
         pool.ask(order("echo", word="c"), Asker("caller"))
@@ -169,7 +161,7 @@ def test_a_caller_has_one_read_and_one_waiting(pool: QuestionPool) -> None:
     assert [answer(future)["word"] for future in futures] == ["a", "b"]
 
 
-def test_so_many_wait_and_no_more(pool: QuestionPool) -> None:
+def test_so_many_wait_and_no_more(pool):
     many = LIMITS.in_all
     futures = [pool.ask(order("echo", word=str(n), seconds=0.2), Asker(f"caller {n}")) for n in range(many)]
     with pytest.raises(QueueFull):
@@ -177,7 +169,7 @@ def test_so_many_wait_and_no_more(pool: QuestionPool) -> None:
     assert [answer(future)["word"] for future in futures] == [str(number) for number in range(many)]
 
 
-def test_a_killed_reader_leaves_nothing(pool: QuestionPool) -> None:
+def test_a_killed_reader_leaves_nothing(pool):
     answer(pool.ask(order("echo", word="warm")))
     future = pool.ask(order("loop"))
     readers = pool._workers[0]._children
@@ -190,7 +182,7 @@ def test_a_killed_reader_leaves_nothing(pool: QuestionPool) -> None:
     assert not left(pool) and not lives(pid)
 
 
-def test_folders_of_a_killed_service_are_removed_and_no_others(tmp_path: Path) -> None:
+def test_folders_of_a_killed_service_are_removed_and_no_others(tmp_path):
     (tmp_path / "orphan").mkdir()
     (tmp_path / "orphan" / "file").touch()
     with locked_folder(tmp_path) as used:
@@ -199,13 +191,13 @@ def test_folders_of_a_killed_service_are_removed_and_no_others(tmp_path: Path) -
     assert not list(tmp_path.iterdir())
 
 
-def test_a_reader_sees_no_file_of_the_service(pool: QuestionPool, tmp_path: Path) -> None:
+def test_a_reader_sees_no_file_of_the_service(pool, tmp_path):
     (tmp_path / "keys.json").write_text("canary")
     with pytest.raises(Unexpected):
         pool.ask(order("peek", file=str(tmp_path / "keys.json"))).result(timeout=PATIENCE_S)
 
 
-def test_a_system_that_confines_nothing_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_system_that_confines_nothing_says_so(tmp_path, monkeypatch):
     monkeypatch.setattr("host.confinement.landlock_version", lambda: 0)
     with capture_logs() as log, TestClient(create_app(Settings(data_directory=tmp_path), REGISTRY)) as http:
         ready = http.get("/ready", headers={"Host": "localhost"})
@@ -213,9 +205,7 @@ def test_a_system_that_confines_nothing_says_so(tmp_path: Path, monkeypatch: pyt
     assert [entry["missing"] for entry in log if "confine" in entry["event"]] == [("files (Landlock)",)]
 
 
-def test_a_service_that_requires_confinement_does_not_start_without(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_service_that_requires_confinement_does_not_start_without(tmp_path, monkeypatch):
     monkeypatch.setenv("LOA_REQUIRE_CONFINEMENT", "true")
     settings = load_settings(data_directory=tmp_path)
     create_app(settings, REGISTRY)

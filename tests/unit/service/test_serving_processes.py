@@ -48,7 +48,7 @@ def lasting(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Path, st
         yield folder, address
 
 
-def test_a_server_starts_serves_and_stops_clean(server: tuple[subprocess.Popen[str], str]) -> None:
+def test_a_server_starts_serves_and_stops_clean(server):
     process, address = server
     host, _, port = address.removeprefix("http://").rpartition(":")
     socket.create_connection((host, int(port)), timeout=PATIENCE_S).close()  # it listens before it says so
@@ -91,7 +91,7 @@ def _healthy(address: str) -> bool:
 
 
 @pytest.mark.law
-def test_a_stopped_server_leaves_no_worker(server: tuple[subprocess.Popen[str], str], tmp_path: Path) -> None:
+def test_a_stopped_server_leaves_no_worker(server, tmp_path):
     process, address = server
     until(lambda: _healthy(address))
     job = loa("submit", ROOT / "examples/palermo_spur_20_20.toml", "--service", address, "--json")
@@ -113,20 +113,20 @@ def test_a_stopped_server_leaves_no_worker(server: tuple[subprocess.Popen[str], 
     assert {path: mode for path, mode in modes.items() if mode != (0o700 if path.is_dir() else 0o600)} == {}
 
 
-def test_a_second_server_in_the_same_directory_is_refused(lasting: tuple[Path, str]) -> None:
+def test_a_second_server_in_the_same_directory_is_refused(lasting):
     result = loa("serve", "--port", "0", "--data-directory", lasting[0])
     assert result.exit_code == 2
     assert "another service works in it" in result.stderr
 
 
-def test_a_port_in_use_is_said(lasting: tuple[Path, str], tmp_path: Path) -> None:
+def test_a_port_in_use_is_said(lasting, tmp_path):
     port = lasting[1].rpartition(":")[2]
     result = loa("serve", "--port", port, "--data-directory", tmp_path / "other")
     assert result.exit_code == 2
     assert f"port = {port}: must be a free port" in result.stderr
 
 
-def test_interrupting_is_clean(tmp_path: Path) -> None:
+def test_interrupting_is_clean(tmp_path):
     fifo = tmp_path / "case.toml"
     os.mkfifo(fifo)  # the command waits for its case, so the signal comes while it works
     process = python(*LOA, "analyze", fifo, "-o", tmp_path / "ste.nc", stderr=subprocess.PIPE)

@@ -80,7 +80,7 @@ def age(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("service.queue.retention.GRACE_S", -60.0)
 
 
-def test_every_file_is_compared_and_what_differs_is_set_aside(machine: Bench) -> None:
+def test_every_file_is_compared_and_what_differs_is_set_aside(machine):
     names = [put(machine, key, b"table") for key in KEYS]
     (draft := machine.settings.data_directory / "other").write_bytes(b"tabla")
     machine.store.files.put(names[0], draft, hashlib.sha256(b"tabla").hexdigest())
@@ -94,9 +94,7 @@ def test_every_file_is_compared_and_what_differs_is_set_aside(machine: Bench) ->
     assert verify_store(machine.store).damaged == ()
 
 
-def test_orphans_and_half_written_files_go_and_all_else_stays(
-    machine: Bench, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_orphans_and_half_written_files_go_and_all_else_stays(machine, monkeypatch):
     name = put(machine, KEYS[0], b"table")
     lost = put(machine, KEYS[1], b"lost")
     machine.store.files.delete(lost)
@@ -118,7 +116,7 @@ def test_orphans_and_half_written_files_go_and_all_else_stays(
     assert machine.store.verified(KEYS[0], "database").path.read_bytes() == b"table"
 
 
-def test_what_was_not_asked_for_expires_with_its_jobs(machine: Bench) -> None:
+def test_what_was_not_asked_for_expires_with_its_jobs(machine):
     old, asked, shown = (done(machine, text) for text in ("old", "asked", "shown"))
     waiting = machine.submit(text="waits")
     let_time_pass(machine)
@@ -138,9 +136,7 @@ def test_what_was_not_asked_for_expires_with_its_jobs(machine: Bench) -> None:
     assert machine.submissions.counts() == {"accepted": 2, "successful": 1}
 
 
-def test_a_result_that_is_asked_for_while_it_is_looked_at_stays(
-    machine: Bench, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_result_that_is_asked_for_while_it_is_looked_at_stays(machine, monkeypatch):
     """The index was read, then the result was put again: the line is no more what was seen."""
     put(machine, KEYS[0], b"table")
     let_time_pass(machine)
@@ -156,7 +152,7 @@ def test_a_result_that_is_asked_for_while_it_is_looked_at_stays(
     assert machine.store.verified(KEYS[0], "database").path.read_bytes() == b"table"
 
 
-def test_workspaces_and_logs_of_ended_work_go(machine: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_workspaces_and_logs_of_ended_work_go(machine, monkeypatch):
     directory = machine.settings.data_directory
     ended, failed, running = (machine.submit(text=text) for text in ("ended", "failed", "running"))
     claims = [machine.claims.claim() for _ in range(3)]
@@ -178,7 +174,7 @@ def test_workspaces_and_logs_of_ended_work_go(machine: Bench, monkeypatch: pytes
     assert ended.id != failed.id != running.id
 
 
-def test_collection_beside_writers_loses_nothing(machine: Bench) -> None:
+def test_collection_beside_writers_loses_nothing(machine):
     """Results are put and read while rounds of collection come and go."""
     stop = threading.Event()
     names = set()
@@ -201,7 +197,7 @@ def test_collection_beside_writers_loses_nothing(machine: Bench) -> None:
     assert verify_store(machine.store).sound == 12
 
 
-def test_the_verbs_tell_and_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_verbs_tell_and_do(tmp_path, monkeypatch):
     monkeypatch.setenv("LOA_DATA_DIRECTORY", str(tmp_path))
     machine = bench(tmp_path, REGISTRY)
     names = [put(machine, key, b"table") for key in KEYS[:2]]

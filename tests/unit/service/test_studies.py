@@ -25,7 +25,6 @@ from lineofaction.gearbox.schemas.outline import OutlineBody
 from lineofaction.gearbox.schemas.plan import PlanBody
 from lineofaction.gearbox.studies.computation import Computation
 from lineofaction.gearbox.studies.deflect import Inputs
-from lineofaction.gearbox.study import Study
 from lineofaction.report.document import stored_study
 from lineofaction.report.presentation import Presentation, presentation_of
 from service.live.work import live_plan
@@ -37,7 +36,7 @@ EVERY = pytest.mark.parametrize("study", STUDIES.values(), ids=list(STUDIES))
 
 
 @EVERY
-def test_it_has_its_parts(study: Study) -> None:
+def test_it_has_its_parts(study):
     assert issubclass(study.inputs, BoundaryModel)
     assert isinstance(study.run, Computation) and isinstance(presentation_of(study), Presentation)
     assert sum(share for _, share in study.stages) == pytest.approx(1.0)
@@ -45,7 +44,7 @@ def test_it_has_its_parts(study: Study) -> None:
 
 
 @EVERY
-def test_the_client_has_a_process_that_says_what_it_takes(study: Study) -> None:
+def test_the_client_has_a_process_that_says_what_it_takes(study):
     with LineOfActionClient("http://127.0.0.1:9") as client:
         process = getattr(client, study.package)
     expected = "study" if study.takes.from_file else "options"
@@ -53,7 +52,7 @@ def test_the_client_has_a_process_that_says_what_it_takes(study: Study) -> None:
     assert process.__doc__ == study.description
 
 
-def test_a_call_that_does_not_fit_is_told_what_would() -> None:
+def test_a_call_that_does_not_fit_is_told_what_would():
     with LineOfActionClient("http://127.0.0.1:9") as client:
         calls: Any = client
         for wrong in (
@@ -65,7 +64,7 @@ def test_a_call_that_does_not_fit_is_told_what_would() -> None:
                 wrong()
 
 
-def test_the_client_has_the_processes_of_the_service_and_no_others() -> None:
+def test_the_client_has_the_processes_of_the_service_and_no_others():
     processes = default_registry()
     assert list(offers()) == list(processes)
     for name, offer in offers().items():
@@ -75,7 +74,7 @@ def test_the_client_has_the_processes_of_the_service_and_no_others() -> None:
 
 
 @EVERY
-def test_its_files_are_known_from_those_of_others(study: Study) -> None:
+def test_its_files_are_known_from_those_of_others(study):
     file = study.run.file
     assert file.values
     assert all(stored_study({file.attribute: value, "title": "any"}) is study for value in file.values)
@@ -86,7 +85,7 @@ UNIT = Path(__file__).parents[3] / "examples" / "two_stage_gearbox.rexs"
 ROTOR = UNIT.with_name("jeffcott_scene.toml")
 
 
-def test_load_cases_of_an_opened_unit_are_those_of_their_file(tmp_path: Path) -> None:
+def test_load_cases_of_an_opened_unit_are_those_of_their_file(tmp_path):
     unit = OpenedUnit.of(read_rexs(UNIT))
     body = UnitBody.model_validate(unit_json(unit))
     file = tmp_path / "load_cases.toml"
@@ -104,7 +103,7 @@ def test_load_cases_of_an_opened_unit_are_those_of_their_file(tmp_path: Path) ->
     assert [case["torque_n_m"] for case in by_model["load_cases"]] == [50.0, 80.0, 30.0]
 
 
-def test_a_path_as_text_is_refused_with_what_to_do() -> None:
+def test_a_path_as_text_is_refused_with_what_to_do():
     with pytest.raises(BadInput, match=r"pathlib\.Path"):
         offers()["deflect"].inputs(ROTOR, "load_cases.toml")
 
@@ -117,7 +116,7 @@ def through_json(answer: dict[str, Any]) -> Any:
 
 
 @pytest.mark.parametrize("name", ["helical_ev_23_67", "industrial_spur_21_59"])
-def test_plans_and_drawings_are_as_declared(name: str, tmp_path: Path) -> None:
+def test_plans_and_drawings_are_as_declared(name, tmp_path):
     case = read_model(Case, EXAMPLES / f"{name}.toml")
     plan = through_json(
         live_plan({"case": case.model_dump(mode="json"), "time_budget_s": None, "cache": str(tmp_path)})
@@ -127,7 +126,7 @@ def test_plans_and_drawings_are_as_declared(name: str, tmp_path: Path) -> None:
     assert OutlineBody.model_validate(drawing).model_dump(mode="json") == drawing
 
 
-def test_a_search_has_the_complaint_of_the_case_as_objective_unless_one_is_stated() -> None:
+def test_a_search_has_the_complaint_of_the_case_as_objective_unless_one_is_stated():
     complaint = {"frequency_hz": 800.0, "speed_rpm": 1200.0, "torque_n_m": 0.1}  # 20 teeth: harmonic 2
     search = default_registry()["optimize"]
     answered = prepared(search, case={**CASE, "complaint": complaint})
@@ -136,7 +135,7 @@ def test_a_search_has_the_complaint_of_the_case_as_objective_unless_one_is_state
     assert stated["objective"] == {"kind": "worst", "weights": []}
 
 
-def test_a_plan_has_the_cost_of_the_study_that_is_named(tmp_path: Path) -> None:
+def test_a_plan_has_the_cost_of_the_study_that_is_named(tmp_path):
     question = {"case": CASE, "time_budget_s": None, "cache": str(tmp_path)}
     plan = through_json(live_plan({**question, "study": "optimize"}))
     assert plan["study"]["cpu_seconds"] > 0.0 and "designs at" in plan["study"]["words"]
@@ -155,7 +154,7 @@ def table() -> SteDatabase:
     return analyze(pair, torques=TORQUES, level="draft", positions=8, model="plane_strain")
 
 
-def test_torques_come_back_as_they_were_typed(table: SteDatabase) -> None:
+def test_torques_come_back_as_they_were_typed(table):
     """The table holds forces: torque to force and back leaves a last digit."""
     assert table.torque.tolist() != TORQUES
     assert metadata_json(table)["torque_n_m"] == TORQUES

@@ -2,11 +2,10 @@
 
 import time
 from collections.abc import Callable
-from pathlib import Path
 from threading import Event, Thread
 
 import pytest
-from running_service import Bench, until
+from running_service import until
 from sqlalchemy import Engine, event
 
 from lineofaction.gearbox.problems import Busy
@@ -36,7 +35,7 @@ def number_waiting(engine: Engine) -> int:
 
 
 @pytest.mark.law
-def test_writers_are_served_in_the_order_in_which_they_came(tmp_path: Path) -> None:
+def test_writers_are_served_in_the_order_in_which_they_came(tmp_path):
     """SQLite alone lets in whoever tries when the file happens to be free.
 
     They wait with their connections open: opened within the turns these let half as many write in a time.
@@ -65,7 +64,7 @@ def test_writers_are_served_in_the_order_in_which_they_came(tmp_path: Path) -> N
     engine.dispose()
 
 
-def test_one_whose_turn_does_not_come_is_told_that_the_service_is_busy(machine: Bench) -> None:
+def test_one_whose_turn_does_not_come_is_told_that_the_service_is_busy(machine):
     if machine.engine.dialect.name != "sqlite":
         pytest.skip("a server has many writers")
     writer = Writer(machine.engine)
@@ -79,7 +78,7 @@ def test_one_whose_turn_does_not_come_is_told_that_the_service_is_busy(machine: 
     writer.write(lambda: None, patience_ms=200)
 
 
-def test_patience_is_one_in_the_queue_and_at_the_file() -> None:
+def test_patience_is_one_in_the_queue_and_at_the_file():
     queue, left = WriterQueue(), list[float]()
 
     def wait() -> None:
@@ -95,7 +94,7 @@ def test_patience_is_one_in_the_queue_and_at_the_file() -> None:
     assert left[0] < 59.9
 
 
-def test_one_that_gives_up_leaves_its_place_and_one_ahead_is_the_next() -> None:
+def test_one_that_gives_up_leaves_its_place_and_one_ahead_is_the_next():
     queue, served = WriterQueue(), list[str]()
 
     def wait(name: str, ahead: bool) -> None:
@@ -116,7 +115,7 @@ def test_one_that_gives_up_leaves_its_place_and_one_ahead_is_the_next() -> None:
         assert left_s == 0.0
 
 
-def test_a_turn_that_ends_by_an_error_is_given_on() -> None:
+def test_a_turn_that_ends_by_an_error_is_given_on():
     queue = WriterQueue()
     with pytest.raises(ValueError, match="defect"), queue.turn(1.0):
         raise ValueError("defect")

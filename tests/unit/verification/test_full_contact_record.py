@@ -40,7 +40,7 @@ def solved_table(
     )
 
 
-def test_all_loads_are_solved_at_equally_spaced_positions(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_all_loads_are_solved_at_equally_spaced_positions(monkeypatch):
     monkeypatch.setattr(
         recording,
         "solve_full_contact",
@@ -55,7 +55,7 @@ def test_all_loads_are_solved_at_equally_spaced_positions(monkeypatch: pytest.Mo
     assert record.seconds_per_solve == pytest.approx(4 * 5.0 / 8)
 
 
-def test_misaligned_gears_are_solved_over_the_face(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_misaligned_gears_are_solved_over_the_face(monkeypatch):
     def solved(_pair, torques, positions, misalignments, **_):  # type: ignore[no-untyped-def]
         return (solved_table(torques, positions),) * len(misalignments)
 
@@ -67,7 +67,7 @@ def test_misaligned_gears_are_solved_over_the_face(monkeypatch: pytest.MonkeyPat
     assert record.transmission_error.shape == (2, 2, len(FORCES))
 
 
-def test_no_solution_at_all_is_an_error_with_its_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_solution_at_all_is_an_error_with_its_reason(monkeypatch):
     monkeypatch.setattr(
         recording,
         "solve_full_contact",
@@ -77,7 +77,7 @@ def test_no_solution_at_all_is_an_error_with_its_reason(monkeypatch: pytest.Monk
         record_full_contact(check_request(PAIR, TableAxes(normal_forces=FORCES)), 2, unreported)
 
 
-def test_what_it_cannot_hold_is_said() -> None:
+def test_what_it_cannot_hold_is_said():
     assert full_contact_refusal(check_request(PAIR, TableAxes(normal_forces=[9.0]))) is None
     wider = dataclasses.replace(GEAR, face_width=9e-3)
     beside = check_request(
@@ -91,7 +91,7 @@ def test_what_it_cannot_hold_is_said() -> None:
     assert "helical" in str(full_contact_refusal(check_request(tilted, TableAxes(normal_forces=[9.0]))))
 
 
-def test_the_record_of_the_accuracy_study_is_what_is_solved_today() -> None:
+def test_the_record_of_the_accuracy_study_is_what_is_solved_today():
     """One position of the 20/20 pair of the examples, under the least and the largest load."""
     gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
     record = full_contact_records()[0]

@@ -132,7 +132,7 @@ def test_a_load_that_pulls_the_flanks_apart_has_no_equilibrium():
 
 
 @pytest.mark.parametrize("method", ["explicit", "implicit"])
-def test_what_dies_away_is_at_rest_before_it_underflows(method: str) -> None:
+def test_what_dies_away_is_at_rest_before_it_underflows(method):
     """Along the axis nothing pushes a spur gear: what is there at the start falls by its damping alone."""
     scene = gear_pair_scene(spring_table(4e8), speed=TimeLaw.constant(50.0), duration=2.0)
     scene = replace(scene, effects={**scene.effects, "axial": "on"})
@@ -291,7 +291,7 @@ def test_samples_without_amplitudes_have_what_these_carry_and_all_of_them_where_
         np.testing.assert_array_equal(seen.force[0], full.filtered[:, 0])
 
 
-def test_freedoms_that_a_chain_joins_are_those_of_a_graph() -> None:
+def test_freedoms_that_a_chain_joins_are_those_of_a_graph():
     random = np.random.default_rng(4)
     for size, entries in ((1, 0), (2, 1), (40, 20), (40, 40), (40, 200)):
         joined = np.zeros((size, size), dtype=bool)

@@ -187,7 +187,7 @@ def test_auto_runs_as_the_method_it_names():
 # Blocks of a run: between them the interpreter looks at it.
 
 
-def test_blocks_leave_every_sample_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_blocks_leave_every_sample_as_it_is(monkeypatch):
     system = assemble(gear_pair_scene(spring_table(4e8), duration=0.02))
     start, settings = static_equilibrium(system), system.scene.integration
     runs, early = [], []
@@ -201,7 +201,7 @@ def test_blocks_leave_every_sample_as_it_is(monkeypatch: pytest.MonkeyPatch) -> 
     assert early == [True, False]
 
 
-def test_whoever_waits_is_told_fifty_times() -> None:
+def test_whoever_waits_is_told_fifty_times():
     system = assemble(gear_pair_scene(spring_table(4e8), duration=0.02))
     seen: list[float] = []
     integrate(

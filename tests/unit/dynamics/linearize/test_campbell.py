@@ -290,7 +290,7 @@ def unlike_shafts():
 
 @pytest.mark.law
 @pytest.mark.parametrize(("scene", "maximum"), [(disc_scene(), FINEST), (unlike_shafts(), 2 * INTERVALS)])
-def test_fewer_speeds_tell_the_same_branches(scene, maximum) -> None:
+def test_fewer_speeds_tell_the_same_branches(scene, maximum):
     """Those of 33 speeds: the same modes at speeds of both, between them within 0.2 % of straight lines."""
     system = assemble(scene)
     linear, highest = linearize(system), float(system.scene.references[0].speed.extreme)
@@ -308,7 +308,7 @@ def test_fewer_speeds_tell_the_same_branches(scene, maximum) -> None:
         np.testing.assert_allclose(np.interp(every.speed, found.speed, branch), exact, rtol=2e-3)
 
 
-def test_a_mode_that_changes_its_shape_is_looked_at_between(monkeypatch) -> None:
+def test_a_mode_that_changes_its_shape_is_looked_at_between(monkeypatch):
     """Held to more likeness than there is, every part is halved to the finest."""
     system = assemble(disc_scene())
     linear = linearize(system)

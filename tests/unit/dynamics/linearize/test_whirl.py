@@ -122,7 +122,7 @@ def test_speed_splits_the_double_modes_of_a_planetary_set():
 # Gyroscopic and frame terms over speed, from those at two speeds.
 
 
-def test_terms_at_every_speed_are_those_of_that_speed_alone() -> None:
+def test_terms_at_every_speed_are_those_of_that_speed_alone():
     system = assemble(planetary_scene(published_set(3), duration=0.01))
     speeds = np.array([3.0, -40.0, 250.0])
     for speed, (damping, stiffness) in zip(speeds, gyroscopic_terms(system, speeds), strict=True):

@@ -355,7 +355,7 @@ def printed(ratio: float) -> Scene:
 
 
 @pytest.mark.parametrize("ratio", [5e-4, -8e-4, 1e-7])
-def test_radii_as_printed_run_and_the_correction_is_stated(ratio: float) -> None:
+def test_radii_as_printed_run_and_the_correction_is_stated(ratio):
     scene = printed(ratio)
     system = assemble(scene)
     pinion, wheel = system.scene.gears
@@ -370,7 +370,7 @@ def test_radii_as_printed_run_and_the_correction_is_stated(ratio: float) -> None
         assert set(stated) == {pinion.name, wheel.name}
 
 
-def test_pitches_that_agree_stay_as_they_are_bit_by_bit() -> None:
+def test_pitches_that_agree_stay_as_they_are_bit_by_bit():
     for ratio in (0.0, 1e-15):
         scene = printed(ratio)
         system = assemble(scene)
@@ -379,7 +379,7 @@ def test_pitches_that_agree_stay_as_they_are_bit_by_bit() -> None:
     assert "base_radius_corrected" not in simulate(printed(0.0)).receipt
 
 
-def test_wider_differences_are_refused() -> None:
+def test_wider_differences_are_refused():
     for ratio in (1.1e-3, -2e-3):
         with pytest.raises(
             InputError, match=r"must agree to 0\.001; smaller differences are corrected"
@@ -388,7 +388,7 @@ def test_wider_differences_are_refused() -> None:
         assert caught.value.field == "meshes[0].driven"
 
 
-def test_a_train_gets_one_pitch() -> None:
+def test_a_train_gets_one_pitch():
     """Two meshes in a row: a gear between two others is corrected once, by all three."""
     scene = printed(6e-4)
     third = replace(scene.gears[0], name="third", base_radius=BASE_RADIUS * (1.0 - 3e-4))

@@ -40,7 +40,7 @@ def predicted(low: float, high: float, divisions: int = 6) -> Cost:
     return radiation_cost(parted, MODEL, AIR)
 
 
-def test_it_grows_with_the_range_and_with_panels() -> None:
+def test_it_grows_with_the_range_and_with_panels():
     octave, two, maximum = predicted(200.0, 400.0), predicted(200.0, 800.0), predicted(100.0, 1200.0)
     assert octave.seconds < two.seconds < maximum.seconds
     assert octave.seconds < predicted(400.0, 800.0).seconds
@@ -48,7 +48,7 @@ def test_it_grows_with_the_range_and_with_panels() -> None:
     assert coarse.seconds < fine.seconds and coarse.bytes < fine.bytes
 
 
-def test_an_octave_costs_that_of_its_frequencies_and_octaves_add_up() -> None:
+def test_an_octave_costs_that_of_its_frequencies_and_octaves_add_up():
     hull = radiating_hull(outer_hull(body()), 800.0, AIR.sound_speed)
     top = 2.0 * math.pi * 800.0 / AIR.sound_speed * hull.hull.outer_radius
     each = MODEL.cost(len(hull.shapes), USUAL * top, hull.shapes.shape[1])
@@ -57,13 +57,13 @@ def test_an_octave_costs_that_of_its_frequencies_and_octaves_add_up() -> None:
     assert predicted(200.0, 800.0).seconds == pytest.approx(predicted(200.0, 400.0).seconds + upper.seconds)
 
 
-def test_it_is_told_before_and_kept_with_the_result() -> None:
+def test_it_is_told_before_and_kept_with_the_result():
     cost = radiation().metadata.cost
     assert [tuple(each) for each in TOLD] == [(cost.predicted_seconds, cost.predicted_bytes)]
     assert cost.seconds > 0.0
 
 
-def test_frequencies_are_about_as_many_as_expected() -> None:
+def test_frequencies_are_about_as_many_as_expected():
     """Between half as many, of simple modes as these, and a quarter more."""
     frequency, outer = radiation().frequency, outer_hull(body())
     ends = octave_ranges(float(frequency[0]), float(frequency[-1]))

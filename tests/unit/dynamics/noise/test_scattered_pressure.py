@@ -26,7 +26,7 @@ def outgoing(kr: np.ndarray, order: int, *, derivative: bool = False) -> np.ndar
 
 
 @pytest.mark.parametrize("ka", [0.3, 1.2])
-def test_spheres_sound_as_their_harmonics_do_near_and_far(ka: float) -> None:
+def test_spheres_sound_as_their_harmonics_do_near_and_far(ka):
     """-i rho c h_n(kr)/h_n'(ka) P_n: pulsating and oscillating, with phase."""
     hull, k = sphere(4, RADIUS), ka / RADIUS
     shapes = np.stack([np.ones(len(hull.areas)), hull.normals[:, 2]], axis=1) + 0j
@@ -37,7 +37,7 @@ def test_spheres_sound_as_their_harmonics_do_near_and_far(ka: float) -> None:
         np.testing.assert_allclose(found[:, order], -1j * AIR.impedance * radial * along, rtol=0.006)
 
 
-def test_a_rigid_sphere_under_a_force_scatters() -> None:
+def test_a_rigid_sphere_under_a_force_scatters():
     """The air that an oscillating sphere moves makes it louder than its monopoles: 3/2 at long waves."""
     body = rigid_housing(5.0, 1e9, 0.01, sphere(2, RADIUS))
     hertz = 0.05 / RADIUS * AIR.sound_speed / (2.0 * np.pi)
@@ -49,7 +49,7 @@ def test_a_rigid_sphere_under_a_force_scatters() -> None:
 
 
 @pytest.mark.law
-def test_monopoles_are_off_by_what_the_manual_states() -> None:
+def test_monopoles_are_off_by_what_the_manual_states():
     """A box 1 m around, 400 Hz, directions within 10 dB of the loudest: -7 to 2 dB."""
     hull = box((0.36, 0.24, 0.18), (9, 6, 4))
     x, y = hull.centers[:, 0] / 0.36, hull.centers[:, 1] / 0.24

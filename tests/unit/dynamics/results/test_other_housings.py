@@ -12,7 +12,7 @@ from dynamics.simulation import simulate
 from dynamics.types import FloatArray
 
 
-def test_housings_are_compared_by_what_they_state() -> None:
+def test_housings_are_compared_by_what_they_state():
     """Matrices without damping are the same again, and not those with another mass; without mass none is."""
     run = simulate(gear_pair_scene(duration=0.001))
     unit = np.eye(10)

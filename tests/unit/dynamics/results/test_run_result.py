@@ -1,7 +1,6 @@
 """Results of runs: their quantities, orders that are fitted, figures of contact."""
 
 from dataclasses import fields, replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -132,7 +131,7 @@ def test_what_no_output_has_takes_nothing_and_changes_nothing_else():
     np.testing.assert_array_equal(part.mesh_force, whole.mesh_force)
 
 
-def test_other_files_are_refused(tmp_path: Path):
+def test_other_files_are_refused(tmp_path):
     import xarray  # noqa: PLC0415
 
     (tmp_path / "text.nc").write_text("no netCDF")

@@ -1,7 +1,6 @@
 """What a repetition goes on from, and the checks of neglected effects for a tolerance or by name."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -52,9 +51,7 @@ def check(result: RunResult, assumption: str) -> Json:
     return next(dict(one) for one in result.effect_ledger["checks"] if assumption in one["assumption"])
 
 
-def test_a_run_without_coast_flanks_is_repeated_from_where_the_teeth_had_not_parted(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_run_without_coast_flanks_is_repeated_from_where_the_teeth_had_not_parted(tmp_path, monkeypatch):
     monkeypatch.setattr(march, "BLOCK_WORK", 0)  # save this short run's state as often as a long one's
     scene = coasting()
     repeated = simulate(scene)
@@ -76,7 +73,7 @@ def test_a_run_without_coast_flanks_is_repeated_from_where_the_teeth_had_not_par
     assert streamed.receipt["repeated"]["since"] == since
 
 
-def test_rows_are_matched_in_their_order() -> None:
+def test_rows_are_matched_in_their_order():
     before = assemble(coasting())
     after = assemble(replace(coasting(), effects={"gyroscopic": "on", "backlash": "on"}))
     rows = added_rows(before, after)
@@ -88,7 +85,7 @@ def test_rows_are_matched_in_their_order() -> None:
 
 
 @pytest.mark.law
-def test_what_a_tolerance_neglected_is_on_after_flanks_parted() -> None:
+def test_what_a_tolerance_neglected_is_on_after_flanks_parted():
     scene = dropped(tolerance=0.5)
     left = set(decide_effects(scene).neglected)
     assert "axial" in left
@@ -114,7 +111,7 @@ def table() -> MeshTable:
     return sliced_database(knots, (-1e-4, 0.0, 1e-4), positions=12).force_table()
 
 
-def test_tilt_that_a_table_does_not_follow_is_noticed(table: MeshTable) -> None:
+def test_tilt_that_a_table_does_not_follow_is_noticed(table):
     """The pair off the middle of its shafts, one bushing unlike the others."""
     scene = gear_pair_scene(table, duration=0.004, outputs=Outputs(displacements=True))
     scene = with_gear(with_gear(scene, 0, position=0.02), 1, position=0.02)

@@ -123,7 +123,7 @@ def test_loads_below_and_above_the_only_asked_one_are_true(table, plain_pair):
         assert table.ste(table.position[steady], force) == pytest.approx(expected, rel=2e-3)
 
 
-def test_condition_numbers_leave_out_what_is_no_candidate_or_not_definite() -> None:
+def test_condition_numbers_leave_out_what_is_no_candidate_or_not_definite():
     rng = np.random.default_rng(5)
     basis = rng.normal(size=(3, 5, 5))
     real = 1e-9 * (basis @ basis.transpose(0, 2, 1) + 0.1 * np.eye(5))

@@ -53,9 +53,7 @@ def solved_harmonics(monkeypatch: pytest.MonkeyPatch, size: int) -> list[int]:
 @pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize("name", GEARS)
-def test_blocks_are_as_exact_as_stated(
-    name: str, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
-) -> None:
+def test_blocks_are_as_exact_as_stated(name, monkeypatch, request):
     gear = GEARS[name]
     tooth, loads, free = condensed(gear)
     solved = solved_harmonics(monkeypatch, tooth.condensed.cut_size)
@@ -75,7 +73,7 @@ def test_blocks_are_as_exact_as_stated(
 
 
 @pytest.mark.law
-def test_a_key_adds_no_error(request: pytest.FixtureRequest) -> None:
+def test_a_key_adds_no_error(request):
     """The update by the key is made of displacements that are as exact as the blocks."""
 
     def blocks() -> np.ndarray:

@@ -21,7 +21,7 @@ from fe_contact.compliance.flank import ComplianceChecks, refuse_broken_laws
 from fe_contact.compliance.gear_checks import least_eigenvalue
 from fe_contact.compliance.sector_stiffness import twist
 from fe_contact.errors import InputError, SolveError
-from fe_contact.geometry import Gear, RingGear, Toothing
+from fe_contact.geometry import RingGear, Toothing
 from fe_contact.material import Material
 from fe_contact.mesh import ClampedBore, SectorRecipe
 
@@ -51,7 +51,7 @@ def global_compliance(gear: Toothing, recipe: SectorRecipe) -> np.ndarray:
     ids=["spur", "helical", "helical with a web", "ring", "helical ring"],
 )
 @pytest.mark.usefixtures("exact_ring")
-def test_equals_the_solution_of_the_whole_gear(gear: Toothing) -> None:
+def test_equals_the_solution_of_the_whole_gear(gear):
     found = flank_compliance_3d(gear, coarse(gear), reach=4)
     direct = global_compliance(gear, coarse(gear))
     for m in range(-4, 5):
@@ -60,7 +60,7 @@ def test_equals_the_solution_of_the_whole_gear(gear: Toothing) -> None:
 
 
 @BOTH_KINDS
-def test_checks_hold_to_rounding(gear: Toothing) -> None:
+def test_checks_hold_to_rounding(gear):
     found = flank_compliance_3d(gear, coarse(gear))
     assert found.checks.residual < 1e-11
     assert found.checks.reciprocity < 1e-13
@@ -72,7 +72,7 @@ def test_checks_hold_to_rounding(gear: Toothing) -> None:
     assert found.checks.least_eigenvalue == pytest.approx(values[0], rel=0.02)
 
 
-def test_numbering_of_teeth_closes_the_ring() -> None:
+def test_numbering_of_teeth_closes_the_ring():
     found = flank_compliance_3d(HELICAL, coarse(HELICAL), reach=4)
     assert np.array_equal(found.block(3, 1), found.blocks[2])
     assert np.array_equal(found.block(1, 3), found.blocks[2].T)
@@ -89,7 +89,7 @@ def test_numbering_of_teeth_closes_the_ring() -> None:
 
 
 @pytest.mark.law
-def test_opposite_hands_are_mirror_images_to_the_last_bit() -> None:
+def test_opposite_hands_are_mirror_images_to_the_last_bit():
     left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
     recipe = coarse(HELICAL)
     right, found = flank_compliance_3d(HELICAL, recipe), flank_compliance_3d(left, recipe)
@@ -110,9 +110,7 @@ def test_opposite_hands_are_mirror_images_to_the_last_bit() -> None:
 
 @pytest.mark.parametrize("gear", [HELICAL, replace(RING, rim_diameter=160e-3, helix_angle=0.3)])
 @pytest.mark.usefixtures("exact_ring")
-def test_a_gear_swept_the_other_way_is_the_mirror_image(
-    gear: Gear | RingGear, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_gear_swept_the_other_way_is_the_mirror_image(gear, monkeypatch):
     left = replace(gear, helix_angle=-gear.helix_angle)
     mirrored = flank_compliance_3d(left, coarse(gear), reach=2)
     signed = "twist", lambda gear: math.tan(gear.helix_angle) / gear.reference_radius
@@ -121,7 +119,7 @@ def test_a_gear_swept_the_other_way_is_the_mirror_image(
     assert relative(swept.blocks, mirrored.blocks) < 1e-10
 
 
-def test_a_right_hand_tooth_leans_counter_clockwise() -> None:
+def test_a_right_hand_tooth_leans_counter_clockwise():
     """Seen from +z a right-hand helix turns counter-clockwise on the way up (ISO 21771-1)."""
     assert twist(HELICAL) == pytest.approx(
         math.tan(HELICAL.helix_angle) / HELICAL.reference_radius, rel=1e-15
@@ -140,7 +138,7 @@ def test_a_right_hand_tooth_leans_counter_clockwise() -> None:
 
 @pytest.mark.law
 @GEARS
-def test_compliance_goes_with_one_over_modulus_and_length(gear: Gear) -> None:
+def test_compliance_goes_with_one_over_modulus_and_length(gear):
     found = flank_compliance_3d(gear, coarse(gear))
     large = replace(gear, normal_module=32e-3, face_width=160e-3, bore_diameter=96e-3)
     scaled = flank_compliance_3d(large, coarse(large))
@@ -150,7 +148,7 @@ def test_compliance_goes_with_one_over_modulus_and_length(gear: Gear) -> None:
     assert relative(0.1 * flank_compliance_3d(soft, coarse(gear)).blocks, found.blocks) < 1e-10
 
 
-def test_reach_is_bounded_by_the_ring_and_alike_gears_computed_once() -> None:
+def test_reach_is_bounded_by_the_ring_and_alike_gears_computed_once():
     recipe = coarse(SPUR)
     twins = flank_compliances_3d(
         [SPUR, replace(SPUR, material=replace(SPUR.material, density=7000.0))], [recipe] * 2
@@ -170,7 +168,7 @@ def test_reach_is_bounded_by_the_ring_and_alike_gears_computed_once() -> None:
 
 
 @pytest.mark.parametrize("name", ["residual", "reciprocity", "bore_moment", "energy", "least_eigenvalue"])
-def test_a_broken_law_is_refused_by_name(name: str) -> None:
+def test_a_broken_law_is_refused_by_name(name):
     found = flank_compliance_3d(SPUR, coarse(SPUR, layers=2), reach=0)
     broken: ComplianceChecks = replace(found.checks, **{name: -1.0 if name == "least_eigenvalue" else 1e-3})
     with pytest.raises(SolveError, match=name.replace("_", ".")) as refusal:
@@ -178,7 +176,7 @@ def test_a_broken_law_is_refused_by_name(name: str) -> None:
     assert refusal.value.partial is not None
 
 
-def test_checks_see_a_wrong_ring(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_checks_see_a_wrong_ring(monkeypatch):
     """Each check is blind to none of: cuts that do not fit, blocks that do not belong."""
     genuine = gear_module.close_ring
     spoil: Callable[..., object]
@@ -199,7 +197,7 @@ def test_checks_see_a_wrong_ring(monkeypatch: pytest.MonkeyPatch) -> None:
         assert getattr(checks, law) > 1e-7, law
 
 
-def test_least_eigenvalue_and_pressure_are_those_of_closed_forms() -> None:
+def test_least_eigenvalue_and_pressure_are_those_of_closed_forms():
     basis, _ = np.linalg.qr(np.random.default_rng(3).normal(size=(30, 30)))
     values = np.linspace(0.5, 4.0, 30)
     assert least_eigenvalue(basis * values @ basis.T) == pytest.approx(0.5, rel=0.02)

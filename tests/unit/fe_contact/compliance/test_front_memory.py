@@ -27,7 +27,7 @@ def sheet() -> tuple[EliminationTree, np.ndarray, ElementStiffness]:
     return bisected_tree(nodes, nodes - 1, np.array(cells, float), KEPT, 3), nodes - 1, stiffness
 
 
-def test_updates_wait_apart_and_fill_the_memory_that_the_tree_names() -> None:
+def test_updates_wait_apart_and_fill_the_memory_that_the_tree_names():
     tree, _, _ = sheet()
     memory, waiting, most = FrontMemory(tree), 0, 0
 
@@ -47,7 +47,7 @@ def test_updates_wait_apart_and_fill_the_memory_that_the_tree_names() -> None:
     assert most == tree.waiting_entries
 
 
-def test_all_factors_lie_in_one_piece_of_the_named_size() -> None:
+def test_all_factors_lie_in_one_piece_of_the_named_size():
     tree, freedoms, stiffness = sheet()
     _, condensation = condense(tree, freedoms, stiffness)
     owner = condensation.factors[0].factor.base
@@ -56,7 +56,7 @@ def test_all_factors_lie_in_one_piece_of_the_named_size() -> None:
     assert all(part.factor.base is owner and part.coupling.base is owner for part in condensation.factors)
 
 
-def test_factors_take_the_memory_of_those_that_are_gone_and_of_no_others() -> None:
+def test_factors_take_the_memory_of_those_that_are_gone_and_of_no_others():
     tree, freedoms, stiffness = sheet()
     alone = condense(tree, freedoms, stiffness)[1].expand(np.eye(len(KEPT)))
     with front_memory.shared_factors():
@@ -74,7 +74,7 @@ def test_factors_take_the_memory_of_those_that_are_gone_and_of_no_others() -> No
     assert condense(tree, freedoms, stiffness)[1].factors[-1].factor.__array_interface__["data"] != address
 
 
-def test_what_memory_held_before_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_memory_held_before_changes_nothing(monkeypatch):
     tree, freedoms, stiffness = sheet()
     matrix, condensation = condense(tree, freedoms, stiffness)
     field = condensation.expand(np.eye(len(KEPT)))
@@ -85,7 +85,7 @@ def test_what_memory_held_before_changes_nothing(monkeypatch: pytest.MonkeyPatch
 
 
 @pytest.mark.parametrize("inner", [0, 1, 4, 9])
-def test_a_front_is_the_sum_of_its_children_to_the_last_bit(inner: int) -> None:
+def test_a_front_is_the_sum_of_its_children_to_the_last_bit(inner):
     size = 9
     dense, blocks = np.zeros((size, size)), _garbage(inner, size - inner)
     updates = []
@@ -100,7 +100,7 @@ def test_a_front_is_the_sum_of_its_children_to_the_last_bit(inner: int) -> None:
     _assert_lower_parts(blocks, dense, inner)
 
 
-def test_elements_are_added_where_they_are_free() -> None:
+def test_elements_are_added_where_they_are_free():
     matrices, inner, size = RANDOM.normal(size=(2, 3, 3)), 2, 5
     matrices += matrices.transpose(0, 2, 1)
     rows, nothing = np.array([[0, 2, -1], [4, 1, 3]]), (np.zeros(0), np.zeros(0, dtype=np.int64))

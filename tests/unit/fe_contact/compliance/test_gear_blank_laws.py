@@ -55,7 +55,7 @@ def solid_3d(gear: Gear, reach: int | None = None) -> FlankCompliance3D:
 
 
 @pytest.mark.law
-def test_a_web_of_full_width_is_the_solid_gear_to_the_last_bit() -> None:
+def test_a_web_of_full_width_is_the_solid_gear_to_the_last_bit():
     full = with_blank(web_thickness=24e-3)
     assert np.array_equal(plane(full).matrix, plane(SOLID).matrix)
     assert np.array_equal(solid_3d(full).blocks, solid_3d(SOLID).blocks)
@@ -73,7 +73,7 @@ def test_a_web_of_full_width_is_the_solid_gear_to_the_last_bit() -> None:
         ("hub_diameter", (32e-3, 24e-3)),
     ],
 )
-def test_less_of_a_body_is_softer(field: str, values: tuple[float, ...]) -> None:
+def test_less_of_a_body_is_softer(field, values):
     gears = [with_blank(**{field: value}) for value in values]
     flat, face = [plane(g) for g in gears], [solid_3d(g) for g in gears]
     for tooth in (0, 1):
@@ -83,7 +83,7 @@ def test_less_of_a_body_is_softer(field: str, values: tuple[float, ...]) -> None
 
 
 @pytest.mark.law
-def test_torsion_of_web_and_hub_is_that_of_tubes_in_the_plane() -> None:
+def test_torsion_of_web_and_hub_is_that_of_tubes_in_the_plane():
     """A moment at the rim's inside turns it against hub and bore by (1/r_i^2 - 1/r_o^2) / (4 pi G b)."""
     gear, recipe = with_blank(), coarse_plane(SOLID)
     mesh, web = mesh_gear(gear, recipe), gear.web
@@ -106,7 +106,7 @@ def test_torsion_of_web_and_hub_is_that_of_tubes_in_the_plane() -> None:
     assert turned[1] == pytest.approx(below, rel=1e-3)
 
 
-def test_torsion_inside_the_web_is_that_of_a_tube_over_the_face() -> None:
+def test_torsion_inside_the_web_is_that_of_a_tube_over_the_face():
     """Equal loads on all teeth twist the body; away from rim and hub the web is in pure shear."""
     gear = with_blank(rim_thickness=6e-3, hub_diameter=28e-3, web_thickness=3e-3)
     recipe = replace(six_layers(gear), body_limit=0.4 * gear.normal_module)
@@ -129,7 +129,7 @@ def test_torsion_inside_the_web_is_that_of_a_tube_over_the_face() -> None:
 
 
 @pytest.mark.usefixtures("exact_ring")
-def test_a_web_off_the_middle_tilts_the_rim_and_its_mirror_image_the_other_way() -> None:
+def test_a_web_off_the_middle_tilts_the_rim_and_its_mirror_image_the_other_way():
     right, left = (solid_3d(with_blank(web_offset=z)) for z in (6e-3, -6e-3))
     assert not np.allclose(right.z, -right.z[::-1])
     image = right.mirrored()
@@ -144,7 +144,7 @@ def test_a_web_off_the_middle_tilts_the_rim_and_its_mirror_image_the_other_way()
     assert moved(right) > 1.05 * moved(solid_3d(with_blank()))
 
 
-def test_a_left_hand_gear_keeps_its_web_on_its_side() -> None:
+def test_a_left_hand_gear_keeps_its_web_on_its_side():
     left = replace(SOLID, helix_angle=-math.radians(20.0), blank=replace(BLANK, web_offset=6e-3))
     found = solid_3d(left)
     assert left.web is not None
@@ -162,7 +162,7 @@ def test_a_left_hand_gear_keeps_its_web_on_its_side() -> None:
     assert not np.allclose(stress.station_z, other.station_z)
 
 
-def test_the_key_knows_the_web() -> None:
+def test_the_key_knows_the_web():
     recipe, clamped, stress = six_layers(SOLID), ClampedBore(), PlaneHypothesis.PLANE_STRESS
     changes: tuple[dict[str, float], ...] = (
         {},

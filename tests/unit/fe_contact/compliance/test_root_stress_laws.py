@@ -3,7 +3,6 @@
 import functools
 import math
 from dataclasses import fields, replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -78,12 +77,12 @@ def some_forces(count: int) -> np.ndarray:
 
 @pytest.mark.law
 @pytest.mark.parametrize(("teeth", "bore", "real"), RINGS, ids=RING_NAMES)
-def test_equals_the_uncondensed_solution_in_the_plane(teeth: int, bore: float, real: int | None) -> None:
+def test_equals_the_uncondensed_solution_in_the_plane(teeth, bore, real):
     gear = replace(PLANE, teeth=teeth, bore_diameter=bore)
     assert_agrees_with_the_whole_mesh(gear, coarse_plane(gear, real_teeth=real))
 
 
-def test_equals_the_uncondensed_solution_of_a_ring_gear() -> None:
+def test_equals_the_uncondensed_solution_of_a_ring_gear():
     assert_agrees_with_the_whole_mesh(RING, coarse_plane(RING))
 
 
@@ -118,7 +117,7 @@ def whole_gear_stress(gear: Gear, recipe: SectorRecipe) -> np.ndarray:
 
 
 @GEARS
-def test_equals_the_uncondensed_solution_over_the_face(gear: Gear) -> None:
+def test_equals_the_uncondensed_solution_over_the_face(gear):
     """To 1e-6 of the stress: what the cuts cannot tell apart by more is dropped (`MIN_SIGNIFICANT`)."""
     recipe = two_on_land(gear)
     found = over_face(gear, recipe, reach=4)
@@ -130,7 +129,7 @@ def test_equals_the_uncondensed_solution_over_the_face(gear: Gear) -> None:
 
 
 @GEARS
-def test_checks_hold(gear: Gear) -> None:
+def test_checks_hold(gear):
     face = over_face(gear, two_on_land(gear))
     assert face.checks.residual < 1e-11
     assert face.checks.recovery < 2e-6
@@ -140,7 +139,7 @@ def test_checks_hold(gear: Gear) -> None:
 
 
 @pytest.mark.law
-def test_the_load_pulls_its_own_side_and_pushes_the_other() -> None:
+def test_the_load_pulls_its_own_side_and_pushes_the_other():
     ring = replace(SectorRecipe.draft(RING), layers=2, merge_rows=())
     for found in (
         in_plane(PLANE),
@@ -171,7 +170,7 @@ def patch(found: UnitRootStress, gear: Gear) -> np.ndarray:
 
 
 @pytest.mark.law
-def test_one_layer_without_axial_displacement_is_the_plane() -> None:
+def test_one_layer_without_axial_displacement_is_the_plane():
     """Two meshes and two ways to condense: eight-node quadrilaterals and triangles."""
     recipe = replace(SectorRecipe.fine(PLANE), layers=1, merge_rows=(), layer_growth=1.0, land_elements=8)
     face, plane = over_face(PLANE, recipe, support=PlaneStrain()), in_plane(PLANE)
@@ -186,7 +185,7 @@ def test_one_layer_without_axial_displacement_is_the_plane() -> None:
         assert relative(sums[0], sums[1]) < (0.015 if distance == 0 else 0.03)
 
 
-def test_opposite_hands_are_mirror_images() -> None:
+def test_opposite_hands_are_mirror_images():
     left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
     right, found = (over_face(gear, two_on_land(gear), reach=1) for gear in (HELICAL, left))
     assert np.array_equal(found.stress, right.mirrored().stress)
@@ -198,7 +197,7 @@ def test_opposite_hands_are_mirror_images() -> None:
     assert np.abs(shear + shear[..., ::-1]).max() < 1e-6 * np.abs(found.stress @ on_flank(found)).max()
 
 
-def test_a_gear_swept_the_other_way_is_the_mirror_image(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_gear_swept_the_other_way_is_the_mirror_image(monkeypatch):
     left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
     mirrored = over_face(left, two_on_land(left), reach=1)
     for module in (stiffness_module, face_module):
@@ -208,7 +207,7 @@ def test_a_gear_swept_the_other_way_is_the_mirror_image(monkeypatch: pytest.Monk
     assert relative(swept.stress, mirrored.stress) < 2e-6
 
 
-def test_stress_per_force_goes_with_one_over_length_and_not_with_stiffness() -> None:
+def test_stress_per_force_goes_with_one_over_length_and_not_with_stiffness():
     """Lengths by s and forces by s^2: the same stress; per unit of width, forces by s."""
     large = replace(SPUR, normal_module=32e-3, face_width=160e-3, bore_diameter=96e-3)
     soft = replace(SPUR, material=Material(youngs_modulus=21e9))
@@ -221,7 +220,7 @@ def test_stress_per_force_goes_with_one_over_length_and_not_with_stiffness() -> 
     assert relative(softer.stress, found.stress) < 1e-9
 
 
-def test_stations_lie_on_the_fillet_with_its_tangents() -> None:
+def test_stations_lie_on_the_fillet_with_its_tangents():
     profile = tooth_profile(PLANE)
     for found in (in_plane(PLANE), over_face(PLANE, SectorRecipe.draft(PLANE))):
         assert profile.s_space < found.station_s[0] < found.station_s[-1] < profile.s_form
@@ -243,7 +242,7 @@ def test_stations_lie_on_the_fillet_with_its_tangents() -> None:
 
 
 @pytest.mark.parametrize("gear", [PLANE, RING], ids=["external", "internal"])
-def test_nodes_of_the_root_have_their_flank_coordinates(gear: Toothing) -> None:
+def test_nodes_of_the_root_have_their_flank_coordinates(gear):
     profile = tooth_profile(gear)
     section = quad_sector(gear, SectorRecipe.draft(gear))
     sector = mesh_gear(gear, MeshRecipe.standard(gear)).sector
@@ -259,7 +258,7 @@ def test_nodes_of_the_root_have_their_flank_coordinates(gear: Toothing) -> None:
         assert root.s[1::2] == pytest.approx(middles, abs=1e-8)
 
 
-def test_the_cache_returns_the_same_bits(tmp_path: Path) -> None:
+def test_the_cache_returns_the_same_bits(tmp_path):
     left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
     recipe = two_on_land(HELICAL)
     first, second = (unit_root_stress_3d(HELICAL, recipe, reach=1, cache=tmp_path) for _ in range(2))
@@ -279,7 +278,7 @@ def test_the_cache_returns_the_same_bits(tmp_path: Path) -> None:
     assert not unit_root_stress(SPUR, coarse_plane(SPUR), cache=tmp_path).from_cache
 
 
-def test_gears_alike_are_computed_once(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_gears_alike_are_computed_once(monkeypatch):
     left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
     found = unit_root_stresses_3d([HELICAL, left], [two_on_land(HELICAL)] * 2)
     assert np.array_equal(found[1].mirrored().stress, found[0].stress)
@@ -289,7 +288,7 @@ def test_gears_alike_are_computed_once(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("name", ["residual", "recovery"])
-def test_a_broken_law_is_refused_by_name(name: str) -> None:
+def test_a_broken_law_is_refused_by_name(name):
     found = unit_root_stress(SPUR, coarse_plane(SPUR))
     broken = replace(found, checks=replace(found.checks, **{name: 1e-3}))
     with pytest.raises(SolveError, match=name) as refusal:
@@ -297,7 +296,7 @@ def test_a_broken_law_is_refused_by_name(name: str) -> None:
     assert refusal.value.partial is broken
 
 
-def test_checks_see_a_wrong_ring(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_checks_see_a_wrong_ring(monkeypatch):
     genuine = face_module.loaded_cuts
 
     def spoiled(*arguments: object) -> object:

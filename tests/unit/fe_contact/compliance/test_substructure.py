@@ -54,7 +54,7 @@ def dense(freedoms: np.ndarray, stiffness: ElementStiffness) -> np.ndarray:
 
 
 @pytest.mark.parametrize("leaf", [1, 3, 100])
-def test_condensation_is_the_schur_complement(leaf: int) -> None:
+def test_condensation_is_the_schur_complement(leaf):
     nodes, freedoms, place, stiffness = sheet()
     tree = bisected_tree(nodes, freedoms, place, KEPT, leaf)
     condensed, found = condense(tree, freedoms, stiffness)
@@ -72,7 +72,7 @@ def test_condensation_is_the_schur_complement(leaf: int) -> None:
     assert (matrix @ field)[KEPT] == pytest.approx(exact @ values, abs=1e-12)
 
 
-def test_factors_go_with_their_condensation() -> None:
+def test_factors_go_with_their_condensation():
     """They are the largest part of a gear's memory: waiting for the collector doubles its peak."""
     nodes, freedoms, place, stiffness = sheet()
     _, condensation = condense(bisected_tree(nodes, freedoms, place, KEPT, 3), freedoms, stiffness)
@@ -87,7 +87,7 @@ def test_factors_go_with_their_condensation() -> None:
             gc.enable()
 
 
-def test_every_freedom_is_eliminated_once_and_counted() -> None:
+def test_every_freedom_is_eliminated_once_and_counted():
     nodes, freedoms, place, _ = sheet()
     tree: EliminationTree = bisected_tree(nodes, freedoms, place, KEPT, 3)
     inner = np.concatenate([front.inner for front in tree.root.fronts()])
@@ -103,7 +103,7 @@ def test_every_freedom_is_eliminated_once_and_counted() -> None:
     assert tree.factor_entries < alone.factor_entries
 
 
-def test_an_indefinite_structure_is_a_solve_error() -> None:
+def test_an_indefinite_structure_is_a_solve_error():
     nodes, freedoms, place, stiffness = sheet(floor=-50.0)
     with pytest.raises(SolveError, match="not positive definite"):
         condense(bisected_tree(nodes, freedoms, place, KEPT, 3), freedoms, stiffness)
@@ -118,7 +118,7 @@ def random_sector() -> np.ndarray:
 
 
 @pytest.mark.parametrize("teeth", [2, 3, 7, 8])
-def test_ring_equals_the_dense_ring(teeth: int) -> None:
+def test_ring_equals_the_dense_ring(teeth):
     matrix = random_sector()
     own = FLANK + CUT  # flank and left cut of each sector
     ring = np.zeros((teeth * own, teeth * own))
@@ -142,7 +142,7 @@ def test_ring_equals_the_dense_ring(teeth: int) -> None:
         assert found.left[j] == pytest.approx(inverse[left, flank[0]] @ probes, rel=1e-9, abs=1e-12)
 
 
-def test_an_unsupported_ring_is_a_solve_error() -> None:
+def test_an_unsupported_ring_is_a_solve_error():
     spring = np.array([[2.0, -2.0], [-2.0, 2.0]])
     matrix = np.zeros((FLANK + 2 * CUT,) * 2)
     matrix[:FLANK, :FLANK] = np.eye(FLANK)
@@ -170,9 +170,7 @@ def fill(matrix: sp.csc_array, order: np.ndarray) -> int:
 
 
 @pytest.mark.parametrize("ordering", ["METIS", "minimum-degree"])
-def test_the_order_is_of_whole_nodes_saves_fill_and_solves(
-    ordering: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_order_is_of_whole_nodes_saves_fill_and_solves(ordering, monkeypatch):
     monkeypatch.setattr("host.graph_order.ORDERING", ordering)
     matrix = grid(60)
     order = fill_reducing_order(matrix, 2)
@@ -195,7 +193,7 @@ def slenderness(gear: Gear) -> float:
     return (gear.root_radius - gear.seat_radius) / gear.face_width
 
 
-def test_a_chain_of_springs_keeps_what_it_must() -> None:
+def test_a_chain_of_springs_keeps_what_it_must():
     """Springs k between stiff ones, moved as a whole: K_ii u_i^2 is large, what is strained is little."""
     stiff, soft, count = 1e6, 1.0, 40
     matrix = stiff * (2.0 * np.eye(count) - np.eye(count, k=1) - np.eye(count, k=-1))
@@ -213,9 +211,7 @@ def test_a_chain_of_springs_keeps_what_it_must() -> None:
 
 @pytest.mark.law
 @pytest.mark.parametrize(("helix", "modules", "power"), [(0.3, 0.5, 4.0), (0.0, 0.1, 2.0)])
-def test_rounding_grows_as_a_helical_disc_bends_as_a_plate(
-    helix: float, modules: float, power: float
-) -> None:
+def test_rounding_grows_as_a_helical_disc_bends_as_a_plate(helix, modules, power):
     """(D/w)^4 with a helix, whose axial force bends the disc; (D/w)^2 without."""
     wide, thin = disc(modules, helix, 20), disc(0.5 * modules, helix, 20)
     found = [flank_compliance_3d(gear, SectorRecipe.draft(gear), reach=0).checks for gear in (wide, thin)]
@@ -227,7 +223,7 @@ def test_rounding_grows_as_a_helical_disc_bends_as_a_plate(
 
 
 @pytest.mark.law
-def test_a_disc_as_thin_as_allowed_is_computed_and_a_thinner_one_refused() -> None:
+def test_a_disc_as_thin_as_allowed_is_computed_and_a_thinner_one_refused():
     layers = SectorRecipe.draft(disc(1.0)).layers
     minimum = least_face_width(disc(1.0), layers) / 4e-3
     assert disc_rounding(slenderness(disc(minimum)), 0.3, layers, STEEL) == pytest.approx(LARGEST_ROUNDING)
@@ -248,13 +244,13 @@ def mate_of(gear: Gear) -> Gear:
 
 
 @pytest.mark.law
-def test_a_body_beyond_the_bound_names_rounding() -> None:
+def test_a_body_beyond_the_bound_names_rounding():
     gear = disc(0.1, teeth=20)
     with pytest.raises(SolveError, match=r"rounding may change it by .* Widen the face"):
         flank_compliance_3d(gear, SectorRecipe.draft(gear), reach=0)
 
 
-def test_energy_may_round_by_the_order_of_its_sums_and_no_more() -> None:
+def test_energy_may_round_by_the_order_of_its_sums_and_no_more():
     """Linear algebra on two threads rounded the energy of a helical gear to 1.2 of the bound of one term."""
     checks = ComplianceChecks(0.0, 0.0, 0.0, 1.0e-11, 1.0, 1e-12, 8.3e-12)
     assert checks.energy < checks.limits["energy"] < 5.0 * checks.energy_rounding

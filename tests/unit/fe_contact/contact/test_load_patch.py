@@ -407,7 +407,7 @@ def test_a_strip_that_reaches_an_edge_or_a_chamfer_is_told_apart():
     assert not any(edge(**about) for about in BESIDE)
 
 
-def test_means_and_differences_are_those_of_the_forces_on_every_node() -> None:
+def test_means_and_differences_are_those_of_the_forces_on_every_node():
     draw = np.random.default_rng(7)
 
     def loads(width: int) -> FaceLoads:

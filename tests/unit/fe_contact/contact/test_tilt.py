@@ -49,9 +49,7 @@ def problem(bodies) -> ContactProblem:
     return contact_problem(plain, bodies)
 
 
-def test_teeth_without_candidates_leave_the_compliance_to_the_last_bit(
-    problem: ContactProblem, bodies
-) -> None:
+def test_teeth_without_candidates_leave_the_compliance_to_the_last_bit(problem, bodies):
     """It is read in place: the condensed flanks are not copied."""
     fewer = []
     for flank in bodies:

@@ -37,7 +37,7 @@ def spur(level: str, positions: int) -> Evaluator:
 
 @pytest.mark.law
 @pytest.mark.usefixtures("coarse_sectors")
-def test_errors_cover_more_slices_and_positions() -> None:
+def test_errors_cover_more_slices_and_positions():
     rough = helical()
     contact = rough.contact
     fewer = replace(rough, contact=contact.in_slices(contact.plan.discretization.slices // 2))
@@ -52,7 +52,7 @@ def test_errors_cover_more_slices_and_positions() -> None:
 
 
 @pytest.mark.law
-def test_errors_of_a_draft_in_the_plane_cover_finer_meshes() -> None:
+def test_errors_of_a_draft_in_the_plane_cover_finer_meshes():
     stated = confirmed_figures(spur("draft", 64), {}, None)
     finer = spur("fine", 256).evaluate({})
     for name in REMAINING:
@@ -63,6 +63,6 @@ def test_errors_of_a_draft_in_the_plane_cover_finer_meshes() -> None:
     assert stated.face_load_factor_error.max() < 1e-12  # a plane has no face
 
 
-def test_without_confirmation_no_error_is_told() -> None:
+def test_without_confirmation_no_error_is_told():
     figures = spur("draft", 16).evaluate({})
     assert all(np.all(np.isnan(getattr(figures, f"{name}_error"))) for name in REMAINING)

@@ -45,7 +45,7 @@ def run(pair: GearPair, memory: Path | None, cancel: Cancel = never, **further: 
 
 
 @pytest.mark.law
-def test_a_stopped_search_goes_on_where_it_was(tmp_path: Path, solved: list[int]) -> None:
+def test_a_stopped_search_goes_on_where_it_was(tmp_path, solved):
     plain = run(PAIR, None)
     whole, solved[0] = solved[0], 0
     asked = [0]
@@ -64,7 +64,7 @@ def test_a_stopped_search_goes_on_where_it_was(tmp_path: Path, solved: list[int]
     assert whole - 44 <= solved[0] <= whole - 39  # those before the stop, and its best in full, were known
 
 
-def test_more_evaluations_go_on_from_fewer(tmp_path: Path, solved: list[int]) -> None:
+def test_more_evaluations_go_on_from_fewer(tmp_path, solved):
     run(PAIR, tmp_path)
     solved[0] = 0
     run(PAIR, tmp_path)
@@ -74,7 +74,7 @@ def test_more_evaluations_go_on_from_fewer(tmp_path: Path, solved: list[int]) ->
     assert confirming < solved[0] < confirming + 60
 
 
-def test_what_is_assessed_otherwise_is_not_taken(tmp_path: Path, solved: list[int]) -> None:
+def test_what_is_assessed_otherwise_is_not_taken(tmp_path, solved):
     few = replace(SEARCH, evaluations=30)
     run(PAIR, tmp_path, search=few)
     for further in (
@@ -86,7 +86,7 @@ def test_what_is_assessed_otherwise_is_not_taken(tmp_path: Path, solved: list[in
         assert solved[0] >= 30, further
 
 
-def test_half_a_record_and_a_spoiled_one_are_left_out(tmp_path: Path, solved: list[int]) -> None:
+def test_half_a_record_and_a_spoiled_one_are_left_out(tmp_path, solved):
     whole = run(PAIR, tmp_path)
     (file,) = tmp_path.glob("designs-*.bin")
     text = file.read_bytes()
@@ -110,7 +110,7 @@ def test_half_a_record_and_a_spoiled_one_are_left_out(tmp_path: Path, solved: li
     assert again.optimum.values == whole.optimum.values
 
 
-def test_a_directory_that_cannot_be_written_costs_nothing(tmp_path: Path) -> None:
+def test_a_directory_that_cannot_be_written_costs_nothing(tmp_path):
     (tmp_path / "file").write_text("in the way", encoding="utf-8")
     found = run(PAIR, tmp_path / "file" / "searches", search=replace(SEARCH, evaluations=5))
     assert found.evaluations == 5

@@ -150,9 +150,7 @@ def usual_effort(decision: Decision) -> float:
 @pytest.mark.parametrize("width", [2e-3, 12e-3])
 @pytest.mark.parametrize("helix_deg", [0.0, 9.0, 25.0])
 @pytest.mark.parametrize("relief", [0.0, 12e-6])
-def test_a_looser_tolerance_is_never_expected_to_cost_more(
-    width: float, helix_deg: float, relief: float
-) -> None:
+def test_a_looser_tolerance_is_never_expected_to_cost_more(width, helix_deg, relief):
     """All passes together; what is expected to miss the tolerance takes a tenth of the next at most."""
     helix, modification = (
         math.radians(helix_deg),

@@ -43,7 +43,7 @@ def parent_of_last(machine: Bench, key: str) -> int:
     return int(Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[1])
 
 
-def test_the_first_child_is_forked(machine: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_first_child_is_forked(machine, monkeypatch):
     """It waits for what it would have to load itself."""
     monkeypatch.setattr(Launcher.launch, "__defaults__", (600.0,))
     job = machine.submit(mode="hang")
@@ -56,7 +56,7 @@ def test_the_first_child_is_forked(machine: Bench, monkeypatch: pytest.MonkeyPat
     assert machine.store.verified(second.key, "database").path.read_text() == "second"
 
 
-def test_a_child_outlives_the_warm_process_and_others_follow(machine: Bench) -> None:
+def test_a_child_outlives_the_warm_process_and_others_follow(machine):
     machine.scheduler._crew._launcher.warm_up()
     warm = warm_process(machine)
     slow = machine.submit(mode="slow", text="slow")
@@ -70,7 +70,7 @@ def test_a_child_outlives_the_warm_process_and_others_follow(machine: Bench) -> 
     assert warm_process(machine) != warm
 
 
-def test_a_stop_does_not_wait_for_a_warm_process(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_stop_does_not_wait_for_a_warm_process(tmp_path, monkeypatch):
     monkeypatch.setattr(Launcher.launch, "__defaults__", (600.0,))
     (tmp_path / "long_to_load.py").write_text("import time\ntime.sleep(600)\n")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path), prepend=os.pathsep)
@@ -91,16 +91,14 @@ def test_a_stop_does_not_wait_for_a_warm_process(tmp_path: Path, monkeypatch: py
     machine.close()
 
 
-def test_a_stop_ends_the_warm_process(machine: Bench) -> None:
+def test_a_stop_ends_the_warm_process(machine):
     machine.scheduler._crew._launcher.warm_up()
     warm = warm_process(machine)
     machine.scheduler.stop()
     assert not lives(warm)
 
 
-def test_after_so_many_children_another_takes_its_place(
-    machine: Bench, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_after_so_many_children_another_takes_its_place(machine, monkeypatch):
     monkeypatch.setattr("host.children.launcher.MAX_FORKS", 2)
     machine.scheduler._crew._launcher.warm_up()
     warm = warm_process(machine)
@@ -110,9 +108,7 @@ def test_after_so_many_children_another_takes_its_place(
     until(lambda: not lives(warm))
 
 
-def test_nobody_waits_for_a_warm_process_that_forks_no_more(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_nobody_waits_for_a_warm_process_that_forks_no_more(tmp_path, monkeypatch):
     """As long as one of its children lives it has no successor."""
     monkeypatch.setattr("host.children.launcher.MAX_FORKS", 1)
     monkeypatch.setattr(Launcher.launch, "__defaults__", (600.0,))
@@ -126,7 +122,7 @@ def test_nobody_waits_for_a_warm_process_that_forks_no_more(
         machine.close()
 
 
-def test_modules_that_cannot_be_imported_leave_a_warm_process(tmp_path: Path) -> None:
+def test_modules_that_cannot_be_imported_leave_a_warm_process(tmp_path):
     launcher = Launcher(WORK, ["no_such_module", "service_fake_work"], tmp_path / "log", print)
     launcher.warm_up()
     try:

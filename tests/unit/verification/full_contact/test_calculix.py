@@ -33,7 +33,7 @@ def program(folder: Path, body: str) -> str:
     return str(path)
 
 
-def test_a_finished_job_gives_what_it_printed(tmp_path: Path) -> None:
+def test_a_finished_job_gives_what_it_printed(tmp_path):
     body = 'cat job.inp > job.dat; printf " iteration 1\\n iteration 2\\n Job finished\\n"'
     run = run_calculix(program(tmp_path, body), "deck", tmp_path, 10.0)
     assert (run.status, run.reason, run.iterations, run.printed) == (Status.CONVERGED, "", 2, "deck")
@@ -53,7 +53,7 @@ def test_a_finished_job_gives_what_it_printed(tmp_path: Path) -> None:
         ("while :; do :; done", Status.NOT_COMPUTED, "no result within 1 CPU s"),
     ],
 )  # fmt: skip
-def test_a_job_that_does_not_end_well_says_why(tmp_path: Path, body: str, status: Status, said: str) -> None:
+def test_a_job_that_does_not_end_well_says_why(tmp_path, body, status, said):
     run = run_calculix(program(tmp_path, body), "deck", tmp_path, 1.0)
     assert run.status is status
     assert said in run.reason
@@ -79,7 +79,7 @@ def placed() -> PlacedPair:
     return placed_pair(pair, placed_bodies(pair, 0.3, sites, coarse), 0.0)
 
 
-def test_the_deck_has_short_fields_and_surfaces_for_every_pair(placed: PlacedPair) -> None:
+def test_the_deck_has_short_fields_and_surfaces_for_every_pair(placed):
     fields = [field for line in input_deck(placed, LOADING).splitlines()[2:] if line[0] != "*"
               for field in line.split(",")]  # fmt: skip
     assert max(len(field) for field in fields) <= 20
@@ -93,7 +93,7 @@ def test_the_deck_has_short_fields_and_surfaces_for_every_pair(placed: PlacedPai
     assert "\n1.000000000000e+09\n" in deck  # 1e18 Pa/m in N/mm^3
 
 
-def test_the_bore_of_gear_1_turns_rigidly_and_clockwise(placed: PlacedPair) -> None:
+def test_the_bore_of_gear_1_turns_rigidly_and_clockwise(placed):
     deck = input_deck(placed, LOADING)
     ties = re.findall(r"\*EQUATION\n2\n(\d+),(\d),1\.,(\d+),1,(\S+)", deck)
     gear, (first, second) = placed.gears[0], numbered_bodies(placed.gears)
@@ -108,7 +108,7 @@ def test_the_bore_of_gear_1_turns_rigidly_and_clockwise(placed: PlacedPair) -> N
         )
 
 
-def test_printed_results_are_read_in_si() -> None:
+def test_printed_results_are_read_in_si():
     printed = read_printed(PRINTED)
     assert printed.turning == pytest.approx(7.510317e-6, rel=1e-12, abs=0.0)
     assert printed.nodes.tolist() == [15355, 15657]
@@ -126,6 +126,6 @@ def test_printed_results_are_read_in_si() -> None:
         (PRINTED.replace("3.000000E+01", "Infinity"), "no finite"),
     ],
 )
-def test_a_result_that_is_not_whole_is_refused(text: str, said: str) -> None:
+def test_a_result_that_is_not_whole_is_refused(text, said):
     with pytest.raises(ValueError, match=said):
         read_printed(text)

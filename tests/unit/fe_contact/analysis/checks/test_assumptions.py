@@ -57,7 +57,7 @@ def same(one: SteDatabase, other: SteDatabase) -> None:
             np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
 
 
-def test_an_automatic_effect_that_is_needed_is_switched_on_and_the_table_repeated(cache: Path) -> None:
+def test_an_automatic_effect_that_is_needed_is_switched_on_and_the_table_repeated(cache):
     assert not check_request(CLEAR, *table_request(**SKEWED)).model.corner_contact  # type: ignore[arg-type]
     repeated, explicit = (
         table(CLEAR, cache, **SKEWED, effects=effects) for effects in ({}, {"corner_contact": "on"})
@@ -73,7 +73,7 @@ def test_an_automatic_effect_that_is_needed_is_switched_on_and_the_table_repeate
     assert explicit.metadata.receipt["repeated"] == []
 
 
-def test_the_caller_may_have_it_fail_or_only_reported(cache: Path) -> None:
+def test_the_caller_may_have_it_fail_or_only_reported(cache):
     with pytest.raises(SolveError, match="tip edges stay clear"):
         table(CLEAR, cache, **SKEWED, on_violation="fail")
     reported = table(CLEAR, cache, **SKEWED, on_violation="report")
@@ -82,7 +82,7 @@ def test_the_caller_may_have_it_fail_or_only_reported(cache: Path) -> None:
 
 
 @pytest.mark.law
-def test_what_was_switched_off_by_name_stays_off(cache: Path) -> None:
+def test_what_was_switched_off_by_name_stays_off(cache):
     asked = {"torques": [100.0], "level": "draft", "positions": 64}
     without, whole = (table(PAIR, cache, **asked, effects=e) for e in ({"corner_contact": "off"}, {}))
     assert without.metadata.receipt["repeated"] == []
@@ -93,7 +93,7 @@ def test_what_was_switched_off_by_name_stays_off(cache: Path) -> None:
     assert 0.0 < change < found["change"] * without.peak_to_peak(torque=100.0).value
 
 
-def test_edges_that_stay_clear_pass(cache: Path) -> None:
+def test_edges_that_stay_clear_pass(cache):
     relieved = replace(GEAR, modification=FlankModification(tip_relief=40e-6, tip_relief_length=0.5e-3))
     asked = {"torques": [20.0], "level": "draft", "positions": 32}
     found = table(GearPair(relieved, relieved), cache, **asked)
@@ -107,7 +107,7 @@ def test_edges_that_stay_clear_pass(cache: Path) -> None:
     assert assumption(found, "corner_contact")["holds"] is True
 
 
-def test_an_effect_below_the_tolerance_is_neglected_and_its_model_with_it(cache: Path) -> None:
+def test_an_effect_below_the_tolerance_is_neglected_and_its_model_with_it(cache):
     neglected, aligned = (table(PAIR, cache, **(TINY | more)) for more in ({}, {"misalignments": [0.0]}))
     same(neglected, aligned)
     assert neglected.metadata.receipt["plan"]["model"] == aligned.metadata.receipt["plan"]["model"]
@@ -129,14 +129,14 @@ def test_an_effect_below_the_tolerance_is_neglected_and_its_model_with_it(cache:
         {"misalignments": [3e-6], "tolerance": 2e-3},
     ],
 )
-def test_it_is_kept_without_a_tolerance_by_name_or_where_it_matters(more: Json) -> None:
+def test_it_is_kept_without_a_tolerance_by_name_or_where_it_matters(more):
     checked = check_request(PAIR, *table_request(**TINY | more))  # type: ignore[arg-type]
     assert checked.decision["misalignment"] == "on"
     assert checked.model.across_face
 
 
 @pytest.mark.law
-def test_an_effect_neglected_in_error_is_set_right(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_effect_neglected_in_error_is_set_right(cache, monkeypatch):
     asked = TINY | {"misalignments": [10e-6]}
     right = table(PAIR, cache, **asked)
     monkeypatch.setattr(neglected_effects, "SHARE", 1e3)
@@ -149,7 +149,7 @@ def test_an_effect_neglected_in_error_is_set_right(cache: Path, monkeypatch: pyt
     same(wrong, right)
 
 
-def test_teeth_that_jam_are_noticed(cache: Path) -> None:
+def test_teeth_that_jam_are_noticed(cache):
     # backlash of 60 um: room for a misalignment of 40 um, not for one of 80 um
     thinner = replace(GEAR, thickness_allowance=32e-6)
     pair = GearPair(thinner, thinner)
@@ -172,7 +172,7 @@ def edges(receipt: Json) -> Json:
     return dict(entry)
 
 
-def test_flank_results_are_repeated_refused_or_reported(cache: Path) -> None:
+def test_flank_results_are_repeated_refused_or_reported(cache):
     how: dict[str, Any] = {"run": Run(cache=cache), "at": AT}
     repeated = flank_results(CLEAR, *point_request(**SKEWED_POINT), **how)
     explicit = flank_results(CLEAR, *point_request(effects={"corner_contact": "on"}, **SKEWED_POINT), **how)
@@ -191,7 +191,7 @@ def test_flank_results_are_repeated_refused_or_reported(cache: Path) -> None:
         flank_results(CLEAR, *point_request(on_violation="fail", **SKEWED_POINT), **how)
 
 
-def test_root_stress_is_repeated_too(cache: Path) -> None:
+def test_root_stress_is_repeated_too(cache):
     how: dict[str, Any] = {"run": Run(cache=cache), "at": AT}
     repeated = root_stress(CLEAR, *point_request(**SKEWED_POINT), **how)
     explicit = root_stress(CLEAR, *point_request(effects={"corner_contact": "on"}, **SKEWED_POINT), **how)
@@ -207,7 +207,7 @@ def test_root_stress_is_repeated_too(cache: Path) -> None:
         root_stress(CLEAR, *point_request(on_violation="fail", **SKEWED_POINT), **how)
 
 
-def test_positions_that_pass_a_handover_by_miss_no_edge(cache: Path) -> None:
+def test_positions_that_pass_a_handover_by_miss_no_edge(cache):
     """Sixteen positions and five hundred assess the edges alike: the gap is least where pairs change."""
     pair = GearPair(GEAR, GEAR)
     asked = {"torques": [100.0], "level": "draft", "effects": {"corner_contact": "off"}, "cache": cache}
@@ -220,7 +220,7 @@ def test_positions_that_pass_a_handover_by_miss_no_edge(cache: Path) -> None:
     assert bends[1] == pytest.approx(bends[2], rel=0.02)
 
 
-def test_handovers_are_just_outside_the_path_of_contact() -> None:
+def test_handovers_are_just_outside_the_path_of_contact():
     pair = check_request(GearPair(GEAR, GEAR), TableAxes(torques=[1.0])).request.pair
     path = pair.path_of_contact
     rolls = [path.pitch_point + (x + j) * path.base_pitch for x in handovers(pair) for j in (-2, -1, 0, 1)]

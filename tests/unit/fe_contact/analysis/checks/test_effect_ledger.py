@@ -2,7 +2,6 @@
 
 import json
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 from analysis_requests import table_request
@@ -45,7 +44,7 @@ def ledger(pair: GearPair, **asked: object) -> dict[str, Json]:
         (PLAIN, {"effects": dict.fromkeys(("tooth_coupling", "corner_contact"), "off")}),
     ],
 )
-def test_every_effect_has_every_field(pair: GearPair, asked: Json) -> None:
+def test_every_effect_has_every_field(pair, asked):
     found = ledger(pair, **asked)
     assert list(found) == [effect.name for effect in EFFECTS]
     for entry in found.values():
@@ -57,7 +56,7 @@ def test_every_effect_has_every_field(pair: GearPair, asked: Json) -> None:
     json.dumps(found, allow_nan=False)
 
 
-def test_a_choice_against_the_scene_is_obeyed_and_has_a_price() -> None:
+def test_a_choice_against_the_scene_is_obeyed_and_has_a_price():
     off = ledger(PLAIN, effects={"tooth_coupling": "off"})["tooth_coupling"]
     assert not off["on"]
     assert off["decision"] == "as requested, although the scene calls for it"
@@ -70,7 +69,7 @@ def test_a_choice_against_the_scene_is_obeyed_and_has_a_price() -> None:
     assert all(entry["price"] == "" for entry in ledger(PLAIN).values())
 
 
-def test_three_dimensions_cost_what_the_plan_says(tmp_path: Path) -> None:
+def test_three_dimensions_cost_what_the_plan_says(tmp_path):
     axes = TableAxes(torques=[100.0])
     flat, solid = (
         plan_run(PLAIN, axes, AnalysisOptions(model=model, positions=16), cache=tmp_path)
@@ -81,7 +80,7 @@ def test_three_dimensions_cost_what_the_plan_says(tmp_path: Path) -> None:
     assert found["face_load_distribution"]["cost_cpu_seconds"] == pytest.approx(extra, rel=1e-6)
 
 
-def test_a_minimal_receipt_estimates_neither_influence_nor_cost() -> None:
+def test_a_minimal_receipt_estimates_neither_influence_nor_cost():
     table = analyze(PLAIN, torques=[100.0], level="draft", positions=16, receipt="minimal")
     for entry in table.metadata.effect_ledger:
         assert set(entry) == FIELDS

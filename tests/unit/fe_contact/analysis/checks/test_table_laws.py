@@ -154,14 +154,14 @@ def planted(made: SolvedTable, fault: Break) -> SolvedTable:
 
 
 @pytest.mark.parametrize("fault", BREAKS.values(), ids=BREAKS)
-def test_a_planted_break_fails_by_law_place_and_numbers(relieved: SolvedTable, fault: Break) -> None:
+def test_a_planted_break_fails_by_law_place_and_numbers(relieved, fault):
     broken = planted(relieved, fault)
     with pytest.raises(SolveError, match=f"{fault.law}: .* is .* at position .*, bound ") as refused:
         assert_lawful(broken)
     assert refused.value.partial is broken.table
 
 
-def test_every_law_has_a_planted_break(relieved: SolvedTable) -> None:
+def test_every_law_has_a_planted_break(relieved):
     laws = {law.law for law in check_laws(relieved.table, relieved.places.places, relieved.solved)}
     assert laws - {"continuity without load"} == {fault.law for fault in BREAKS.values()}
 
@@ -178,13 +178,11 @@ def test_every_law_has_a_planted_break(relieved: SolvedTable) -> None:
     ],
     ids=["plain", "light and heavy", "relieved", "uneven pitches", "misaligned", "helical"],
 )
-def test_tables_as_solved_obey_all_laws(pair: GearPair, asked: Any, cache: Path) -> None:
+def test_tables_as_solved_obey_all_laws(pair, asked, cache):
     assert_lawful(solved(pair, cache, **asked))
 
 
-def test_a_run_whose_table_breaks_a_law_fails_with_it(
-    relieved: SolvedTable, cache: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_run_whose_table_breaks_a_law_fails_with_it(relieved, cache, monkeypatch):
     broken = planted(relieved, BREAKS["a deflection below the flanks"])
     monkeypatch.setattr(compute_database, "solve_table", lambda *_, **__: broken)
     for tolerance in (None, 0.02):
@@ -196,7 +194,7 @@ def test_a_run_whose_table_breaks_a_law_fails_with_it(
         assert refused.value.partial is broken.table
 
 
-def test_the_receipt_says_how_near_each_law_is_to_its_bound(cache: Path) -> None:
+def test_the_receipt_says_how_near_each_law_is_to_its_bound(cache):
     laws = analyze(PAIR, cache=cache, **THREE_LOADS).metadata.receipt["laws"]  # type: ignore[arg-type]
     assert len(laws) >= 10
     assert all(0.0 <= law["ratio"] <= 1.0 for law in laws)
@@ -210,7 +208,7 @@ EDGE_BREAK = ((5.0, 21.5, 22.3, 22.6, 22.85), (0.0, -4.0, -5.5, -5.0, 13.8))
 """Roll lengths in mm and what is removed in um: the end of a measured trace at its tip."""
 
 
-def test_a_trace_on_one_tooth_never_lifts_by_more_than_it_is_high(cache: Path) -> None:
+def test_a_trace_on_one_tooth_never_lifts_by_more_than_it_is_high(cache):
     roll, removed = (np.array(values) for values in EDGE_BREAK)
     grid = FlankGrid(tuple(1e-3 * roll), (-12e-3, 12e-3), tuple((1e-6 * x, 1e-6 * x) for x in removed))
     asked: Any = {"torques": [200.0], "level": "draft"}
@@ -220,7 +218,7 @@ def test_a_trace_on_one_tooth_never_lifts_by_more_than_it_is_high(cache: Path) -
     assert np.ptp(table.static_transmission_error) < np.ptp(removed) * 1e-6 + plain.max()
 
 
-def test_a_jump_to_the_next_crest_is_no_more_than_its_curvature_makes_it(cache: Path) -> None:
+def test_a_jump_to_the_next_crest_is_no_more_than_its_curvature_makes_it(cache):
     """The strip of a crest is narrower: two cylinders approach by p/(pi E*) ln of the ratio of curvatures."""
     small = gear(51, normal_module=1e-3, face_width=15e-3, bore_diameter=20e-3)
     ends = small.form_roll_length, small.tip_roll_length
@@ -237,7 +235,7 @@ def test_a_jump_to_the_next_crest_is_no_more_than_its_curvature_makes_it(cache: 
     assert 20e-9 < steps.max() < 0.3e-6
 
 
-def test_a_contact_at_the_edge_of_flanks_that_open_never_softens(cache: Path) -> None:
+def test_a_contact_at_the_edge_of_flanks_that_open_never_softens(cache):
     """Hollow flanks touch at the edge of the mate where plain flanks touch inside."""
     hollow = tuple(ToothFlank(tooth=t, profile_form=-3e-6 * (t % 5)) for t in range(2, 21))
     pair = GearPair(replace(GEAR, tooth_flanks=hollow), GEAR)
@@ -254,7 +252,7 @@ def test_a_contact_at_the_edge_of_flanks_that_open_never_softens(cache: Path) ->
     assert np.all(np.diff(tangent, axis=1) < 1e-9 * tangent[:, 1:])
 
 
-def test_a_patch_leaves_its_edge_without_a_step_of_the_curve(cache: Path) -> None:
+def test_a_patch_leaves_its_edge_without_a_step_of_the_curve(cache):
     """A soft wheel is tilted so much that a step of the tilt by 2 % was one of the curve by 0.06 um."""
     steel = gear(51, normal_module=1e-3, face_width=15e-3, bore_diameter=33e-3, tip_diameter=52.894e-3)
     plastic = Material(youngs_modulus=2.282e9, poissons_ratio=0.3)
@@ -273,7 +271,7 @@ def test_a_patch_leaves_its_edge_without_a_step_of_the_curve(cache: Path) -> Non
         analyze(pair, cache=cache, **asked)  # raises where a law is broken
 
 
-def test_a_light_load_forgives_the_accuracy_of_the_gaps_and_no_more(cache: Path) -> None:
+def test_a_light_load_forgives_the_accuracy_of_the_gaps_and_no_more(cache):
     """Under some newtons an error of the gaps of 1 nm is a per cent of the deflection."""
     made = solved(GearPair(RELIEVED, GEAR), cache, torques=[0.1], level="draft", positions=16)
 

@@ -2,7 +2,6 @@
 
 import dataclasses
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -251,7 +250,7 @@ def test_a_level_or_a_minimal_receipt_refines_nothing():
 
 
 @pytest.mark.law
-def test_loads_are_inserted_until_every_interval_meets_the_tolerance(tmp_path: Path):
+def test_loads_are_inserted_until_every_interval_meets_the_tolerance(tmp_path):
     """Those that were requested stay the axis; the others are support loads between them."""
     wide = analyze(SPUR, tolerance=0.01, **(PLANE | {"torques": [16.0, 80.0]}), cache=tmp_path)
     kept = receipt(wide)["tolerance"]
@@ -272,7 +271,7 @@ def figures_at(table, torque):
     return table.mean(torque=torque), table.peak_to_peak(torque=torque)
 
 
-def test_an_interval_that_misses_the_tolerance_is_not_met(tmp_path: Path, monkeypatch):
+def test_an_interval_that_misses_the_tolerance_is_not_met(tmp_path, monkeypatch):
     """Without a limit on halvings it would be: met is said of the intervals, too."""
     monkeypatch.setattr(validation_loads, "MAX_HALVINGS", 0)
     wide = analyze(SPUR, tolerance=0.01, **(PLANE | {"torques": [1.0, 80.0]}), cache=tmp_path)
@@ -287,7 +286,7 @@ def test_an_interval_that_misses_the_tolerance_is_not_met(tmp_path: Path, monkey
     assert receipt(dense)["tolerance"]["between_nodes"] == []
 
 
-def test_a_level_inserts_nothing(tmp_path: Path):
+def test_a_level_inserts_nothing(tmp_path):
     table = analyze(SPUR, level="draft", **(PLANE | {"torques": [16.0, 80.0]}), cache=tmp_path)
     assert table.inserted_force.size == 0
     assert table.interval_error[0, 0, 0, 0] > 0.0

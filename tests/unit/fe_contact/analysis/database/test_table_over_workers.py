@@ -95,7 +95,7 @@ CASES: dict[str, tuple[Callable[[], GearPair], dict[str, Any]]] = {
 @pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize("case", CASES)
-def test_a_table_cut_into_blocks_keeps_its_bits(case: str, cache: Path) -> None:
+def test_a_table_cut_into_blocks_keeps_its_bits(case, cache):
     pair, asked = CASES[case]
     asked = {"torques": [60.0, 150.0], "level": "draft", "cache": cache} | asked
     workers = Elsewhere()
@@ -105,7 +105,7 @@ def test_a_table_cut_into_blocks_keeps_its_bits(case: str, cache: Path) -> None:
     assert whole.inserted_misalignment.size == (1 if case == "inserted alignments" else 0)
 
 
-def test_errors_and_influences_are_tasks_too(cache: Path) -> None:
+def test_errors_and_influences_are_tasks_too(cache):
     """Held-out points are cut as the table is; they bring its compliance and start from its solutions."""
     asked: dict[str, Any] = {"torques": [60.0, 150.0], "level": "draft", "cache": cache} | SKEWED
     workers = Elsewhere()
@@ -130,7 +130,7 @@ def assert_same(one: SteDatabase, other: SteDatabase) -> None:
     assert second == first
 
 
-def test_gears_condensed_elsewhere_are_the_same(cache: Path) -> None:
+def test_gears_condensed_elsewhere_are_the_same(cache):
     workers = Elsewhere()
     asked: dict[str, Any] = {"torques": [100.0], "level": "draft", "positions": 16}
     whole = analyze(helical(), **asked, cache=cache)
@@ -139,7 +139,7 @@ def test_gears_condensed_elsewhere_are_the_same(cache: Path) -> None:
     assert_same(whole, cut)
 
 
-def test_the_receipt_counts_the_time_of_all(cache: Path) -> None:
+def test_the_receipt_counts_the_time_of_all(cache):
     """Every task is said to have cost 100 s: they show in the stages they were part of, and nowhere else."""
     workers = Elsewhere(RunCost(tasks=7, cpu_seconds=900.0))  # what other runs spent before
     asked: dict[str, Any] = {"torques": [60.0, 150.0], "level": "draft", "positions": 16, "cache": cache}
@@ -152,7 +152,7 @@ def test_the_receipt_counts_the_time_of_all(cache: Path) -> None:
     assert "elsewhere" not in analyze(helical(), **asked).metadata.receipt
 
 
-def test_tasks_do_not_depend_on_who_works(cache: Path) -> None:
+def test_tasks_do_not_depend_on_who_works(cache):
     asked: dict[str, Any] = {"torques": [60.0], "level": "draft", "positions": 16, "cache": cache}
     first, second = Elsewhere(), Elsewhere()
     for workers in (first, second):
@@ -160,7 +160,7 @@ def test_tasks_do_not_depend_on_who_works(cache: Path) -> None:
     assert first.tasks == second.tasks
 
 
-def test_too_little_to_send_stays_here(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_too_little_to_send_stays_here(monkeypatch):
     """A table as a whole: its gears as well, which nobody has condensed."""
     monkeypatch.setattr(dispatch, "START_SECONDS", 1e3)
     workers = Elsewhere()
@@ -168,7 +168,7 @@ def test_too_little_to_send_stays_here(monkeypatch: pytest.MonkeyPatch) -> None:
     assert not workers.tasks
 
 
-def test_sensitivity_over_workers_keeps_its_bits(cache: Path) -> None:
+def test_sensitivity_over_workers_keeps_its_bits(cache):
     workers = Elsewhere()
     asked: dict[str, Any] = {
         "normal_forces": [2000.0], "misalignments": [20e-6], "center_distance_changes": [50e-6],

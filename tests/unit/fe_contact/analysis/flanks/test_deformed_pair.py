@@ -67,7 +67,7 @@ def solved(pair: GearPair | InternalGearPair, cache: Path, **request: Any) -> So
 
 
 @pytest.mark.law
-def test_the_work_of_the_forces_is_that_of_the_contact(cache: Path) -> None:
+def test_the_work_of_the_forces_is_that_of_the_contact(cache):
     """f' S f of both gears, tooth by tooth, is F' C F of the contact; corner forces count by their lever.
 
     In the plane, edges also yield along their flanks: work that forces across the flank do not do.
@@ -145,7 +145,7 @@ def bare_compliance(place: SolvedOperatingPoint) -> np.ndarray:
     ],
     ids=["spur", "right", "left", "offset", "internal spur", "internal helical"],
 )
-def test_placed_flanks_touch_on_every_contact_line(pair: GearPair | InternalGearPair) -> None:
+def test_placed_flanks_touch_on_every_contact_line(pair):
     """Points of both profiles at the roll lengths of all pairs, at several planes, are the same points."""
     for position in (0.0, 0.3, 0.9):
         angles = mesh_angles(pair, position)
@@ -171,7 +171,7 @@ def test_placed_flanks_touch_on_every_contact_line(pair: GearPair | InternalGear
                 assert where[0] == pytest.approx(where[1], abs=1e-12)
 
 
-def test_a_base_pitch_later_the_next_teeth_stand_there() -> None:
+def test_a_base_pitch_later_the_next_teeth_stand_there():
     assert mesh_angles(spur_pair(), 3.25) == pytest.approx(mesh_angles(spur_pair(), 0.25), abs=1e-12)
     with pytest.raises(InputError, match="neighbors = -1"):
         deformed_pairs(spur_pair(), OperatingPoint(torque=10.0), neighbors=-1)
@@ -198,7 +198,7 @@ def found(cache: Path) -> Any:
     )
 
 
-def test_files_come_back_as_they_were(found: Any, tmp_path: Path) -> None:
+def test_files_come_back_as_they_were(found, tmp_path):
     one = found[1]
     files = tmp_path / "pinion.vtu", tmp_path / "wheel.vtu"
     one.write(*files)
@@ -217,7 +217,7 @@ def test_files_come_back_as_they_were(found: Any, tmp_path: Path) -> None:
     assert lag == pytest.approx(one.wheel_lag, abs=1e-18)
 
 
-def test_the_wheel_lags_by_the_transmission_error_and_flanks_give_way(found: Any) -> None:
+def test_the_wheel_lags_by_the_transmission_error_and_flanks_give_way(found):
     pair, one = helical_pair(), found[0]
     alpha = pair.working_pressure_angle
     along = np.array([math.cos(alpha), math.sin(alpha), 0.0])
@@ -236,7 +236,7 @@ def test_the_wheel_lags_by_the_transmission_error_and_flanks_give_way(found: Any
 
 
 @pytest.mark.parametrize("hand", [1.0, -1.0])
-def test_meshes_of_pinion_and_ring_meet_where_the_load_is(hand: float, cache: Path) -> None:
+def test_meshes_of_pinion_and_ring_meet_where_the_load_is(hand, cache):
     """Under a load at one end of the face both are stressed most there, and there the other mesh is near."""
     pair = internal_pair(hand)
     (found,) = deformed_pairs(

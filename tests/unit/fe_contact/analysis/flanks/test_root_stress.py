@@ -50,9 +50,7 @@ def place(pair: GearPair, cache: Path, model: str) -> SolvedOperatingPoint:
 
 
 @pytest.mark.parametrize(("pair", "different"), [(SPUR, 1), (HELICAL, 2)])
-def test_a_prediction_has_each_stress_on_both_meshes_until_it_is_kept(
-    pair: GearPair, different: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_prediction_has_each_stress_on_both_meshes_until_it_is_kept(pair, different, tmp_path, monkeypatch):
     monkeypatch.setattr(root_module, "body_seconds", lambda *_: 1.0)
     contact = place(pair, tmp_path, "auto" if pair is SPUR else "3d").contact
     each = stress_seconds(pair, contact.plan, None) / (2 * different)
@@ -70,7 +68,7 @@ def with_forces(found: SolvedOperatingPoint, keep: np.ndarray, factor: float = 1
 
 @pytest.mark.law
 @pytest.mark.parametrize("model", ["plane_strain", "3d"])
-def test_stress_is_linear_in_the_forces(cache: Path, model: str) -> None:
+def test_stress_is_linear_in_the_forces(cache, model):
     found = place(SPUR, cache, model)
     if model == "3d":
         unit = unit_root_stress_3d(GEAR, finer_root(SectorRecipe.draft(GEAR)), cache=cache)
@@ -86,7 +84,7 @@ def test_stress_is_linear_in_the_forces(cache: Path, model: str) -> None:
     assert np.array_equal(double, 2.0 * whole)
 
 
-def test_one_pair_alone_gives_stress_in_proportion_to_the_load(cache: Path) -> None:
+def test_one_pair_alone_gives_stress_in_proportion_to_the_load(cache):
     """At the pitch point nothing is shared, so that the contact cannot change where the force goes."""
     one, five = (solved(SPUR, cache, normal_force=f, at=[0.0]).pinion for f in (FORCE, 5.0 * FORCE))
     assert np.abs(five.stress - 5.0 * one.stress).max() < 1e-9 * np.abs(five.stress).max()
@@ -95,7 +93,7 @@ def test_one_pair_alone_gives_stress_in_proportion_to_the_load(cache: Path) -> N
     assert own.min() > 0.0
 
 
-def test_gears_alike_are_mirror_images_in_position(cache: Path) -> None:
+def test_gears_alike_are_mirror_images_in_position(cache):
     """What the pinion's tooth meets on its way in, the wheel's meets on its way out."""
     found = solved(SPUR, cache, at=np.arange(16) / 16, effects=NO_CORNERS)
     pinion, wheel = found.pinion.passage(), found.wheel.passage()
@@ -107,7 +105,7 @@ def test_gears_alike_are_mirror_images_in_position(cache: Path) -> None:
 
 
 @pytest.mark.nightly
-def test_opposite_hands_are_mirror_images_along_the_face(cache: Path) -> None:
+def test_opposite_hands_are_mirror_images_along_the_face(cache):
     swapped = GearPair(*(replace(g, helix_angle=-g.helix_angle) for g in (HELICAL.pinion, HELICAL.wheel)))
     options = {"at": [0.2, 0.7], "misalignment": 10e-6}
     one = solved(HELICAL, cache, **options)
@@ -118,7 +116,7 @@ def test_opposite_hands_are_mirror_images_along_the_face(cache: Path) -> None:
         assert mine.peak("tension").face_position == pytest.approx(-theirs.peak("tension").face_position)
 
 
-def test_misalignment_raises_the_stress_where_the_load_goes(cache: Path) -> None:
+def test_misalignment_raises_the_stress_where_the_load_goes(cache):
     aligned, skew = (solved(SPUR, cache, at=[0.0], model="3d", misalignment=m) for m in (0.0, 20e-6))
     for gear in ("pinion", "wheel"):
         low, high = (getattr(found, gear).peak("tension") for found in (aligned, skew))
@@ -128,7 +126,7 @@ def test_misalignment_raises_the_stress_where_the_load_goes(cache: Path) -> None
 
 
 @pytest.mark.law
-def test_the_roots_of_a_ring_gear_are_pulled_at_the_same_end(cache: Path) -> None:
+def test_the_roots_of_a_ring_gear_are_pulled_at_the_same_end(cache):
     """A ring is seen from its other side: its fillets and its ends must still be those of the contact."""
     ring = RingGear(teeth=60, normal_module=4e-3, face_width=10e-3, rim_diameter=0.29, tip_diameter=0.2342)
     pair = InternalGearPair(replace(GEAR, face_width=10e-3), ring, 80e-3)
@@ -144,7 +142,7 @@ def test_the_roots_of_a_ring_gear_are_pulled_at_the_same_end(cache: Path) -> Non
     assert math.degrees(found.pinion.peak("tension").tangent_angle) == pytest.approx(37.0, abs=5.0)
 
 
-def test_peak_and_passage_say_the_same(cache: Path) -> None:
+def test_peak_and_passage_say_the_same(cache):
     history = solved(SPUR, cache, at=np.arange(32) / 32).pinion
     passage = history.passage()
     assert np.all(np.diff(passage.position) > 0.0)
@@ -159,7 +157,7 @@ def test_peak_and_passage_say_the_same(cache: Path) -> None:
     assert passage.tension[0] == passage.tension[-1] == 0.0  # far from the mesh
 
 
-def test_crests_of_parabolas_and_slopes_lean_on_what_counts() -> None:
+def test_crests_of_parabolas_and_slopes_lean_on_what_counts():
     s = np.array([0.0, 1.0, 1.5, 3.0, 3.5])
     values = np.stack([5.0 - 2.0 * (s - at) ** 2 for at in (1.2, 2.1, 3.2)])
     value, at = crest_values(s, values)
@@ -177,7 +175,7 @@ def test_crests_of_parabolas_and_slopes_lean_on_what_counts() -> None:
 
 
 @pytest.mark.law
-def test_a_root_under_the_patch_counts_for_no_peak(cache: Path) -> None:
+def test_a_root_under_the_patch_counts_for_no_peak(cache):
     """Contact next to the form point: the patch, wider than the contact, lies on the fillet."""
     gear = replace(GEAR, profile_shift_coefficient=-0.05)
     deep = GearPair(gear, replace(GEAR, profile_shift_coefficient=0.05), 80e-3)
@@ -195,7 +193,7 @@ def test_a_root_under_the_patch_counts_for_no_peak(cache: Path) -> None:
 
 @pytest.mark.law
 @pytest.mark.parametrize("model", ["plane_strain", "3d"])
-def test_unit_loads_on_slices_give_the_peaks_of_the_whole_history(cache: Path, model: str) -> None:
+def test_unit_loads_on_slices_give_the_peaks_of_the_whole_history(cache, model):
     """What searches follow: equal in the plane; over the face forces go to the ends of coarse layers."""
     found = place(SPUR, cache, model)
     roots = RootInfluence.of(found.contact, cache)
@@ -206,7 +204,7 @@ def test_unit_loads_on_slices_give_the_peaks_of_the_whole_history(cache: Path, m
         assert stress[gear] == pytest.approx(peaks, rel=1e-3 if model == "plane_strain" else 0.015)
 
 
-def test_changes_of_root_stress_are_those_of_differences(cache: Path) -> None:
+def test_changes_of_root_stress_are_those_of_differences(cache):
     found = place(SPUR, cache, "plane_strain")
     roots, force = RootInfluence.of(found.contact, cache), found.solution.force
     change = force * np.cos(np.arange(force.size)).reshape(force.shape)

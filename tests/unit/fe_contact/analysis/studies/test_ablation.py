@@ -33,14 +33,14 @@ def made() -> Ablation:
     return ablate(PAIR, *table_request(**ASKED), only=ONLY)  # type: ignore[arg-type]
 
 
-def test_a_prediction_has_the_contact_of_every_table_and_condenses_gears_once(made: Ablation) -> None:
+def test_a_prediction_has_the_contact_of_every_table_and_condenses_gears_once(made):
     checked = Ablation.request(PAIR, *table_request(**ASKED))  # type: ignore[arg-type]
     whole, alone = (predicted_ablation(checked, only, None) for only in (ONLY, ["tooth_coupling"]))
     assert (len(whole.contacts), len(alone.contacts)) == (1 + len(made.effects), 2)
     assert whole.bodies > alone.bodies == predicted_ablation(checked, ["corner_contact"], None).bodies
 
 
-def test_a_change_is_that_of_two_tables(made: Ablation) -> None:
+def test_a_change_is_that_of_two_tables(made):
     effects = {"tooth_coupling": "off"}
     whole, without = (analyze(PAIR, **ASKED, effects=e) for e in ({}, effects))  # type: ignore[arg-type]
     entry = next(one for one in made.effects if one.name == "tooth_coupling")
@@ -54,7 +54,7 @@ def test_a_change_is_that_of_two_tables(made: Ablation) -> None:
         assert entry.harmonic_change[k, 0] == pytest.approx(first, rel=1e-12, abs=0.0)
 
 
-def test_estimates_are_within_a_factor_of_two(made: Ablation) -> None:
+def test_estimates_are_within_a_factor_of_two(made):
     for entry in made.effects:
         estimate, measured = entry.estimate, made.measured(entry)
         assert estimate is not None
@@ -67,9 +67,7 @@ def test_estimates_are_within_a_factor_of_two(made: Ablation) -> None:
 
 @pytest.mark.law
 @pytest.mark.parametrize(("start", "tasks"), [(0.0, "solve_block"), (2.0, "_attempted"), (9.0, None)])
-def test_large_tables_are_shared_by_their_blocks_and_small_ones_whole(
-    made: Ablation, start: float, tasks: str | None, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_large_tables_are_shared_by_their_blocks_and_small_ones_whole(made, start, tasks, monkeypatch):
     """`start`: seconds that pay for workers, in those that one of the tables takes."""
     request = Ablation.request(PAIR, *table_request(**ASKED))  # type: ignore[arg-type]
     seconds = request.predicted(request.planned(None), None, with_errors=False).cpu_seconds
@@ -90,7 +88,7 @@ def test_large_tables_are_shared_by_their_blocks_and_small_ones_whole(
         assert effect.mean_change.tolist() == alone.mean_change.tolist()
 
 
-def test_what_is_left_out_is_named_and_an_unknown_effect_refused(made: Ablation) -> None:
+def test_what_is_left_out_is_named_and_an_unknown_effect_refused(made):
     assert made.omitted == {"misalignment": "the gears are aligned"}
     assert [entry.name for entry in made.effects] == [
         "tooth_coupling", "corner_contact", "profile_modification", "finite_width",
@@ -101,7 +99,7 @@ def test_what_is_left_out_is_named_and_an_unknown_effect_refused(made: Ablation)
         ablate(PAIR, TableAxes(normal_forces=[1000.0]), only=["windage"])
 
 
-def test_an_effect_that_is_off_is_switched_on(made: Ablation) -> None:
+def test_an_effect_that_is_off_is_switched_on(made):
     off = ablate(
         PAIR,
         *table_request(effects={"tooth_coupling": "off"}, **ASKED),
@@ -114,7 +112,7 @@ def test_an_effect_that_is_off_is_switched_on(made: Ablation) -> None:
     np.testing.assert_array_equal(off.nominal.mean, usual.without_effect.mean)
 
 
-def test_longer_periods_cost_more() -> None:
+def test_longer_periods_cost_more():
     early = PitchDeviation((3e-6, *([0.0] * 19)))
     pair = GearPair(replace(GEAR, pitch_deviation=early), GEAR)
     (entry,) = ablate(pair, *table_request(**ASKED), only=["pitch_error"]).effects  # type: ignore[arg-type]
@@ -123,14 +121,14 @@ def test_longer_periods_cost_more() -> None:
     assert entry.cost_ratio > 1.0
 
 
-def test_what_no_plane_holds_stays_in() -> None:
+def test_what_no_plane_holds_stays_in():
     asked = ASKED | {"misalignments": [10e-6], "positions": 16}
     made = ablate(GearPair(GEAR, GEAR), *table_request(**asked), only=["face_load_distribution"])  # type: ignore[arg-type]
     assert made.effects == ()
     assert "misalignments" in made.omitted["face_load_distribution"]
 
 
-def test_a_tolerance_chooses_one_mesh_for_all_tables(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_tolerance_chooses_one_mesh_for_all_tables(monkeypatch):
     made = []
 
     def noted(checked: Checked, *further: object) -> SteDatabase:

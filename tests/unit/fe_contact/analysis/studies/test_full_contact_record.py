@@ -66,7 +66,7 @@ def record(table: SteDatabase, positions: int = 5, failed: Sequence[int] = ()) -
     )
 
 
-def test_errors_are_those_of_the_positions_that_were_solved_at_the_worst_load(table: SteDatabase) -> None:
+def test_errors_are_those_of_the_positions_that_were_solved_at_the_worst_load(table):
     found = compare_full_contact(record(table, failed=[FAILED]), table, table)
     assert (found.solves, found.solved) == (10, 8)
     assert found.mean_error == pytest.approx(SOFTER - 1.0, rel=1e-9)
@@ -81,7 +81,7 @@ def test_errors_are_those_of_the_positions_that_were_solved_at_the_worst_load(ta
     }
 
 
-def test_a_table_costs_its_solves_and_one_position_has_no_peak_to_peak(table: SteDatabase) -> None:
+def test_a_table_costs_its_solves_and_one_position_has_no_peak_to_peak(table):
     found = compare_full_contact(record(table, 4), table, None)
     assert found.seconds(768) == pytest.approx(768 * 2.5)
     assert found.to_json(768)["cpu_seconds_measured"] == pytest.approx(20.0)
@@ -91,23 +91,21 @@ def test_a_table_costs_its_solves_and_one_position_has_no_peak_to_peak(table: St
     assert "peak_to_peak_error" not in found.to_json(64)
 
 
-def test_a_record_is_thinned_to_equally_spaced_positions(table: SteDatabase) -> None:
+def test_a_record_is_thinned_to_equally_spaced_positions(table):
     whole = record(table, 16)
     assert whole.at_positions(4).position.tolist() == [0.0, 0.25, 0.5, 0.75]
     assert whole.at_positions(64).position.tolist() == whole.position.tolist()
     assert whole.at_positions(3).transmission_error.shape == (1, 3, 2)
 
 
-def test_a_record_is_read_as_it_was_written(table: SteDatabase) -> None:
+def test_a_record_is_read_as_it_was_written(table):
     whole = record(table, failed=[FAILED])
     read = FullContactRecord.from_json(whole.to_json())
     for field in dataclasses.fields(whole):
         np.testing.assert_equal(getattr(read, field.name), getattr(whole, field.name))
 
 
-def test_a_record_is_of_the_very_pair_and_model_at_loads_of_the_case(
-    checked: Checked, table: SteDatabase
-) -> None:
+def test_a_record_is_of_the_very_pair_and_model_at_loads_of_the_case(checked, table):
     records = [record(table)]
     found = record_of(checked, records)
     assert found is not None and found.torque.tolist() == records[0].torque.tolist()
@@ -129,7 +127,7 @@ def test_a_record_is_of_the_very_pair_and_model_at_loads_of_the_case(
     assert [record_of(check_request(*other), records) for other in others] == [None] * len(others)
 
 
-def test_what_needs_the_face_is_compared_over_it() -> None:
+def test_what_needs_the_face_is_compared_over_it():
     """A model in three dimensions, misalignment, or a flank that varies across the face; else the plane."""
     crowned = dataclasses.replace(GEAR, modification=FlankModification(helix_crowning=5e-6))
     aligned = {"normal_forces": FORCES, "positions": 32}
@@ -142,7 +140,7 @@ def test_what_needs_the_face_is_compared_over_it() -> None:
     assert {solved_in(one) for one in needing} == {FACE}
 
 
-def test_an_accuracy_study_goes_on_without_a_record_and_says_so(table: SteDatabase) -> None:
+def test_an_accuracy_study_goes_on_without_a_record_and_says_so(table):
     request = table_request(normal_forces=FORCES, positions=32)
     beside = frontier(PAIR, *request, fidelities=FIDELITIES, full_contact=2, records=[record(table, 4)])
     assert RUN.figures(beside)["full_contact"]["mean_error"] == pytest.approx(SOFTER - 1.0, rel=1e-3)
@@ -155,7 +153,7 @@ def test_an_accuracy_study_goes_on_without_a_record_and_says_so(table: SteDataba
             frontier(PAIR, *request, fidelities=FIDELITIES, full_contact=wrong)
 
 
-def test_plane_strain_is_within_half_a_per_cent_of_recorded_curves() -> None:
+def test_plane_strain_is_within_half_a_per_cent_of_recorded_curves():
     """The 20/20 pair of the examples: two solvers that share neither compliance nor contact."""
     gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
     pair = GearPair(gear, gear, center_distance=80e-3)
@@ -171,7 +169,7 @@ def test_plane_strain_is_within_half_a_per_cent_of_recorded_curves() -> None:
     assert found.record.mesh_error < 5e-3
 
 
-def test_every_record_that_comes_with_the_study_names_its_version_and_has_solutions() -> None:
+def test_every_record_that_comes_with_the_study_names_its_version_and_has_solutions():
     records = full_contact_records()
     assert len(records) > 2
     for one in records:
