@@ -66,7 +66,6 @@ def test_modes_on_a_solid_are_those_of_the_command_line(served, monkeypatch):
     kept = sorted((folder / "data" / "housings").glob("*.nc"))
     assert [each.name[:4] for each in kept] == ["hous", "mesh"]
     cost = ReducedHousing.from_netcdf(kept[0]).cost
-    assert cost is not None
     own = found.metadata["reduction_cost"]["case"]
     assert (own["seconds"], own["predicted_seconds"]) == (cost.seconds, cost.predicted_seconds)
 

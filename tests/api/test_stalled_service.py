@@ -48,7 +48,6 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Process]:
     settings, log = {"LOA_DATA_DIRECTORY": str(directory / "data")}, directory / "log"
     serve = ("-m", "lineofaction.cli", "serve", "--port", 0)
     with log.open("wb") as stream, python(*serve, settings=settings, stderr=stream) as process:
-        assert process.stdout is not None
         address = process.stdout.readline().rpartition(" ")[2].strip()
         try:
             answer = httpx2.post(f"{address}/v1/cases/from-toml", json={"toml": ""}, timeout=PATIENCE_S)

@@ -108,7 +108,6 @@ def test_health_is_answered_while_every_thread_waits(tmp_path):
     """Else a supervisor would restart a service that is well."""
     app = create_app(Settings(data_directory=tmp_path), REGISTRY)
     with TestClient(app) as client, ThreadPoolExecutor(2) as pool:
-        assert client.portal is not None
 
         async def all_threads() -> tuple[CapacityLimiter, list[int]]:
             limiter = current_default_thread_limiter()

@@ -100,8 +100,6 @@ def scripts(browser: Browser, address: str) -> Iterator[Page]:
 def closed_forms() -> ModuleType:
     """Return the small database and run that the report's other tests use."""
     spec = importlib.util.spec_from_file_location("closed_forms", CLOSED_FORMS)
-    assert spec is not None
-    assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module

@@ -122,7 +122,6 @@ def test_zoomed_in_nothing_is_cut_off_or_covered(visit, width):
     page.set_viewport_size({"width": width, "height": 450})
     until(lambda: page.evaluate("document.documentElement.scrollWidth") <= width)  # plots follow in a moment
     thing, panels = (page.locator(name).bounding_box() for name in ("#thing", "#panels"))
-    assert thing is not None and panels is not None
     assert thing["y"] + thing["height"] <= panels["y"], "one column"
     page.locator("#stage").focus()
     for stop in stops(page, 6):

@@ -53,7 +53,6 @@ def test_a_card_has_the_ripple_and_the_figures_of_its_table(seen, gallery):
     expect(card).to_contain_text(f"{level} dB re 1 µm")
     expect(card).to_contain_text(re.compile(r"CPU time[\d.]+ s"))
     drawn = card.locator("polyline").get_attribute("points")
-    assert drawn is not None
     heights = [float(point.partition(",")[2]) for point in drawn.split()]
     assert len(heights) == 49
     assert heights[:25] == pytest.approx(heights[24:], abs=0.2), "a pitch is as the next one"

@@ -166,7 +166,6 @@ def test_pressure_follows_a_slider(view):
 def test_a_tooth_that_is_clicked_says_its_place_and_its_load(view):
     page = view.page
     box = page.locator(CANVAS).bounding_box()
-    assert box is not None
     said = page.locator("#view [role=status]")
     texts = []
     for part in np.linspace(0.3, 0.8, 12):
@@ -193,7 +192,6 @@ def test_a_unit_turns_when_its_file_opens_and_a_mesh_that_is_clicked_opens_its_p
     assert np.any((marked[..., 0] > 1.5 * marked[..., 2]) & (marked[..., 0] > 120)), "marked in orange"
     assert found_inaccessible(page, "#unit") == {}
     box = page.locator(CANVAS).bounding_box()
-    assert box is not None
     for part in np.linspace(0.3, 0.7, 12):
         page.mouse.click(box["x"] + part * box["width"], box["y"] + 0.5 * box["height"])
         if "click a mesh" not in said.inner_text():

@@ -69,7 +69,6 @@ def times(of: Locator) -> list[float]:
 def clicked(of: Locator, part: float) -> float:
     """Click on a plot at a part of its width, between its curves; return the speed there by its axis."""
     box = of.locator(".nsewdrag").first.bounding_box()
-    assert box is not None
     of.page.mouse.click(box["x"] + part * box["width"], box["y"] + 0.6 * box["height"])
     low, high = of.locator(".plot").evaluate("node => node.layout.xaxis.range")
     return float(low + part * (high - low))
@@ -88,8 +87,6 @@ def test_the_cursor_is_at_the_speed_of_the_sound(order_map):
     expect(order_map.locator("output")).to_have_text("540.0 rpm")  # TOP 1.2 / DURATION
     low, high = order_map.locator(".plot").evaluate("node => node.layout.xaxis.range")
     area, cursor = (order_map.locator(name).first.bounding_box() for name in (".nsewdrag", ".cursor"))
-    assert area is not None
-    assert cursor is not None
     expected = area["x"] + (540.0 - low) / (high - low) * area["width"]
     assert cursor["x"] + 1.0 == pytest.approx(expected, abs=1.5)
     assert cursor["height"] == pytest.approx(area["height"], abs=1.0)

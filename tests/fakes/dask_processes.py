@@ -100,7 +100,6 @@ class DaskProcesses:
         self.start_workers(number)
 
     def end_scheduler(self) -> None:
-        assert self.scheduler is not None
         self.scheduler.kill()
         self.scheduler.wait()
 

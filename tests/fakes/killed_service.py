@@ -55,7 +55,6 @@ class Part:
 
     @property
     def pid(self) -> int:
-        assert self.process is not None
         return self.process.pid
 
     def heeds_stops(self) -> bool:
@@ -65,7 +64,6 @@ class Part:
         return bool(caught >> (signal.SIGTERM - 1) & 1)
 
     def end(self, number: signal.Signals) -> int:
-        assert self.process is not None
         self.process.send_signal(number)
         return self.process.wait(timeout=PATIENCE_S)
 

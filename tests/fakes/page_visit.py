@@ -89,7 +89,6 @@ def bare(browser: Browser, address: str) -> Page:
     """Open a file of the page by itself: its modules can be imported, and nothing is drawn or asked."""
     page = _tab(browser, address)
     answer = page.goto(f"{address}/page/style.css")
-    assert answer is not None
     assert answer.ok
     return page
 

@@ -40,7 +40,6 @@ def service(
         stderr=subprocess.DEVNULL,
         text=True,
     ) as process:
-        assert process.stdout is not None
         line = process.stdout.readline()
         yield process, line[line.index("http://") :].strip()
         process.terminate()

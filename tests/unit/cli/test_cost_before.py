@@ -180,7 +180,6 @@ def test_contacts_of_a_deflection_come_with_their_errors(monkeypatch):
     monkeypatch.setattr(deflect, "predicted_designs", priced)
     scene, folder = scene_of(EXAMPLES / "flexible_shafts_scene.toml")
     cost = study_cost(STUDIES["deflect"], scene, folder, STUDIES["deflect"].inputs())
-    assert cost is not None
     parts = {part.name: part for part in cost.parts}
     assert parts["contacts"].piece_seconds == 3.0
     assert parts["deflections"].pieces == 4  # of one load case: before, and in three passes
@@ -262,7 +261,6 @@ def test_a_study_costs_its_runs_and_the_contact_of_other_flanks(samples, monkeyp
     for path, contacts in (("loads.brake.torque_n_m", 0), ("meshes.mesh.case.pair.pinion.tip_relief_um", 4)):
         inputs = validated(study.inputs, study_inputs(4, path, samples))
         cost = study_cost(study, scene, folder, inputs)
-        assert cost is not None
         pieces = {part.name: part.pieces for part in cost.parts}
         assert pieces["runs"] == 4 * samples
         assert pieces.get("contacts", 0) == contacts
@@ -330,7 +328,6 @@ def test_the_band_of_a_sound_costs_as_many_responses_as_it_has(housed, monkeypat
     part = scene.housings[0].model_copy(update={"feet": (foot,)})
     mounted = scene.model_copy(update={"housings": (part,)})
     stands, hangs = (study_cost(study, own, folder, inputs) for own in (scene, mounted))
-    assert stands is not None and hangs is not None
     assert (stands.parts[-1].pieces, hangs.parts[-1].pieces) == (len(responses), len(responses) + 2)
     assert study_cost(study, scene, folder, alone) == StudyCost(stands.parts[:-1])
 
@@ -362,7 +359,6 @@ def test_more_points_have_more_lines_up_to_the_most(housed):
 
     def pieces(**fields: Any) -> float:
         cost = study_cost(study, scene, folder, validated(study.inputs, {"speed_rpm": SPEEDS[:6], **fields}))
-        assert cost is not None
         return next((part.pieces for part in cost.parts if "boundary" in part.name), 0.0)
 
     assert [pieces(orders=6), pieces(speed_rpm=SPEEDS, orders=10)] == [3, 4]
@@ -380,7 +376,6 @@ def test_a_change_costs_two_contacts_a_pair_and_two_of_the_designs():
     for samples in (10, 40):
         inputs = validated(study.inputs, CHANGE | {"tolerances": {"samples": samples}})
         cost = study_cost(study, scene, folder, inputs)
-        assert cost is not None
         assert [part.pieces for part in cost.parts] == [1, 2 * samples + 2]
 
 

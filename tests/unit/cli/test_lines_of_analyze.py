@@ -203,7 +203,6 @@ def test_json_holds_the_warning_and_the_passes(tmp_path):
 def test_the_draft_is_one_line_at_the_highest_load(draft):
     line = draft_line(draft, "slices 15 -> 23")
     found = re.fullmatch(r"draft: mean (.+) ± .+ µm, p-p (.+) ± .+ µm at 5 N m \(refining (.+)\)", line)
-    assert found is not None
     assert float(found[1]) == pytest.approx(1e6 * draft.mean(torque=5.0).value, rel=1e-3)
     assert float(found[2]) == pytest.approx(1e6 * draft.peak_to_peak(torque=5.0).value, rel=1e-3)
     assert found[3] == "slices 15 -> 23"

@@ -52,7 +52,6 @@ def test_figures_are_those_of_the_curve_with_two_digits_of_the_error(answer, cur
     for name, key in (("mean", "mean_um"), ("peak to peak", "peak_to_peak_um")):
         (line,) = (line for line in answer if line.startswith(f"  {name} "))
         found = re.match(rf"  {name} +([\d.]+) +± ([\d.]+) µm", line)
-        assert found is not None
         places = len(found[2].partition(".")[2])
         assert places == len(found[1].partition(".")[2]) and 9.5 < float(found[2]) * 10.0**places < 100.0
         last = 0.51 * 10.0**-places

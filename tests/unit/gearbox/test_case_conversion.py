@@ -192,7 +192,6 @@ def test_rim_web_and_hub_arrive_in_si_and_their_errors_in_mm():
         "web_offset_mm": -2.0,
     }
     blank = gear_pair(case(blank=given)).pinion.blank
-    assert blank is not None
     found = (blank.rim_thickness, blank.web_thickness, blank.hub_diameter, blank.web_offset)
     assert found == pytest.approx((8e-3, 10e-3, 45e-3, -2e-3), rel=1e-15)
     with assert_refused("pair.pinion.blank.rim_thickness_mm", "12.5 mm") as faults:
@@ -206,7 +205,6 @@ def test_a_seat_arrives_in_si_and_its_errors_in_mm():
     }
     key = {"width_mm": 12.0, "angle_deg": 180.0}
     seat = gear_pair(case(seat=given | {"width_mm": 20.0, "offset_mm": -2.0, "key": key})).pinion.seat
-    assert seat.key is not None
     assert (seat.key.width, seat.key.angle) == (pytest.approx(12e-3, rel=1e-15), math.pi)
     assert seat.key_modulus == pytest.approx(2e12, rel=1e-15)
     seat = replace(seat, key=None)
@@ -375,7 +373,6 @@ def test_a_file_is_read_beside_the_case_whatever_the_order_of_its_rows(tmp_path)
     shuffled = random.Random(3).sample(ROWS, len(ROWS))
     case = read_model(Case, written(tmp_path, "\ufeff# measured", HEADING, "", *shuffled))
     grid = gear_pair(case).pinion.modification.flank_grid
-    assert grid is not None
     assert grid.roll_length == pytest.approx((4.5e-3, 10e-3, 19e-3), rel=1e-12, abs=0.0)
     assert grid.face_position == pytest.approx((-12.5e-3, 0.0, 12.5e-3), rel=1e-12, abs=1e-18)
     assert grid.removed[2] == pytest.approx((-23.75e-6, 0.0, 23.75e-6), rel=1e-12, abs=1e-18)
@@ -488,7 +485,6 @@ def test_flanks_of_teeth_arrive_in_si():
     (found,) = pinion.tooth_flanks
     assert (found.tooth, found.helix_form_waves) == (3, 4)
     assert (found.profile_slope, found.helix_form) == pytest.approx((2e-6, -1e-6), rel=1e-15)
-    assert found.flank_grid is not None
     assert found.flank_grid.removed[1] == pytest.approx((1e-6, 2e-6), rel=1e-15)
     assert pinion.pitch_deviation.individual[:2] == pytest.approx((0.95e-6, -0.05e-6), rel=1e-12)
 

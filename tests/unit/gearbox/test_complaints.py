@@ -377,7 +377,6 @@ def test_a_run_keeps_what_its_scene_complains_of(tmp_path):
     done = CliRunner().invoke(app, ["simulate", str(tmp_path / "scene.json"), "-o", str(tmp_path / "run.nc")])
     assert done.exit_code == 0, done.stderr
     marks = read_inputs([tmp_path / "run.nc"]).marks
-    assert marks is not None
     assert marks["meshes"] == {
         "mesh 0": {"order": approx(2.0 / 3.0), "driver_rpm": approx(3000.0), "torque_n_m": None},
         "mesh 1": {"order": approx(2.0), "driver_rpm": approx(3000.0 * 25 / 63), "torque_n_m": None},

@@ -81,7 +81,6 @@ def test_the_thrust_of_drive_and_coast_goes_where_the_file_says(arrangement):
 
 def test_a_catalog_line_is_stated_as_it_is():
     (bearing, *_) = by_name(OpenedUnit.of(on_lines({"axial_force_absorption": "both_directions"}))).values()
-    assert bearing.catalog is not None
     stated = {"bore_mm": 25.0, "outside_diameter_mm": 62.0, "static_rating_n": 11600.0, "clearance_um": 10.0}
     assert bearing.catalog.model_dump() == stated
     assert (bearing.position_mm, bearing.dynamic_capacity_n) == (pytest.approx(15.0), 23400.0)  # type: ignore[attr-defined]
@@ -197,7 +196,6 @@ def test_clearance_and_preload_of_a_contact_angle_are_along_the_axis(values, cle
     found = by_name(OpenedUnit.of(inside(*own)))
     for number, sign in ((LEFT, -1.0), (RIGHT, 1.0)):
         bearing = found[number]
-        assert bearing.roller is not None
         assert bearing.roller.clearance_um == pytest.approx(clearance, abs=1e-9)  # type: ignore[attr-defined]
         assert bearing.axial_preload_n == sign * preload  # type: ignore[attr-defined]
 
@@ -306,7 +304,6 @@ ROLES = {"support_vector", "u_axis_vector", "w_axis_vector", "reference_componen
 @needs_reference
 def test_cross_located_pairs_of_a_real_unit_hold_outwards():
     unit = OpenedUnit.of(read_rexs(reference("examples/SEW_3-stage_cylindrical_gearbox_1.0.rexs")))
-    assert unit.scene is not None
     found = [(b.shaft, b.position_mm, b.locating) for b in unit.scene.rolling_bearings]  # type: ignore[attr-defined]
     shafts = {shaft for shaft, *_ in found}
     arranged = {shaft: [seat for _, _, seat in sorted(b for b in found if b[0] == shaft)] for shaft in shafts}

@@ -133,7 +133,6 @@ def test_a_train_without_a_load_at_its_other_end_is_loaded_at_the_shaft():
 def test_a_disc_has_a_mass_above_zero_or_is_left_out(mass):
     stated = {"u_coordinate_on_shaft": 150.0} | ({} if mass is None else {"mass_of_component": mass})
     unit = OpenedUnit.of(two_stages(more={MACHINE: ("additional_mass", stated)}))
-    assert unit.scene is not None
     whole = mass is not None and mass > 0.0
     assert [disc.inertia.mass_kg for disc in unit.scene.discs] == ([mass] if whole else [])
     assert (said(unit, MACHINE, "") == ("refused", "no mass is stated")) != whole
@@ -143,7 +142,6 @@ def test_teeth_below_zero_make_no_ring_of_an_external_gear():
     unit = OpenedUnit.of(two_stages({GEARS[0]: {"number_of_teeth": -20}}))
     fate, words = said(unit, STAGES[0], "")
     assert fate == "refused" and "number_of_teeth = -20" in words and "above 0" in words
-    assert unit.scene is not None
     (drive,) = unit.scene.drives  # of the second stage, which turns against the motor
     assert drive.speed_rpm == (pytest.approx(-NORMAL_SPEED / 3.0),)
 
@@ -194,7 +192,6 @@ def test_sections_without_a_place_are_summed_in_order():
     unit = OpenedUnit.of(
         two_stages({130: {"u_coordinate_on_shaft": None}, 131: {"u_coordinate_on_shaft": None}})
     )
-    assert unit.scene is not None
     assert unit.scene.shafts[0].length_mm == pytest.approx(150.0, rel=1e-12)
     assert said(unit, 131, "u_coordinate_on_shaft") == ("derived", "50 mm, the sum of the lengths before it")
 
@@ -258,7 +255,6 @@ def test_a_bearing_between_two_shafts_leaves_their_speeds_alone():
     sides = relation(2000, "side", assembly=60, inner_part=INPUT, outer_part=OUTPUT)
     more = {60: ("concept_bearing", {"radial_stiffness": 1e8, "u_coordinate_on_shaft_inner_side": 150.0})}
     unit = OpenedUnit.of(two_stages(changes, more=more, further=[sides]))
-    assert unit.scene is not None
     (coupling,) = unit.scene.couplings
     assert coupling.torsional_stiffness_n_m_per_rad == 0.0
     assert np.diag(coupling.stiffness_matrix) == pytest.approx([1e8, 1e8, 0.0, 0.0, 0.0, 0.0])

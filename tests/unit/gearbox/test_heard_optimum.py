@@ -166,7 +166,6 @@ def predicted(**heard: Any) -> dict[str, list[Work]]:
     question = inputs(**heard)
     subject = SceneInput.model_validate(scene())
     cost = RUN.predicted(subject, Inputs.model_validate(question), None)
-    assert cost is not None
     return {part.name: [own for own in cost.parts if own.name == part.name] for part in cost.parts}
 
 

@@ -39,7 +39,6 @@ def test_the_surface_by_its_amplitudes_is_that_of_the_reduction(mounted, maximum
     hull, moved = amplitudes_move(subject)
     assert len(hull.facets) <= maximum
     surface, modal = mounted.surface, modal_housing(subject.scene.housings[0])
-    assert surface is not None
     distance, node = cKDTree(surface.points).query(hull.points)
     assert distance.max() < 1e-7, "points that are drawn are points of the mesh"
     over = np.diag([1.0] * 5 + [1.0, -1.0, -1.0, 1.0, -1.0])  # its y and z are turned over

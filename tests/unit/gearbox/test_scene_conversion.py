@@ -179,13 +179,11 @@ def test_a_coast_flank_has_the_thickness_of_teeth_that_share_the_pitch():
 
     given = {"backlash_um": 1e6 * backlash}
     found = scene({"meshes[0].coast_flank": given}).meshes[0].coast
-    assert found is not None
     assert found.backlash == pytest.approx(backlash, rel=1e-12)
     assert found.thickness == pytest.approx(drawn, rel=1e-9)
 
     given = {"backlash_um": 80.0, "tooth_thickness": 0.4}
     told = scene({"meshes[0].coast_flank": given}).meshes[0].coast
-    assert told is not None
     assert told.thickness == 0.4
     assert scene().meshes[0].coast is None
 

@@ -59,7 +59,6 @@ def table() -> SteDatabase:
 
 def of_stage(document: Document) -> dict[str, Attribute]:
     stage = document.model.component(STAGE)
-    assert stage is not None
     return {entry.id: entry for entry in stage.attributes if entry.origin == "calculated"}
 
 
@@ -131,7 +130,6 @@ def test_equal_stages_have_equal_results():
     written = exported(Document(model), [replace(stage, equal=(21,))], [table()])
     first, second = (written.model.component(number) for number in (STAGE, 21))
     assert first is not None
-    assert second is not None
     assert set(second.attributes) == set(of_stage(written).values()) != set()
 
 

@@ -84,10 +84,8 @@ def test_processes_that_need_a_loop_at_once_compile_it_once(tmp_path):
     with ExitStack() as stack:
         children = [stack.enter_context(command()) for _ in range(3)]
         for child in children:
-            assert child.stdout is not None
             assert child.stdout.readline() == "ready\n"
         for child in children:
-            assert child.stdin is not None
             child.stdin.write("\n")
             child.stdin.flush()
         compiled = [int(child.communicate()[0]) for child in children]

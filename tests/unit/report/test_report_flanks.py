@@ -47,7 +47,6 @@ def test_the_pattern_passes_through_the_pressures_that_were_computed(flanks):
         assert np.all(shade.z[:, -1] == 0.0)
         assert shade.largest == pytest.approx(1e-6 * flanks.pressure.max())
         assert 0.0 < shade.isolines[0] < shade.isolines[-1] < shade.largest
-        assert panel.y.limits is not None
         assert panel.y.limits[0] < shade.y[0] < shade.y[-1] < panel.y.limits[1]
 
 

@@ -89,7 +89,6 @@ def test_the_band_is_half_the_error_of_peak_to_peak(database):
 
 def test_the_table_has_every_load_with_its_error(database):
     table = ste_curves(database).table
-    assert table is not None
     assert [row[0] for row in table.rows] == ["0.4 N m", "10 N m", "100 N m", "400 N m"]
     assert table.rows[2][2] == "5.978 ± 0.012"
 
@@ -245,7 +244,6 @@ def test_an_axis_of_one_value_has_no_panel(deviating):
 
 def test_the_table_names_every_deviation_with_its_unit(deviating):
     table = deviation_curves(deviating).table
-    assert table is not None
     assert [row[0] for row in table.rows] == [
         "misalignment -20.0 µm", "misalignment 0 µm", "misalignment 40.0 µm",
         "change of the center distance 0 mm", "change of the center distance 0.100 mm",

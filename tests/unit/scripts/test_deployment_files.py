@@ -182,7 +182,6 @@ def test_pods_have_the_least_rights(part):
     spec, only = pods()[part], container(part)
     assert spec["automountServiceAccountToken"] is False
     user = re.search(r"--uid (\d+)", dockerfile())
-    assert user is not None
     assert (spec["securityContext"]["runAsNonRoot"], spec["securityContext"]["runAsUser"]) == (
         True,
         int(user[1]),
@@ -196,7 +195,6 @@ def test_pods_have_the_least_rights(part):
     for bound in ("requests", "limits"):
         assert set(only["resources"][bound]) == {"cpu", "memory"}
     place = re.search(r"LOA_DATA_DIRECTORY=(\S+)", dockerfile())
-    assert place is not None
     writable = [mount["mountPath"] for mount in only["volumeMounts"] if not mount.get("readOnly")]
     assert "/tmp" in writable and any(Path(place[1]).is_relative_to(path) for path in writable)
 

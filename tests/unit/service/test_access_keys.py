@@ -33,7 +33,6 @@ def test_a_key_opens_and_is_nowhere_on_disk(file):
     assert len(secret) >= 43, "256 bits"
     assert secret not in file.path.read_text()
     holder = Keyring(file).holder(secret)
-    assert holder is not None
     assert (holder.name, holder.requests_per_minute, holder.unfinished_jobs) == ("bench", 60, None)
 
 
@@ -172,7 +171,6 @@ def test_a_key_of_before_there_were_scopes_may_do_what_it_did(file):
     former = {name: entry[name] for name in ("name", "sha256", "created", "requests_per_minute")}
     file.path.write_text(json.dumps({"keys": [former | {"of_a_later_program": 1}]}))
     holder = Keyring(file).holder(secret)
-    assert holder is not None
     assert (set(holder.scopes), holder.project, holder.expires) == (set(Scope), "", None)
 
 
@@ -220,7 +218,6 @@ def test_rotation_leaves_the_old_key_the_overlap_and_the_new_one_all_rights(file
     new = file.rotate("bench", overlap="7d")
     keyring = Keyring(file)
     before, after = keyring.holder(old), keyring.holder(new)
-    assert before is not None and after is not None
     for key in (before, after):
         assert (key.name, key.project, key.scopes, key.streams) == ("bench", "axle", (Scope.READ,), 3)
     assert before.ends_within(timedelta(days=7)) and not before.ends_within(timedelta(days=6, hours=23))

@@ -24,7 +24,6 @@ LOA = ("-m", "lineofaction.cli")
 def serving(folder: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
     """Serve on a free port; gives the process and its address."""
     process = python(*LOA, "serve", "--port", 0, "--data-directory", folder, stderr=subprocess.PIPE)
-    assert process.stdout is not None
     line = process.stdout.readline()
     assert line, process.communicate()
     yield process, line.rpartition(" ")[2].strip()

@@ -77,7 +77,6 @@ def test_rows_are_matched_in_their_order():
     before = assemble(coasting())
     after = assemble(replace(coasting(), effects={"gyroscopic": "on", "backlash": "on"}))
     rows = added_rows(before, after)
-    assert rows is not None
     np.testing.assert_array_equal(after.arrays.direction[rows], before.arrays.direction)
     assert rows.tolist() == [0, *range(2, after.arrays.direction.shape[0])]
     assert added_rows(after, before) is None

@@ -15,7 +15,6 @@ BLANK = GearBlank(rim_thickness=12e-3, web_thickness=10e-3, hub_diameter=60e-3, 
 
 def test_the_web_lies_where_the_drawing_says():
     web = replace(GEAR, blank=BLANK).web
-    assert web is not None
     assert web.outer_radius == pytest.approx(GEAR.root_radius - 12e-3, rel=1e-15)
     assert (web.inner_radius, web.low, web.high) == pytest.approx((30e-3, -2e-3, 8e-3), rel=1e-12)
     assert replace(GEAR, blank=replace(BLANK, hub_diameter=None)).web.inner_radius == 20e-3  # type: ignore[union-attr]

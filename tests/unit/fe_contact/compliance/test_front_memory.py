@@ -51,7 +51,6 @@ def test_all_factors_lie_in_one_piece_of_the_named_size():
     tree, freedoms, stiffness = sheet()
     _, condensation = condense(tree, freedoms, stiffness)
     owner = condensation.factors[0].factor.base
-    assert owner is not None
     assert owner.size == tree.factor_entries
     assert all(part.factor.base is owner and part.coupling.base is owner for part in condensation.factors)
 

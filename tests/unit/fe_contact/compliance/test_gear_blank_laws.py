@@ -87,7 +87,6 @@ def test_torsion_of_web_and_hub_is_that_of_tubes_in_the_plane():
     """A moment at the rim's inside turns it against hub and bore by (1/r_i^2 - 1/r_o^2) / (4 pi G b)."""
     gear, recipe = with_blank(), coarse_plane(SOLID)
     mesh, web = mesh_gear(gear, recipe), gear.web
-    assert web is not None
     ring = condensed_ring(gear, mesh, PlaneHypothesis.PLANE_STRESS)
     radius = np.linalg.norm(mesh.points, axis=1)
     rim, hub = (np.flatnonzero(np.abs(radius - r) < 1e-9) for r in (web.outer_radius, web.inner_radius))
@@ -147,7 +146,6 @@ def test_a_web_off_the_middle_tilts_the_rim_and_its_mirror_image_the_other_way()
 def test_a_left_hand_gear_keeps_its_web_on_its_side():
     left = replace(SOLID, helix_angle=-math.radians(20.0), blank=replace(BLANK, web_offset=6e-3))
     found = solid_3d(left)
-    assert left.web is not None
     for face in (left.web.low, left.web.high):
         assert np.abs(found.z - face).min() < 1e-15
     alone = flank_compliance_3d(left, six_layers(left))

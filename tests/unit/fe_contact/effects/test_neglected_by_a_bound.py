@@ -101,7 +101,6 @@ def test_what_is_neglected_changes_less_than_its_bound_and_the_tolerance(seed):
         scene, decision = checked.assessing(name)
         influence = estimate_influence(scene, decision, name)
         extent = scene.effect(name).extent(scene)
-        assert influence is not None
         assert np.all(np.abs(influence.mean) <= extent.reach + 1e-12)
         assert np.all(np.abs(influence.peak_to_peak) <= extent.span + 1e-12)
         bounds.append(largest_part(extent, influence.full.mean, influence.full.peak_to_peak, allowed))

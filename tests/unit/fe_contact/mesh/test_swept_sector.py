@@ -225,11 +225,9 @@ def test_plane_elements_are_as_thick_as_their_ring(hub, real):
     gear = replace(SOLID, blank=replace(BLANK, hub_diameter=hub, web_offset=0.0))
     recipe = replace(MeshRecipe.standard(gear), flank_size=0.4e-3, real_teeth=real)
     mesh = mesh_gear(gear, recipe)
-    assert mesh.hub is not None
     points = mesh.hub.points[mesh.hub.triangles]
     radius = np.linalg.norm(points[:, :3].mean(axis=1), axis=1)
     web = gear.web
-    assert web is not None
     inside = (radius < web.outer_radius) & (radius > web.inner_radius)
     assert mesh.hub.thickness[inside] == pytest.approx(9.0 / 40.0, rel=1e-12)
     assert (mesh.hub.thickness[~inside] == 1.0).all()

@@ -253,7 +253,6 @@ def test_what_decides_of_an_order_is_what_makes_it(above):
         and above.cured[0] > above.cured.min()
     )
     turning = study_of(OrderLimit(0, 4e-6, "pinion", 1)).above
-    assert turning is not None
     assert turning.decides == turning.cure == 0 and turning.total[0] > 0.9
     eccentric = np.abs(TEETH.drawn(500, 3, after=1).by_axis[RUN_OUT])
     # pitches that accumulate have a part in it

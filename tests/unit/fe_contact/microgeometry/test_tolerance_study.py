@@ -140,7 +140,6 @@ def test_a_limit_counts_pairs_and_finds_what_decides():
     sampling = Sampling(samples=2000, seed=3, positions=16, exact=60)
     options = AnalysisOptions(**DRAFT)
     above = scatter(PAIR, TORQUES, SLOPES, sampling, options, limit=limit).above
-    assert above is not None
     np.testing.assert_array_equal(above.share, (above.amplitude > limit.amplitude).mean(axis=0))
     assert np.all((above.low <= above.share) & (above.share <= above.high))
     assert 0.0 < above.share[above.load] == above.share.max() < 1.0
@@ -156,7 +155,6 @@ def test_a_limit_counts_pairs_and_finds_what_decides():
     # with the tolerance of a class finer, drawn anew
     finer = Tolerances(0.0, dict(SLOPES.modification) | {"pinion.profile_slope": 10e-6 / np.sqrt(2.0)})
     other = scatter(PAIR, TORQUES, finer, sampling, options, limit=limit).above
-    assert other is not None
     assert other.share[above.load] == pytest.approx(above.cured[0], abs=0.02)
 
 

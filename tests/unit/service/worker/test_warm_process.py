@@ -31,7 +31,6 @@ def warm_process(machine: Bench) -> int:
     """Return the process id of the warm process, once it is warm."""
     launcher = machine.scheduler._crew._launcher
     until(lambda: launcher.warm)
-    assert launcher._server is not None
     return launcher._server._process.pid
 
 

@@ -88,7 +88,6 @@ def test_the_deck_has_short_fields_and_surfaces_for_every_pair(placed):
     assert deck.count("*CONTACT PAIR") == len(placed.meetings) == 2
     for number, (_, tooth) in enumerate(placed.meetings):
         surface = re.search(rf"NAME=GEAR2FLANK{number}, TYPE=ELEMENT\n((?:\d+,S\d\n)+)", deck)
-        assert surface is not None
         assert len(surface.group(1).split()) == len(flank_sides(placed.gears[1], tooth))
     assert "\n1.000000000000e+09\n" in deck  # 1e18 Pa/m in N/mm^3
 
