@@ -428,7 +428,7 @@ def test_a_dismissed_job_has_no_result(runs):
     gone = http.get(f"{place}/results")
     assert (gone.status_code, gone.headers["content-type"]) == (410, "application/problem+json")
     assert gone.json()["type"].endswith("job-dismissed")
-    counts = http.app.state.context.submissions.counts  # type: ignore[attr-defined]
+    counts = http.app.state.context.submissions.counts
     until(lambda: not {"accepted", "running"} & set(counts()))
     assert http.get(place).json()["status"] == "dismissed"
 

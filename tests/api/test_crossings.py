@@ -114,7 +114,7 @@ def two() -> Any:
         "revoked": {"project": "axle"},
     }
     rights |= {f"no {s}": {"project": "axle", "scopes": [o for o in Scope if o != s]} for s in Scope}
-    keys = {who: _keys.add(who.replace(" ", "-"), **of) for who, of in rights.items()}  # type: ignore[arg-type]
+    keys = {who: _keys.add(who.replace(" ", "-"), **of) for who, of in rights.items()}
     _keys.remove("revoked")
     _let_expire("expired")
     with TestClient(APP, raise_server_exceptions=False) as http:

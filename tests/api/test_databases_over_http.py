@@ -61,7 +61,7 @@ def test_metadata_is_the_default_and_in_boundary_units(client):
 
 
 def test_a_damaged_table_is_refused_not_served(client):
-    store = client.app.state.context.store  # type: ignore[attr-defined]
+    store = client.app.state.context.store
     path = store.verified(KEY, "database").path
     path.write_bytes(path.read_bytes()[:-1] + b"?")
     answer = client.get(f"/v1/results/{KEY}", headers=NETCDF)

@@ -32,7 +32,7 @@ def entered(client: TestClient, process: str = "analyze", relief: float = 0.0, *
     body = {"inputs": {"case": CASE | {"pair": CASE["pair"] | {"pinion": pinion}}}}
     answer = client.post(f"/v1/processes/{process}/execution", json=body, headers=headers)
     assert answer.status_code == 201, answer.text
-    return answer.json()  # type: ignore[no-any-return]
+    return answer.json()
 
 
 def relieved(before: float, value: float) -> list[Json]:
@@ -63,7 +63,7 @@ def test_the_first_job_is_compared_with_the_defaults(client):
 
 def test_differences_outlast_the_job_before(client):
     first, second = entered(client), entered(client, relief=20.0)
-    with writing(client.app.state.context.engine) as connection:  # type: ignore[attr-defined]
+    with writing(client.app.state.context.engine) as connection:
         connection.execute(delete(jobs).where(jobs.c.id == first["jobID"]))
     assert client.get(f"/v1/jobs/{second['jobID']}").json()["differences"] == second["differences"]
 

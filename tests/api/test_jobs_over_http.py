@@ -108,7 +108,7 @@ def test_every_refusal_is_a_problem(client, method, path, status, kind):
 
 
 def test_an_unknown_exception_becomes_a_reference(client, monkeypatch):
-    context = client.app.state.context  # type: ignore[attr-defined]
+    context = client.app.state.context
 
     def explode(_identifier: str) -> None:
         raise RuntimeError(SECRET)

@@ -82,7 +82,7 @@ def test_nothing_is_lost_when_parts_are_killed_at_random_moments(service, tmp_pa
         ends = service.settled()
         assert {end["status"] for end in ends.values()} == {"successful"}, ends
         for text in {*service.jobs.values()}:
-            until(lambda text=text: text in service.witness.served)  # type: ignore[misc]
+            until(lambda text=text: text in service.witness.served)
         revived = service.server.revived
         assert service.stop() == 0
         until(lambda: service.marked() == [])
@@ -134,7 +134,7 @@ def test_kills_of_the_server_cost_a_job_no_attempt(tmp_path):
         service.measure("undisturbed")
         service.submit("struck")
         for number in range(kills):
-            until(lambda number=number: service.revive() or starts(tmp_path) > 1 + number)  # type: ignore[misc]
+            until(lambda number=number: service.revive() or starts(tmp_path) > 1 + number)
             service.kill()
         ends = service.settled().values()
     assert starts(tmp_path) == 1 + kills + 1

@@ -134,7 +134,7 @@ def test_what_is_no_motion_is_refused(stored, key, number, status, words):
 
 
 def test_a_damaged_file_is_refused(stored):
-    file = Path(stored.http.app.state.context.store.verified(OLDER).path)  # type: ignore[attr-defined]
+    file = Path(stored.http.app.state.context.store.verified(OLDER).path)
     file.write_bytes(file.read_bytes()[:500])
     answer = stored.get(OLDER, number=0)
     assert answer.json()["detail"]

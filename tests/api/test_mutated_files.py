@@ -188,7 +188,7 @@ def left(place: Path) -> list[Any]:
 
 @pytest.mark.law
 def test_good_files_read_the_same_as_without_confinement(http, files, tmp_path, monkeypatch):
-    pool, orders, answers = http.app.state.context.reader, [], []  # type: ignore[attr-defined]
+    pool, orders, answers = http.app.state.context.reader, [], []
     ask = pool.ask
     monkeypatch.setattr(pool, "ask", lambda order, *rest: orders.append(order) or ask(order, *rest))
     for name, content, request in files:

@@ -105,7 +105,7 @@ def test_a_method_that_is_none_is_a_problem_and_says_which_are(client, path):
 def test_results_that_never_change_say_so_to_caches(client):
     file = Path(_directory.name) / "file.nc"
     file.write_bytes(b"table")
-    context = client.app.state.context  # type: ignore[attr-defined]
+    context = client.app.state.context
     context.store.put("1" * 64, "database", file)
     accept = {"Accept": "application/x-netcdf"}
     answer = client.get(f"/v1/results/{'1' * 64}", headers=accept)

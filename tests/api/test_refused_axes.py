@@ -53,7 +53,7 @@ def test_the_library_refuses_them(name, values):
     gear = Gear(20, 4e-3, 25e-3, 40e-3)
     loads = {} if name in ("torques", "normal_forces") else {"torques": [100.0]}
     with pytest.raises(InputError) as caught:
-        analyze(GearPair(gear, gear, 80e-3), **(loads | {name: values}))  # type: ignore[arg-type]
+        analyze(GearPair(gear, gear, 80e-3), **(loads | {name: values}))
     assert name in str(caught.value) and str(values) in str(caught.value)
     assert BOUND in str(caught.value)
 

@@ -43,7 +43,7 @@ def test_every_link_leads_to_what_it_says(service):
 
     linked = schema.include(path_regex=rf"/{SUBMITTED}/execution$|^/v1/jobs/")
 
-    class Walk(linked.as_state_machine()):  # type: ignore[misc]
+    class Walk(linked.as_state_machine()):
         """Walks along links; a job ends before the next step."""
 
         def get_call_kwargs(self, case: schemathesis.Case) -> dict[str, Any]:

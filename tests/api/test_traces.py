@@ -281,8 +281,7 @@ def test_a_request_is_followed_to_its_worker_and_what_that_took(log, tmp_path):
             answers[mode] = client.post(EXECUTION, json=body)
             until(
                 lambda where=answers[mode].headers["location"]: (
-                    client.get(where).json()["status"]  # type: ignore[misc]
-                    == "successful"
+                    client.get(where).json()["status"] == "successful"
                 )
             )
         shared = client.post(EXECUTION, json={"inputs": {"wish": {"mode": "hog"}}})

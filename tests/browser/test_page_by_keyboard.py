@@ -40,7 +40,7 @@ def test_the_first_stop_skips_to_the_design(browser, address):
     page.wait_for_selector("html[data-ready=yes]")
     page.keyboard.press("Tab")
     assert page.evaluate("document.activeElement.className") == "skip"
-    assert page.locator(".skip").bounding_box()["x"] >= 0  # type: ignore[index]
+    assert page.locator(".skip").bounding_box()["x"] >= 0
     page.keyboard.press("Enter")
     assert page.evaluate("document.activeElement.id") == "rail"
     page.keyboard.press("Tab")

@@ -207,7 +207,7 @@ def test_both_gears_are_drawn_and_roll(visit):
 )
 def test_the_page_is_accessible(browser, address, visit, scheme, width):
     page = visit.page
-    page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
+    page.emulate_media(color_scheme=scheme)
     page.set_viewport_size({"width": width, "height": 900})
     unfold(page)
     assert not (told := found_inaccessible(page)), json.dumps(told, indent=1)

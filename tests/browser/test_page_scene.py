@@ -174,7 +174,7 @@ def test_the_card_of_a_gear_unit_begins_with_what_is_left_out(visit):
     page = visit.page
     _, edit, _ = LEFT_OUT["hand of a wheel"]
     file = {"name": "hand.rexs", "mimeType": "application/xml", "buffer": edit(TWO_STAGE).encode()}
-    page.locator("#import-file").set_input_files(file)  # type: ignore[arg-type]
+    page.locator("#import-file").set_input_files(file)
     first = page.locator("#unit > :first-child")
     expect(first).to_contain_text('Left out of the scene: cylindrical_stage 22 "second stage" (line 326)')
     expect(page.locator("#unit > [role=alert]")).to_have_count(6)

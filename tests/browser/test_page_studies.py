@@ -168,7 +168,7 @@ def test_the_page_with_studies_is_accessible(visit, names, scheme, width):
     page = visit.page
     for name in names:
         ran(visit, name)
-    page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
+    page.emulate_media(color_scheme=scheme)
     page.set_viewport_size({"width": width, "height": 900})
     unfold(page)
     assert not (told := found_inaccessible(page)), json.dumps(told, indent=1)

@@ -34,7 +34,7 @@ def test_a_keyword_replaces_the_member_of_its_record():
 
 def test_a_keyword_that_is_none_is_refused():
     with pytest.raises(TypeError, match="no keyword 'torque'"):
-        analyze(PAIR, torque=[100.0])  # type: ignore[call-arg]
+        analyze(PAIR, torque=[100.0])
 
 
 def test_a_pair_without_loads_is_refused_by_their_field():

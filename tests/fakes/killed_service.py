@@ -106,7 +106,7 @@ class Witness:
                         self._look_at(client, job, text)
 
     def _get(self, client: httpx2.Client, path: str, **more: Mapping[str, str]) -> httpx2.Response:
-        answer = client.get(path, **more)  # type: ignore[arg-type]
+        answer = client.get(path, **more)
         self.answers[answer.status_code] += 1
         return answer
 
@@ -261,7 +261,7 @@ class KilledService:
         """Wait until every job has ended; return their states."""
         ends: dict[str, Any] = {}
         for job in self.jobs:
-            until(lambda job=job: self._ended(job, ends))  # type: ignore[misc]
+            until(lambda job=job: self._ended(job, ends))
         return ends
 
     def _ended(self, job: str, ends: dict[str, Any]) -> bool:

@@ -55,7 +55,7 @@ class Cluster:
         while len(self.alive) < count:
             command = [sys.executable, *WORKER, self.address]
             quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-            self.processes.append(subprocess.Popen(command, **quiet))  # type: ignore[call-overload]
+            self.processes.append(subprocess.Popen(command, **quiet))
         self.client.wait_for_workers(count)
 
     @property
@@ -204,7 +204,7 @@ def test_what_two_callers_want_at_once_is_done_once(cluster, tmp_path):
             for client in (cluster.client, other, cluster.client)
         )
         next(third)
-        third.close()  # type: ignore[attr-defined]
+        third.close()
         assert list(first) == list(second) == [None] * len(links)
     assert sorted(map(os.readlink, links)) == ["nowhere"] * len(links)
 

@@ -155,7 +155,7 @@ def test_decimal_points_of_a_column_stand_below_each_other(capsys):
     head, *lines = capsys.readouterr().out.splitlines()
     assert head.split() == ["mesh", "CPU", "s", "mean", "µm", "p-p"]
     (whole, mean, part), (point, other, lower) = (
-        [re.search(mark, line).start() for mark in marks]  # type: ignore[union-attr]
+        [re.search(mark, line).start() for mark in marks]
         for line, marks in zip(
             lines, ([r" 16 ", r"\.035", r"-11"], [r"\.25", r"\.6 ", r"\.2345 %"]), strict=False
         )

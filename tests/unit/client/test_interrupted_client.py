@@ -85,7 +85,7 @@ def test_a_restart_while_the_result_is_fetched_is_waited_out(tmp_path, slept):
                 raise httpx2.ConnectError("refused")
             return network(request)
 
-        client.driver._http._transport = httpx2.MockTransport(answer)  # type: ignore[assignment]
+        client.driver._http._transport = httpx2.MockTransport(answer)
         assert job.file().read_text() == "analyze-20"
     assert result.kind == "database"
 

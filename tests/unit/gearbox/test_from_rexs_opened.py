@@ -246,7 +246,7 @@ def test_a_bevel_stage_is_cut_off_and_its_torque_is_a_load():
     further = [*BEVEL_RELATIONS, relation(2000, "assembly", assembly=6, part=43)]
     scene = scene_of(two_stages(changes, more=more, further=further))
     assert [shaft.name for shaft in scene.shafts] == ["shaft 3", "shaft 4", "shaft 5"]
-    assert abs(scene.drives[0].speed_rpm[0]) == pytest.approx(NORMAL_SPEED, rel=1e-11)  # type: ignore[index]
+    assert abs(scene.drives[0].speed_rpm[0]) == pytest.approx(NORMAL_SPEED, rel=1e-11)
     assert scene.loads[0].torque_n_m == (pytest.approx(RATIO * NORMAL_LOAD, rel=1e-11),)
 
 

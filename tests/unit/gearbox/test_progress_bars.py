@@ -26,15 +26,15 @@ def cell(monkeypatch: pytest.MonkeyPatch) -> Iterator[Shown]:
     shown: Shown = []
     handle = SimpleNamespace(update=lambda text: shown.append(("later", text)))
     ipython, display = ModuleType("IPython"), ModuleType("IPython.display")
-    ipython.get_ipython = lambda: SimpleNamespace(kernel=object())  # type: ignore[attr-defined]
-    display.HTML = str  # type: ignore[attr-defined]
+    ipython.get_ipython = lambda: SimpleNamespace(kernel=object())
+    display.HTML = str
 
     def show(text: str, *, display_id: bool) -> SimpleNamespace:
         assert display_id
         shown.append(("first", text))
         return handle
 
-    display.display = show  # type: ignore[attr-defined]
+    display.display = show
     monkeypatch.setitem(sys.modules, "IPython", ipython)
     monkeypatch.setitem(sys.modules, "IPython.display", display)
     yield shown

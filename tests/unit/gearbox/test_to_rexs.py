@@ -194,7 +194,7 @@ def results(document: Document, case: int | None = None) -> dict[int, Values]:
         part.id: {
             entry.id: np.array([si_value(float(v), entry.unit, str(entry.unit), "") for v in values])
             if isinstance(values := entry.value, tuple)
-            else si_value(float(values), entry.unit, str(entry.unit), "")  # type: ignore[arg-type]
+            else si_value(float(values), entry.unit, str(entry.unit), "")
             for entry in part.attributes
             if entry.origin == "calculated"
         }

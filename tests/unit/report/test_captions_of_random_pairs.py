@@ -227,7 +227,7 @@ def check_load_sharing(figure: Figure, database: SteDatabase) -> None:
         total = np.nansum([line.y for line in panel.lines], axis=0)
         np.testing.assert_allclose(total, database.force[load], rtol=1e-9)
         for value, mark in panel.y.names:
-            newton, percent = re.fullmatch(rf"{NUMBER} N, {NUMBER} %", mark).groups()  # type: ignore[union-attr]
+            newton, percent = re.fullmatch(rf"{NUMBER} N, {NUMBER} %", mark).groups()
             assert says(newton, value) and says(percent, 100.0 * value / database.force[load])
     for low, high, torque in re.findall(rf"(\d) (?:or|to) (\d) tooth pairs carry the load at {NUMBER}", text):
         column = counts[:, load_labels(database).index(f"{torque} N m")]

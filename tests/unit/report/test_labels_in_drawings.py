@@ -28,7 +28,7 @@ def panel(ends: list[float], label: str = "{:g} N m", scale: str = "linear") -> 
         Line(f"{k}", ENDS, np.array([1.0, end]), palette.category(k), label=label.format(10 * k))
         for k, end in enumerate(ends)
     )
-    return Panel(Axis("position"), Axis("STE, µm", scale), lines)  # type: ignore[arg-type]
+    return Panel(Axis("position"), Axis("STE, µm", scale), lines)
 
 
 def sorted_gaps(middles: np.ndarray, heights: np.ndarray) -> np.ndarray:

@@ -26,7 +26,7 @@ from lineofaction.report.flank.flank import (
 
 
 def panels(figure: object) -> tuple[Panel, ...]:
-    content = figure.content  # type: ignore[attr-defined]
+    content = figure.content
     assert isinstance(content, tuple)
     return content
 
@@ -209,7 +209,7 @@ def test_every_headline_has_its_error_or_says_why_there_is_none(flanks):
     errors = FlankErrors(0.05, 0.02, 0.03, 0.01, 0.04, "none is missing")
     stated = PAGE.page(replace(flanks, errors=errors)).headlines
     load, pressure = 1e-3 * flanks.line_load.max(), 1e-6 * flanks.pressure.max()
-    bands = [float(re.match(r"± ([\d.]+)", h.remark)[1]) for h in stated]  # type: ignore[index]
+    bands = [float(re.match(r"± ([\d.]+)", h.remark)[1]) for h in stated]
     expected = [0.01 * pressure, 0.05 * load, 0.02 * flanks.mean_face_load_factor]
     assert bands == pytest.approx(expected, rel=0.05)
     lines = list(_text(replace(flanks, errors=errors)))

@@ -50,7 +50,7 @@ def figure(key: str = "ste", title: str = "STE") -> Figure:
 def page(title: str = "Report", **changes: object) -> Page:
     section = Section("Static", "Text.", (figure(),), (settings_table("Case", {"center_distance_mm": 80.0}),))
     given = {"headlines": (Headline("mean STE", "6.245 µm", "± 0.02"),), "sections": (section,)} | changes
-    return Page(title, "A pair.", **given)  # type: ignore[arg-type]
+    return Page(title, "A pair.", **given)
 
 
 def outline(text: str) -> list[tuple[str, dict[str, str | None]]]:

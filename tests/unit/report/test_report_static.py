@@ -115,7 +115,7 @@ def test_each_pair_passes_as_the_one_before_did_a_pitch_earlier(database):
 
 
 def test_load_sharing_shows_three_loads(database):
-    titles = [panel.title for panel in load_sharing(database).content]  # type: ignore[union-attr]
+    titles = [panel.title for panel in load_sharing(database).content]
     assert titles == ["10 N m", "100 N m", "400 N m"]
 
 
@@ -126,7 +126,7 @@ def test_secant_stiffness_is_force_over_ste_and_width(database):
 
 
 def test_the_iso_line_has_the_standard_s_value(database):
-    (panel,) = mesh_stiffness(database).content  # type: ignore[misc]
+    (panel,) = mesh_stiffness(database).content
     (reference,) = panel.references
     assert reference.value == pytest.approx(16.28 * 210.0 / 206.0, abs=0.006)  # method B, in steel of 210 GPa
     assert reference.direction == "horizontal"
@@ -135,7 +135,7 @@ def test_the_iso_line_has_the_standard_s_value(database):
 def test_a_database_without_a_case_has_no_iso_line(database):
     bare = replace(database, metadata=Metadata())
     assert iso_mesh_stiffness(bare) is None
-    assert mesh_stiffness(bare).content[0].references == ()  # type: ignore[index]
+    assert mesh_stiffness(bare).content[0].references == ()
 
 
 def test_failed_points_are_gaps_and_the_rest_is_drawn(damaged):
@@ -218,7 +218,7 @@ def deviating(database: SteDatabase) -> SteDatabase:
 
 def test_peak_to_peak_over_either_deviation_alone(deviating):
     figure = deviation_curves(deviating)
-    over_skew, over_change = figure.content  # type: ignore[misc]
+    over_skew, over_change = figure.content
     assert [line.name for line in over_skew.lines] == ["10 N m", "100 N m", "400 N m"]
     assert over_skew.lines[0].x == pytest.approx([-20.0, 0.0, 40.0])
     assert over_change.lines[0].x == pytest.approx([0.0, 0.1])
@@ -238,7 +238,7 @@ def test_an_axis_of_one_value_has_no_panel(deviating):
         no_load_transmission_error=np.zeros((64, 1, 2)),
         **cut,
     )
-    (panel,) = deviation_curves(narrow).content  # type: ignore[misc]
+    (panel,) = deviation_curves(narrow).content
     assert panel.x.label == "change of the center distance, mm"
 
 
@@ -253,7 +253,7 @@ def test_the_table_names_every_deviation_with_its_unit(deviating):
 
 def test_centroid_and_pressure_at_every_misalignment(deviating):
     figure = face_load(deviating)
-    centroid, pressure = figure.content  # type: ignore[misc]
+    centroid, pressure = figure.content
     assert [line.name for line in centroid.lines] == [
         "misalignment -20.0 µm", "misalignment 0 µm", "misalignment 40.0 µm",
     ]  # fmt: skip
@@ -279,9 +279,9 @@ def test_failed_points_leave_gaps_and_no_error(deviating):
     ste[5, 2, 0, 0], centroid[5, 2, 0, 0], status[5, 2, 0, 0] = np.nan, np.nan, 1
     failed = replace(deviating, static_transmission_error=ste, status=status, face_centroid=centroid)
     assert has_face_load(failed)
-    panel, _ = face_load(failed).content  # type: ignore[misc]
+    panel, _ = face_load(failed).content
     assert np.isnan(panel.lines[0].y[5])
-    first, _ = deviation_curves(failed).content  # type: ignore[misc]
+    first, _ = deviation_curves(failed).content
     assert np.all(np.isfinite(first.lines[0].y))
 
 
@@ -342,8 +342,8 @@ def test_the_static_part_is_made_without_the_secant_stiffness(with_pitch_errors,
     assert "mesh_stiffness" not in keys
     assert {"ste", "load_sharing", "ste_spectrum"} <= set(keys)
     assert "mesh_stiffness" in [f.key for section in static_results(database) for f in section.figures]
-    assert len(load_sharing(table).content) == 3  # type: ignore[arg-type]
-    panel = face_load(table).content[0]  # type: ignore[index]
+    assert len(load_sharing(table).content) == 3
+    panel = face_load(table).content[0]
     assert panel.lines[0].x[-1] == 3.0
 
 

@@ -146,7 +146,7 @@ def test_both_harris_maps_are_drawn_to_one_scale(studies):
     (figure,) = (
         f for s in presentation_of(study).page(result).sections for f in s.figures if f.key == "harris_map"
     )
-    before, after, _ = figure.content  # type: ignore[misc]
+    before, after, _ = figure.content
     assert before.y.limits == after.y.limits
     for panel, name in ((before, "start"), (after, "optimum")):
         told = content[name]["harris_map"]
@@ -173,7 +173,7 @@ def test_torques_that_count_and_those_that_get_worse_are_drawn(studies):
         f for s in presentation_of(study).page(wide).sections for f in s.figures if f.key == "harris_map"
     )
     expected = {37.0, *result.torque.tolist()}
-    for panel in figure.content[:2]:  # type: ignore[index]
+    for panel in figure.content[:2]:
         drawn = {float(line.name.removesuffix(" N m")) for line in panel.lines}
         assert expected <= drawn and len(panel.lines) <= MAX_CURVES
     (warning,) = study.run.warnings(wide) or ()

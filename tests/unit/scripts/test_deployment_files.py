@@ -148,7 +148,7 @@ def test_commands_are_verbs_of_the_program(part):
     ):
         program, verb, *rest = words
         assert program == "loa"
-        command = get_command(app).commands[verb]  # type: ignore[attr-defined]
+        command = get_command(app).commands[verb]
         options = {option for parameter in command.params for option in parameter.opts}
         assert all(word in options or word in getattr(command, "commands", {}) for word in rest)
 

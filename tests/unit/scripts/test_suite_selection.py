@@ -119,7 +119,7 @@ def test_a_file_that_is_named_runs_whole_in_workers_too(monkeypatch, day):
     named = SimpleNamespace(
         args_source=pytest.Config.ArgsSource.ARGS, option=option, getoption=vars(option).get
     )
-    heed_named_files(named)  # type: ignore[arg-type]
+    heed_named_files(named)
     assert option.all != day
 
 

@@ -46,7 +46,7 @@ def test_only_its_owner_reads_the_file_whatever_the_mask(tmp_path, file):
 @pytest.mark.parametrize(
     "change", [lambda k: k[:-1], lambda k: k + "A", str.upper, lambda k: "", lambda k: k[4:]]
 )
-def test_anything_but_the_key_is_nobody(file: KeyFile, change) -> None:  # type: ignore[no-untyped-def]
+def test_anything_but_the_key_is_nobody(file: KeyFile, change) -> None:
     assert Keyring(file).holder(change(file.add("bench"))) is None
 
 

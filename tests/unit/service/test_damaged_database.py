@@ -154,7 +154,7 @@ def test_damage_beneath_a_running_service_is_said_at_once(client, directory, kin
 )
 def test_a_database_that_takes_nothing_is_said_and_taken_up_again(client, pragma, kind, what):
     """Read-only, and full: when that is mended the service goes on."""
-    engine = client.app.state.context.engine  # type: ignore[attr-defined]
+    engine = client.app.state.context.engine
 
     def harm(connection: sqlite3.Connection, _record: object) -> None:
         connection.execute(f"PRAGMA {pragma}")
@@ -268,7 +268,7 @@ def fault(check: WriteCheck) -> str:
 
 def test_one_that_waits_for_its_turn_is_ready_until_it_has_waited_too_long(place, monkeypatch):
     """200 submissions at once held the database for a second, and a service at work said 503."""
-    check = WriteCheck(place)  # type: ignore[arg-type]
+    check = WriteCheck(place)
     assert fault(check) == ""
     place.database = failing(DatabaseUnavailable("Others hold it."))
     assert fault(check) == ""
@@ -278,11 +278,11 @@ def test_one_that_waits_for_its_turn_is_ready_until_it_has_waited_too_long(place
 
 def test_one_that_has_never_written_is_not_ready(place):
     place.database = failing(DatabaseUnavailable("Others hold it."))
-    assert fault(WriteCheck(place)) == "Others hold it."  # type: ignore[arg-type]
+    assert fault(WriteCheck(place)) == "Others hold it."
 
 
 def test_damage_is_told_at_once(place):
-    check = WriteCheck(place)  # type: ignore[arg-type]
+    check = WriteCheck(place)
     assert fault(check) == ""
     place.database = failing(DatabaseDamaged("It is malformed."))
     assert fault(check) == "It is malformed."

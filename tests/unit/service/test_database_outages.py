@@ -63,7 +63,7 @@ def test_steps_go_on_when_their_connections_are_ended(machine, postgres):
 def test_an_answer_to_a_commit_that_is_lost_enters_no_job_twice(machine):
     """The transaction was committed; the connection broke before the answer came: the step runs again."""
     entry, work = machine.submissions.entry(), BatchCase("ab" * 32, {"wish": {}})
-    enter = Entry._job.__wrapped__  # type: ignore[attr-defined]
+    enter = Entry._job.__wrapped__
     identifier = "7a8a9f0e-26f4-4f55-9e0b-3a3e3a3f3a3f"
     for _ in range(2):
         enter(entry, identifier, "fake", work, now())
@@ -106,7 +106,7 @@ def test_a_network_that_swallows_everything_is_noticed(postgres):
         url = postgres.new_database().partition("?")[0].replace("@", f"@127.0.0.1:{between.port}")
         engine = database_engine(url)
         with engine.connect() as connection:
-            descriptor = os.dup(connection.connection.dbapi_connection.fileno())  # type: ignore[union-attr]
+            descriptor = os.dup(connection.connection.dbapi_connection.fileno())
             with socket.socket(fileno=descriptor) as wire:
                 assert 0 < wire.getsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT) <= 20_000
                 silent = [wire.getsockopt(socket.IPPROTO_TCP, option) for option in KEEPALIVE]

@@ -284,7 +284,7 @@ def test_the_manual_that_a_table_names_has_all_its_fields():
         if len(table.model_fields) > 12
     }
     for table in wide:
-        manual = (EXAMPLES.parent / table.MANUAL).read_text(encoding="utf-8")  # type: ignore[attr-defined]
+        manual = (EXAMPLES.parent / table.MANUAL).read_text(encoding="utf-8")
         missing = [name for name in table.model_fields if not re.search(rf"\b{name}\b", manual)]
         assert not missing, table
     assert len(wide) > 8

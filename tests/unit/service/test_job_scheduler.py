@@ -302,7 +302,7 @@ def fall(server: Bench, *, begun: bool = True) -> list[str]:
 
 
 def _next_beside(scheduler: Scheduler, runs: list[Claim]) -> Claim | None:
-    scheduler._running = {claim.id: SimpleNamespace(claim=claim) for claim in runs}  # type: ignore[misc]
+    scheduler._running = {claim.id: SimpleNamespace(claim=claim) for claim in runs}
     try:
         return scheduler._next()
     finally:

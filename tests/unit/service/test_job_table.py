@@ -76,7 +76,7 @@ def test_a_claim_whose_commit_was_not_answered_is_the_same_claim(machine):
     """The connection broke after the commit: the step runs again and finds what it has done."""
     machine.submit(text="a")
     row = machine.claims._first()
-    begin = Claims._begin.__wrapped__  # type: ignore[attr-defined]
+    begin = Claims._begin.__wrapped__
     assert row is not None and begin(machine.claims, row) and begin(machine.claims, row)
     assert [claim.attempts for claim in machine.claims.running()] == [1]
 

@@ -65,7 +65,7 @@ def server(dask: DaskProcesses, tmp_path: Path) -> Iterator[MakeServer]:
         made[-1].submissions.dismiss(job.id)  # it would go on without a server
     made[-1].scheduler.wake()
     for file in (dask.folder / "data").glob("started_*"):
-        until(lambda file=file: not lives(int(file.read_text().split()[-3])))  # type: ignore[misc]
+        until(lambda file=file: not lives(int(file.read_text().split()[-3])))
     for file in (*(dask.folder / "data").glob("started_*"), *(dask.folder / "data").glob("grandchild_*")):
         file.unlink()
     for one in made:

@@ -89,7 +89,7 @@ def test_a_result_of_another_project_answers_nobody_at_once(machine):
 
 def _ended(machine: Bench, project: str, job: Job) -> Job:
     jobs = SimpleNamespace(submissions=machine.submissions.within(project))
-    return Bench.ended(jobs, job)  # type: ignore[arg-type]
+    return Bench.ended(jobs, job)
 
 
 def test_jobs_are_found_listed_and_dismissed_in_their_project_alone(machine):

@@ -73,7 +73,7 @@ def test_what_a_runbook_names_exists(title):
 )
 def test_a_command_is_one_of_the_program(command):
     group, verb, *rest = command.split()
-    found = get_command(app).commands[group].commands[verb]  # type: ignore[attr-defined]
+    found = get_command(app).commands[group].commands[verb]
     assert found.make_context(verb, list(rest), resilient_parsing=False).command is found
 
 

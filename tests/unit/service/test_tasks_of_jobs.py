@@ -58,7 +58,7 @@ def done(
 ) -> Path:
     """Do the work of a process as its worker would; return the file it made."""
     given = process.inputs.model_validate_json(json.dumps(inputs))
-    prepared = process.prepare(given, NOTHING_STORED)  # type: ignore[arg-type]
+    prepared = process.prepare(given, NOTHING_STORED)
     workspace = workspace or Path(mkdtemp(dir=data))
     order = WorkOrder(process.entry, prepared, "0" * 64, workspace, data, scheduler=scheduler)
     module, _, name = process.entry.partition(":")

@@ -55,7 +55,7 @@ def test_writers_are_served_in_the_order_in_which_they_came(tmp_path):
 
         threads.append(Thread(target=Writer(engine).write, args=(work,)))
         threads[-1].start()
-        until(lambda number=number: number_waiting(engine) == number + 1)  # type: ignore[misc]
+        until(lambda number=number: number_waiting(engine) == number + 1)
     assert len(opened) == 1 + WRITERS
     release.set()
     for thread in (first, *threads):
@@ -107,7 +107,7 @@ def test_one_that_gives_up_leaves_its_place_and_one_ahead_is_the_next():
             pass
         for number, thread in enumerate(threads):
             thread.start()
-            until(lambda number=number: len(queue._waiting) == number + 1)  # type: ignore[misc]
+            until(lambda number=number: len(queue._waiting) == number + 1)
     for thread in threads:
         thread.join()
     assert served == ["ahead", "one", "other"]

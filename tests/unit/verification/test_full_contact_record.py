@@ -56,7 +56,7 @@ def test_all_loads_are_solved_at_equally_spaced_positions(monkeypatch):
 
 
 def test_misaligned_gears_are_solved_over_the_face(monkeypatch):
-    def solved(_pair, torques, positions, misalignments, **_):  # type: ignore[no-untyped-def]
+    def solved(_pair, torques, positions, misalignments, **_):
         return (solved_table(torques, positions),) * len(misalignments)
 
     monkeypatch.setattr(recording, "solve_full_contact_over_face", solved)

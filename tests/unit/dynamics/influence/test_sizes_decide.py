@@ -146,7 +146,7 @@ class Unknown:
     name, unit = "anything", "dB"
 
     def squares(self, forces: object) -> np.ndarray:
-        return np.asarray(0.5 * np.sum(np.abs(forces.bearing_force[:, :3]) ** 2, axis=(0, 1)))  # type: ignore[attr-defined]
+        return np.asarray(0.5 * np.sum(np.abs(forces.bearing_force[:, :3]) ** 2, axis=(0, 1)))
 
 
 def test_what_has_no_known_content_is_not_kept():

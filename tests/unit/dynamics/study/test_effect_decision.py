@@ -134,7 +134,7 @@ def test_a_run_with_a_part_that_the_decision_never_had_decides_by_itself():
         alone = decide_effects(scene)
         assert (decision.automatic == alone.automatic) == (angle >= 0.012)
     made = study(braced, design)  # a task keeps its decision
-    assert made.metadata["effects"] == task.effects.to_json()  # type: ignore[union-attr]
+    assert made.metadata["effects"] == task.effects.to_json()
 
 
 def test_points_of_a_decision_are_the_middle_and_the_ends_of_every_factor():

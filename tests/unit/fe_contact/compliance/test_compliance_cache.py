@@ -43,7 +43,7 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> list[Gear]:
 
     def counting(gear: Gear, *arguments: object) -> FlankCompliance:
         computed.append(gear)
-        return genuine(gear, *arguments)  # type: ignore[arg-type]
+        return genuine(gear, *arguments)
 
     monkeypatch.setattr(flow, "compute_flank_compliance", counting)
     return computed
@@ -246,7 +246,7 @@ def count_runs(monkeypatch: pytest.MonkeyPatch) -> list[Gear]:
 
     def counting(gear: Gear, *arguments: object, **reports: object) -> FlankCompliance3D:
         computed.append(gear)
-        return genuine(gear, *arguments, **reports)  # type: ignore[arg-type]
+        return genuine(gear, *arguments, **reports)
 
     monkeypatch.setattr(cyclic, "compute_flank_compliance_3d", counting)
     return computed
@@ -297,7 +297,7 @@ def test_all_that_decides_the_result_in_three_dimensions_is_in_the_key():
         {"teeth": 10},
         {"material": Material(poissons_ratio=0.29)},
     ):
-        keys.append(cyclic.compliance_key_3d(replace(SPUR, **change), recipe, 2, clamped))  # type: ignore[arg-type]
+        keys.append(cyclic.compliance_key_3d(replace(SPUR, **change), recipe, 2, clamped))
     assert len(set(keys)) == len(keys)
     hands = [cyclic.compliance_key_3d(replace(SPUR, helix_angle=a), recipe, 2, clamped) for a in (0.1, -0.1)]
     assert hands[0] == hands[1]

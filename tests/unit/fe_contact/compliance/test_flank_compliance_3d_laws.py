@@ -182,7 +182,7 @@ def test_checks_see_a_wrong_ring(monkeypatch):
     spoil: Callable[..., object]
 
     def spoiled(*arguments: object) -> object:
-        return spoil(genuine(*arguments))  # type: ignore[arg-type]
+        return spoil(genuine(*arguments))
 
     monkeypatch.setattr(gear_module, "close_ring", spoiled)
     for law, change in {
@@ -193,7 +193,7 @@ def test_checks_see_a_wrong_ring(monkeypatch):
         spoil = change
         with pytest.raises(SolveError) as refusal:
             flank_compliance_3d(HELICAL, coarse(HELICAL), reach=1)
-        checks = refusal.value.partial.checks  # type: ignore[attr-defined]
+        checks = refusal.value.partial.checks
         assert getattr(checks, law) > 1e-7, law
 
 

@@ -118,7 +118,7 @@ class FreeBore:
     seat = BoreSeat()
 
     def constrained(self, grid: object, z: np.ndarray) -> np.ndarray:
-        return np.zeros((len(z), grid.nodes, 3), dtype=bool)  # type: ignore[attr-defined]
+        return np.zeros((len(z), grid.nodes, 3), dtype=bool)
 
 
 def test_constant_strain_is_exact_in_a_merged_helical_sector(section):

@@ -300,7 +300,7 @@ def test_checks_see_a_wrong_ring(monkeypatch):
     genuine = face_module.loaded_cuts
 
     def spoiled(*arguments: object) -> object:
-        cuts = genuine(*arguments)  # type: ignore[arg-type]
+        cuts = genuine(*arguments)
         return replace(cuts, near={m: cuts.near[m] * (1.0 + 1e-3) for m in cuts.near})
 
     monkeypatch.setattr(face_module, "loaded_cuts", spoiled)

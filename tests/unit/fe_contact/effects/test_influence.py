@@ -35,7 +35,7 @@ HELICAL = GearPair(replace(GEAR, helix_angle=0.35), replace(GEAR, helix_angle=-0
 
 def influence(pair: GearPair, name: str, **asked: object) -> EstimatedInfluence:
     """Estimate one effect of a request at one load."""
-    checked = check_request(pair, *table_request(**{"normal_forces": [2000.0]} | asked))  # type: ignore[arg-type]
+    checked = check_request(pair, *table_request(**{"normal_forces": [2000.0]} | asked))
     found = estimate_influence(checked.request.scene, checked.decision, name)
     assert found is not None
     return found

@@ -106,7 +106,7 @@ def test_bad_arguments_are_refused(pair):
         with pytest.raises(InputError, match="overshoot"):
             corner_contact(pair, "exit", overshoot)
     with pytest.raises(InputError, match="side"):
-        corner_contact(pair, "middle", 0.0)  # type: ignore[arg-type]
+        corner_contact(pair, "middle", 0.0)
 
 
 def test_newton_ends_where_rounding_begins(pair, monkeypatch):

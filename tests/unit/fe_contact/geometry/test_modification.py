@@ -78,7 +78,7 @@ def test_a_form_of_all_teeth_is_that_of_each(form):
     roll, face = over_profile(gear, 201)[:, None], np.linspace(-12.5e-3, 12.5e-3, 201)
     hollow = FlankModification(**{form: -3e-6})
     removed = hollow.material_removed(gear, roll, face)
-    tooth = ToothFlank(1, **{form: -3e-6})  # type: ignore[arg-type]
+    tooth = ToothFlank(1, **{form: -3e-6})
     assert removed == pytest.approx(-tooth.excess(gear, roll, face), rel=1e-12, abs=1e-20)
     assert removed.max() == pytest.approx(1e-6) and removed.min() == pytest.approx(-2e-6)
     even = 0.5 * (removed[1:, 1:] + removed[:-1, :-1])

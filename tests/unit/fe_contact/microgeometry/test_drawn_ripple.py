@@ -32,7 +32,7 @@ def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def bodies_of(pair: GearPair, cache: Path) -> CondensedPair:
     choice = {"level": "draft", "model": "plane_strain", "receipt": "minimal", "positions": 64}
-    table = analyze(pair, torques=[TORQUE], cache=cache, effects=CORNERS, **choice)  # type: ignore[arg-type]
+    table = analyze(pair, torques=[TORQUE], cache=cache, effects=CORNERS, **choice)
     found = condensed_pair(pair, table, CORNERS, cache)
     assert found is not None
     return found

@@ -30,7 +30,7 @@ FIELDS = {
 
 def ledger(pair: GearPair, **asked: object) -> dict[str, Json]:
     """Entries by name, before anything is computed."""
-    checked = check_request(pair, *table_request(**{"torques": [100.0], "positions": 16} | asked))  # type: ignore[arg-type]
+    checked = check_request(pair, *table_request(**{"torques": [100.0], "positions": 16} | asked))
     return {entry["name"]: entry for entry in effect_ledger(checked, None)}
 
 

@@ -190,12 +190,12 @@ def test_a_run_whose_table_breaks_a_law_fails_with_it(relieved, cache, monkeypat
             THREE_LOADS if tolerance is None else {"torques": THREE_LOADS["torques"], "tolerance": tolerance}
         )
         with pytest.raises(SolveError, match="breaks a law of mechanics") as refused:
-            analyze(GearPair(RELIEVED, GEAR), cache=cache, **asked)  # type: ignore[arg-type]
+            analyze(GearPair(RELIEVED, GEAR), cache=cache, **asked)
         assert refused.value.partial is broken.table
 
 
 def test_the_receipt_says_how_near_each_law_is_to_its_bound(cache):
-    laws = analyze(PAIR, cache=cache, **THREE_LOADS).metadata.receipt["laws"]  # type: ignore[arg-type]
+    laws = analyze(PAIR, cache=cache, **THREE_LOADS).metadata.receipt["laws"]
     assert len(laws) >= 10
     assert all(0.0 <= law["ratio"] <= 1.0 for law in laws)
     ratio = {law["law"]: law["ratio"] for law in laws}

@@ -125,6 +125,6 @@ def test_a_table_that_cannot_be_interpolated_has_no_estimate(coarse):
         coarse, static_transmission_error=coarse.static_transmission_error[:, ::-1], support_force=np.empty(0)
     )
     for table in (failed, falling):
-        assert validation_axes(SimpleNamespace(table=table)).axes == {}  # type: ignore[arg-type]
+        assert validation_axes(SimpleNamespace(table=table)).axes == {}
     with pytest.raises(AttributeError):  # a good table asks its places
-        validation_axes(SimpleNamespace(table=coarse))  # type: ignore[arg-type]
+        validation_axes(SimpleNamespace(table=coarse))

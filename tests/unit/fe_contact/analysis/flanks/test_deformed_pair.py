@@ -91,7 +91,7 @@ def test_the_work_of_the_forces_is_that_of_the_contact(cache):
             else:
                 assert contact.plane is not None
                 both = plane_flank_forces(candidates, force, p, contact.plane)
-                flanks, width = contact.plane, candidates.slices.width  # type: ignore[assignment]
+                flanks, width = contact.plane, candidates.slices.width
             work = width * sum(
                 float(f @ flank.block(tooth, other) @ g)
                 for flank, forces in zip(flanks, both, strict=True)

@@ -40,7 +40,7 @@ def test_every_bit_comes_back_and_what_follows_is_there_for_others(found, file):
 
     with xarray.open_dataset(file, engine="h5netcdf") as table:
         for gear in ("pinion", "wheel"):
-            pattern = contact_pattern(found, gear)  # type: ignore[arg-type]
+            pattern = contact_pattern(found, gear)
             assert np.array_equal(table[f"contact_pattern_{gear}"], pattern.pressure)
             assert np.array_equal(table[f"pattern_roll_length_{gear}"], pattern.roll_length)
         assert np.array_equal(table["line_load"], found.line_load)

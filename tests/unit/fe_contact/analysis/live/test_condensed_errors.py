@@ -64,10 +64,10 @@ def figures(table: SteDatabase) -> tuple[FloatArray, FloatArray]:
 def test_errors_of_the_discretization_are_those_of_an_analysis_of_its_own(cache, model):
     count = 64 if model == "3d" else 192
     wish = {"torques": TORQUES, "level": "draft", "model": model, "cache": cache, "effects": CORNERS}
-    bodies = condensed(analyze(PAIR, positions=16, **wish), cache)  # type: ignore[arg-type]
+    bodies = condensed(analyze(PAIR, positions=16, **wish), cache)
     quick, whole = (
         bodies.table(with_flank(SHORT), TORQUES),
-        analyze(with_flank(SHORT), positions=count, **wish),  # type: ignore[arg-type]
+        analyze(with_flank(SHORT), positions=count, **wish),
     )
     for name in ("discretisation", "slices", "finite_width", "contact_solver"):
         source = AT_NODES.index(name)

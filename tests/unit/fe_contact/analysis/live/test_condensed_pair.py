@@ -39,7 +39,7 @@ def table_of(pair: GearPair, cache: Path, model: str = "plane_strain", **wish: o
         receipt="minimal",
         cache=cache,
         effects={"corner_contact": "on"},
-        **wish,  # type: ignore[arg-type]
+        **wish,
     )
 
 
