@@ -1,8 +1,6 @@
 """Batches: one request, many jobs, one job for all of them; all are entered or none."""
 
 import json
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -18,14 +16,14 @@ ENDED = ("successful", "failed", "dismissed")
 
 
 @pytest.fixture
-def http(tmp_path: Path) -> Iterator[TestClient]:
+def http(tmp_path):
     settings = Settings(data_directory=tmp_path, workers=2, queue_limit=6)
     with TestClient(create_app(settings, REGISTRY)) as found:
         yield found
 
 
 @pytest.fixture
-def idle(tmp_path: Path) -> TestClient:
+def idle(tmp_path):
     """An app whose scheduler does not run: jobs stay as they are put."""
     return TestClient(create_app(Settings(data_directory=tmp_path, queue_limit=6), REGISTRY))
 

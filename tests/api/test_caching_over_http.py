@@ -3,7 +3,6 @@
 import shutil
 import socket
 import subprocess
-from collections.abc import Iterator
 from pathlib import Path
 
 import httpx2
@@ -23,7 +22,7 @@ PUBLIC = ("/health", "/ready")  # requested without a key, and as old as the ans
 
 
 @pytest.fixture(scope="module")
-def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[TestClient, dict[str, str]]]:
+def service(tmp_path_factory):
     """A caller of a service that has keys and a result of every kind, and the header with a key."""
     directory = tmp_path_factory.mktemp("kept")
     secret = KeyFile(directory / "keys.json").add("bench")
@@ -139,7 +138,7 @@ http {{
 
 
 @pytest.fixture
-def cached(tmp_path: Path) -> Iterator[httpx2.Client]:
+def cached(tmp_path):
     """A caller behind a cache, which keeps what RFC 9111 allows it; the service has a result and no keys."""
     if NGINX is None:
         pytest.skip("nginx is not installed")

@@ -2,8 +2,6 @@
 
 import base64
 import hashlib
-from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from fastapi.testclient import TestClient
@@ -20,7 +18,7 @@ NETCDF = {"Accept": "application/x-netcdf"}
 
 
 @pytest.fixture
-def client(tmp_path: Path) -> Iterator[TestClient]:
+def client(tmp_path):
     app = create_app(Settings(data_directory=tmp_path))
     file = tmp_path / "table.nc"
     small_table().to_netcdf(file)

@@ -1,7 +1,5 @@
 """Differences of jobs from those before them: of the same caller and process, on each database."""
 
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -20,7 +18,7 @@ Json = dict[str, Any]
 
 
 @pytest.fixture
-def client(tmp_path: Path, database_url: str | None) -> Iterator[TestClient]:
+def client(tmp_path, database_url):
     """A client of an app whose scheduler does not run, on each database."""
     app = create_app(Settings(data_directory=tmp_path, database_url=database_url))
     yield TestClient(app)

@@ -136,13 +136,13 @@ async def _listen_and_leave(
     }
     asked = iter([{"type": "http.request", "body": b"", "more_body": False}])
 
-    async def receive() -> dict[str, Any]:
+    async def receive():
         for message in asked:
             return message
         await enough.wait()
         return {"type": "http.disconnect"}
 
-    async def send(message: dict[str, Any]) -> None:
+    async def send(message):
         heard.append(message.get("body", b""))
         if len(heard) == 2:
             asyncio.get_running_loop().run_in_executor(None, after)

@@ -2,7 +2,6 @@
 
 import copy
 import json
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +27,7 @@ Served = tuple[LineOfActionClient, TestClient, Path]
 
 
 @pytest.fixture(scope="module")
-def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+def served(tmp_path_factory):
     """A client of a running service that holds the table, the bare HTTP one, a folder with the STEP file."""
     folder = tmp_path_factory.mktemp("scene")
     write_block(folder / "block.step")

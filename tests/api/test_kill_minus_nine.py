@@ -9,7 +9,6 @@ import random
 import sys
 import time
 from collections import Counter
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -31,7 +30,7 @@ FIGURES = Path(__file__).parents[2] / "out"
 
 
 @pytest.fixture
-def service(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[KilledService]:
+def service(request, tmp_path):
     """On a SQLite file, with the workers of Dask beside it or not, or on PostgreSQL over a relay.
 
     A Dask worker and its scheduler are killed, too; PostgreSQL has connections ended by its administrator,
@@ -150,7 +149,7 @@ BATCH_SEED = 20261122
 def ended(service: KilledService, batch: str) -> dict[str, Any]:
     found: dict[str, Any] = {}
 
-    def over() -> bool:
+    def over():
         service.revive()
         found.update(service.request("GET", f"/v1/jobs/{batch}").json())
         return found["status"] in ("successful", "failed", "dismissed")

@@ -4,7 +4,6 @@ import hashlib
 import threading
 from concurrent.futures import ThreadPoolExecutor
 from datetime import UTC, datetime, timedelta
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -21,7 +20,7 @@ from service.store.database import writing
 
 
 @pytest.fixture
-def client(tmp_path: Path) -> TestClient:
+def client(tmp_path):
     """A client of an app whose scheduler does not run: jobs stay as they are put."""
     return TestClient(create_app(Settings(data_directory=tmp_path), REGISTRY))
 
@@ -89,7 +88,7 @@ def test_jobs_of_a_time(client):
         instant = (noon + timedelta(hours=hours)).isoformat(timespec="microseconds").replace("+00:00", "Z")
         change(client, update(jobs).where(jobs.c.id == job).values(created=instant))
 
-    def found(text: str) -> list[str]:
+    def found(text):
         return identifiers(client.get("/v1/jobs", params={"datetime": text}).json())
 
     assert found("2026-01-31T13:00:00Z") == [middle]
@@ -192,7 +191,7 @@ def test_lists_take_no_thread_from_other_requests(client, monkeypatch):
     (job,) = submit(client, 1)
     submissions, go_on = client.app.state.context.submissions, threading.Event()
 
-    def late(*_: object) -> list[Any]:
+    def late(*_):
         go_on.wait(60.0)
         return []
 

@@ -2,7 +2,6 @@
 
 import html
 import json
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -38,7 +37,7 @@ def case(**pinion: Any) -> dict[str, Any]:
 
 
 @pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+def client(tmp_path_factory):
     with TestClient(create_app(Settings(data_directory=tmp_path_factory.mktemp("service")))) as found:
         yield found
 
@@ -53,7 +52,7 @@ def analyzed(client: TestClient, asked: dict[str, Any]) -> str:
 
 
 @pytest.fixture(scope="module")
-def key(client: TestClient) -> str:
+def key(client):
     return analyzed(client, case())
 
 
@@ -242,7 +241,7 @@ def test_a_live_center_distance_is_that_of_an_analysis_of_its_own(client, key):
 
 
 def test_derivatives_are_the_changes_of_the_curve_in_the_units_of_the_question(client, key):
-    def curve(relief: float, torque: float, **more: Any) -> dict[str, Any]:
+    def curve(relief, torque, **more):
         question = {"torque_n_m": [torque], "pinion": RELIEF | {"tip_relief_um": relief}, **more}
         found = client.post(f"/v1/databases/{key}/ste", json=question).json()
         assert ("derivatives_cpu_seconds" in found["cost"]) == bool(more)

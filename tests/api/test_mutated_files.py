@@ -131,7 +131,7 @@ def _solid(name: str, field: str) -> Asked:
     if field == "mesh_file":
         fields |= {"element_size_mm": None, "mesh_unit": "mm"}
 
-    def ask(content: bytes) -> Request:
+    def ask(content):
         own = housing(**fields | {field: _packed(name, content)})
         return Request("/v1/scenes/housing-surface", {"housings": [own]}, name)
 
@@ -159,12 +159,12 @@ def _sheet(content: bytes) -> Request:
 
 
 @pytest.fixture(scope="module")
-def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def place(tmp_path_factory):
     return tmp_path_factory.mktemp("service")
 
 
 @pytest.fixture(scope="module")
-def http(place: Path) -> Iterator[TestClient]:
+def http(place):
     app = create_app(Settings(data_directory=place), REGISTRY)
     yield TestClient(app, raise_server_exceptions=False, headers={"Host": "localhost"})
     app.state.context.reader.stop()
@@ -172,7 +172,7 @@ def http(place: Path) -> Iterator[TestClient]:
 
 
 @pytest.fixture(scope="module")
-def files(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[str, bytes, Asked]]:
+def files(tmp_path_factory):
     return list(corpus(tmp_path_factory.mktemp("corpus")))
 
 

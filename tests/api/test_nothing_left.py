@@ -233,7 +233,7 @@ def _order(number: int) -> Any:
 
 
 @pytest.fixture(scope="module")
-def place(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Place]:
+def place(tmp_path_factory):
     folder = tmp_path_factory.mktemp("drafts")
     (folder / "temporary").mkdir()
     write_block(folder / "block.step")

@@ -1,7 +1,6 @@
 """Whatever is wrong with a request, to whichever route: one error shape, its status documented."""
 
 import tempfile
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -40,7 +39,7 @@ DRAFTS, OF_FIELDS = "/v1/drafts/", ("unknown field", "deep")
 
 
 @pytest.fixture(scope="module")
-def client() -> Iterator[TestClient]:
+def client():
     yield TestClient(_app, raise_server_exceptions=False)
 
 

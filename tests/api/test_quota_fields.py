@@ -3,7 +3,6 @@
 import re
 from collections.abc import Mapping
 from contextlib import ExitStack, closing
-from pathlib import Path
 
 import httpx2
 import pytest
@@ -32,7 +31,7 @@ def shares(headers: Mapping[str, str]) -> tuple[Share, Share]:
 
 
 @pytest.fixture
-def file(tmp_path: Path) -> KeyFile:
+def file(tmp_path):
     return KeyFile(Settings(data_directory=tmp_path).key_file)
 
 

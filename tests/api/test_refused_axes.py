@@ -1,7 +1,6 @@
 """Axes of a table that do not rise are refused by name, value, bound: in Python, by the verb, over HTTP."""
 
 import json
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -43,7 +42,7 @@ def case(place: tuple[str, str], values: list[float]) -> dict[str, Any]:
 
 
 @pytest.fixture(scope="module")
-def http(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+def http(tmp_path_factory):
     with TestClient(create_app(Settings(data_directory=tmp_path_factory.mktemp("data")))) as found:
         yield found
 

@@ -45,7 +45,7 @@ def serving(folder: Path, **settings: str) -> Iterator[tuple[subprocess.Popen[st
 
 
 @pytest.fixture
-def server(tmp_path: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
+def server(tmp_path):
     with serving(tmp_path) as found:
         yield found
 
@@ -159,7 +159,7 @@ def test_processes_that_die_at_once_are_not_started_again_and_again(monkeypatch)
     clock, started = [0.0], list[float]()
     dead = SimpleNamespace(is_alive=lambda: False, pid=1, exitcode=1)
 
-    def start(_self: ServingProcesses) -> Any:
+    def start(_self):
         started.append(clock[0])
         return dead
 

@@ -6,7 +6,7 @@ import json
 import socket
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, closing
 from dataclasses import dataclass
@@ -42,7 +42,7 @@ class Process:
 
 
 @pytest.fixture(scope="module")
-def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Process]:
+def service(tmp_path_factory):
     """A service that has loaded what it needs to read bodies."""
     directory = tmp_path_factory.mktemp("stall")
     settings, log = {"LOA_DATA_DIRECTORY": str(directory / "data")}, directory / "log"
@@ -136,7 +136,7 @@ def log_lines(service: Process) -> list[dict[str, Any]]:
 def test_four_bodies_that_cost_much_hold_nobody_up(service, kind):
     path, body = ATTACKS[kind]()
 
-    def post(_: int) -> httpx2.Response:
+    def post(_):
         headers = {"Content-Type": "application/json"}
         return httpx2.post(f"{service.address}{path}", content=body, headers=headers, timeout=PATIENCE_S)
 

@@ -1,10 +1,8 @@
 """The page without a mouse, zoomed, and with less motion."""
 
-from collections.abc import Iterator
-
 import pytest
-from page_visit import Visit, answers, control, shown, tab
-from playwright.sync_api import Browser, Page, expect
+from page_visit import answers, control, shown, tab
+from playwright.sync_api import Page, expect
 from running_service import until
 
 FOCUS = """() => {
@@ -18,7 +16,7 @@ FOCUS = """() => {
 
 
 @pytest.fixture(scope="module")
-def visit(browser: Browser, address: str, analyzed: str) -> Iterator[Visit]:
+def visit(browser, address, analyzed):
     seen = shown(browser, address, analyzed)
     seen.page.emulate_media(reduced_motion="reduce")  # a page that still glides is nowhere yet
     yield seen

@@ -1,13 +1,12 @@
 """A design was edited only where somebody edited it: what the service completes is no edit."""
 
 import tomllib
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 from page_visit import opened
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Page
 
 from lineofaction.gearbox.convert.case import case_json
 from lineofaction.gearbox.inspection.as_made import Inspected, drawn_case, measured_case
@@ -41,7 +40,7 @@ CASES = cases()
 
 
 @pytest.fixture(scope="module")
-def page(browser: Browser, address: str) -> Iterator[Page]:
+def page(browser, address):
     page = opened(browser, address).page
     yield page
     page.close()

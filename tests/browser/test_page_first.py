@@ -16,7 +16,7 @@ from page_visit import (
     tab,
     unfold,
 )
-from playwright.sync_api import CDPSession, Page, Route, expect
+from playwright.sync_api import CDPSession, Page, expect
 
 
 @pytest.mark.law
@@ -54,7 +54,7 @@ def test_no_figure_of_a_result_stands_under_the_title_of_another(browser, addres
     expect(figures).to_contain_text("peak to peak")
     before = figures.locator("dd").first.inner_text()
 
-    def hold(route: Route) -> None:
+    def hold(route):
         assert route.request.method == "POST"
 
     page.route("**/ste", hold)
@@ -152,7 +152,7 @@ GROWTH = 300_000  # bytes a result: code that the browser compiles meanwhile; a 
 
 
 @pytest.fixture(scope="module")
-def other(address: str) -> str:
+def other(address):
     return computed(address, case=CASE | {"load": {"torque_n_m": [0.4, 0.8]}})
 
 

@@ -3,15 +3,13 @@
 import json
 import math
 import re
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
 from page_visit import CASE, Visit, found_inaccessible, opened, served, tab
-from playwright.sync_api import Browser, expect
+from playwright.sync_api import expect
 
 from bounds.error_digits import error_text, to_error
-from fe_contact.ste import SteDatabase
 from lineofaction.client import LineOfActionClient
 
 OWN = CASE | {"accuracy": {k: v for k, v in CASE["accuracy"].items() if k != "receipt"}}
@@ -22,7 +20,7 @@ LONGER = OWN | {"pair": CASE["pair"] | {"pinion": RELIEVED}}
 
 
 @pytest.fixture(scope="module")
-def gallery(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, SteDatabase]]:
+def gallery(tmp_path_factory):
     """Give the address of a service with three designs, the first one computed twice, and its table."""
     home = tmp_path_factory.mktemp("gallery")
     with served(home) as address, LineOfActionClient(address) as client:
@@ -32,7 +30,7 @@ def gallery(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, Ste
 
 
 @pytest.fixture
-def seen(browser: Browser, gallery: tuple[str, SteDatabase]) -> Iterator[Visit]:
+def seen(browser, gallery):
     found = opened(browser, gallery[0])
     tab(found.page, "Jobs")
     expect(found.page.locator("#jobs-rows li")).to_have_count(3)

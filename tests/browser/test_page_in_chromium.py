@@ -10,7 +10,6 @@ from page_visit import (
     CASE,
     GEAR,
     PATIENCE,
-    Visit,
     answered,
     answers,
     choose_case,
@@ -21,7 +20,7 @@ from page_visit import (
     tab,
     unfold,
 )
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 from running_service import until
 
 from bounds import DEPTHS, Direction, Kind
@@ -51,7 +50,7 @@ def tab_to(page: Page, target: str, maximum: int = 120) -> None:
 
 
 @pytest.fixture(scope="module")
-def visit(browser: Browser, address: str, tmp_path_factory: pytest.TempPathFactory) -> Visit:
+def visit(browser, address, tmp_path_factory):
     """Walk the main path with the keyboard alone, but for the dialog that opens a file."""
     seen = opened(browser, address, "light", 1400)
     page = seen.page

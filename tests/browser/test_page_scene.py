@@ -2,7 +2,6 @@
 
 import re
 import tomllib
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +11,7 @@ from faulty_units import LEFT_OUT, TWO_STAGE
 from housing_solid import STIFFNESS, housed_scene, write_block
 from page_picture import CANVAS, different, picture, stopped
 from page_visit import PATIENCE, Visit, found_inaccessible, opened, other_browser, refused, shown, tab
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 from running_service import until
 
 from lineofaction.gearbox.registry import STUDIES
@@ -23,7 +22,7 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "planetary_scene.toml"
 
 
 @pytest.fixture(scope="module")
-def visit(browser: Browser, address: str, analyzed: str) -> Iterator[Visit]:
+def visit(browser, address, analyzed):
     seen = shown(browser, address, analyzed)
     tab(seen.page, "Sound")
     tab(seen.page, "TOML")

@@ -1,21 +1,20 @@
 """A gear or bearing of the unit in the picture, moved along its shaft by keys and by the pointer."""
 
 import re
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 from page_picture import CANVAS, different, picture, stopped
-from page_visit import Visit, opened, refused
-from playwright.sync_api import Browser, Page, expect
+from page_visit import opened, refused
+from playwright.sync_api import Page, expect
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 UNIT = EXAMPLES / "two_stage" / "two_stage.rexs"
 
 
 @pytest.fixture
-def visit(drawing_browser: Browser, address: str) -> Iterator[Visit]:
+def visit(drawing_browser, address):
     seen = opened(drawing_browser, f"{address}/#tab=sound")
     seen.page.locator("#import-file").set_input_files(UNIT)
     expect(seen.page.locator("#view [role=status]")).to_contain_text("click a mesh")

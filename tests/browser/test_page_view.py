@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 from page_picture import CANVAS, different, frames, has_room, picture, pixels, rest, stopped
-from page_visit import PATIENCE, Visit, control, found_inaccessible, moved, opened_scene, shown, tab
-from playwright.sync_api import Browser, Page, expect
+from page_visit import PATIENCE, control, found_inaccessible, moved, opened_scene, shown, tab
+from playwright.sync_api import Page, expect
 from running_service import until
 
 UNIT = Path(__file__).parents[2] / "examples" / "two_stage" / "two_stage.rexs"
@@ -25,7 +25,7 @@ MADE = """() => {
 
 
 @pytest.fixture(scope="module")
-def view(drawing_browser: Browser, address: str, analyzed: str) -> Visit:
+def view(drawing_browser, address, analyzed):
     seen = shown(drawing_browser, address, analyzed)
     seen.page.locator(CANVAS).scroll_into_view_if_needed()
     expect(seen.page.locator(f"{CANVAS}[data-pressed]:not([data-pressed='0'])")).to_have_count(1)

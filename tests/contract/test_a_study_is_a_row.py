@@ -88,7 +88,7 @@ print(json.dumps({
 
 
 @pytest.fixture(scope="module")
-def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def tree(tmp_path_factory):
     """Return a tree with a study more."""
     folder = tmp_path_factory.mktemp("tree")
     for name in {house.partition(".")[0] for house in structure.HOUSES} - {"lineofaction"}:

@@ -161,7 +161,7 @@ SCENES: dict[str, tuple[GearPair, Json]] = {
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 

@@ -6,7 +6,6 @@ import re
 import runpy
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -28,9 +27,7 @@ KEY = "ab" * 32
 
 
 @pytest.fixture(scope="module")
-def service(
-    tmp_path_factory: pytest.TempPathFactory, condensed_bodies: Path
-) -> Iterator[tuple[subprocess.Popen[str], str]]:
+def service(tmp_path_factory, condensed_bodies):
     folder = tmp_path_factory.mktemp("service")
     find_condensed(condensed_bodies, folder)
     with subprocess.Popen(
@@ -47,9 +44,7 @@ def service(
 
 
 @pytest.fixture(autouse=True)
-def _as_a_user(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, service: tuple[subprocess.Popen[str], str]
-) -> None:
+def _as_a_user(monkeypatch, tmp_path, service):
     monkeypatch.chdir(ROOT)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.setenv("LOA_SERVICE", service[1])
@@ -110,7 +105,7 @@ def test_the_paper_s_flow_runs_again_without_the_service(service, monkeypatch, t
     examples = ROOT / "examples"
     monkeypatch.syspath_prepend(str(examples))
 
-    def run(output: Path) -> str:
+    def run(output):
         monkeypatch.setattr(sys, "argv", ["run_up_from_service.py", "-o", str(output)])
         runpy.run_path(str(examples / "run_up_from_service.py"), run_name="__main__")
         return capsys.readouterr().out

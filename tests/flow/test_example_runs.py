@@ -59,7 +59,7 @@ def output_of(*arguments: object) -> str:
 
 
 @pytest.fixture(scope="module")
-def table(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def table(tmp_path_factory):
     file = tmp_path_factory.mktemp("ring") / "ring.nc"
     output_of("analyze", RING, "-o", file)
     return file

@@ -40,7 +40,7 @@ def running(folder: Path) -> list[int]:
 
 
 @pytest.fixture(scope="module")
-def job(tmp_path_factory: pytest.TempPathFactory, condensed_bodies: Path) -> tuple[Path, str]:
+def job(tmp_path_factory, condensed_bodies):
     """Run the whole job once; return its folder and what it printed."""
     folder = tmp_path_factory.mktemp("main-job")
     find_condensed(condensed_bodies, folder / "out" / "service")

@@ -5,7 +5,6 @@ import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import manual
@@ -18,13 +17,13 @@ DOCS = ROOT / "docs"
 
 
 @pytest.fixture(scope="module")
-def folder() -> Iterator[Path]:
+def folder():
     with manual.folder() as made:
         yield made
 
 
 @pytest.fixture(scope="module")
-def ran() -> set[Path]:
+def ran():
     """Pages that have run in the folder: their files are there."""
     return set()
 

@@ -128,7 +128,7 @@ def test_deflection_grows_with_load_and_stiffness_does_not_fall(case):
 @LAWS
 @given(pairs(), st.floats(0.02, 50.0))
 def test_lengths_scale_and_forces_scale_with_their_square(case, scale):
-    def scaled(gear: Gear) -> Gear:
+    def scaled(gear):
         lengths = ("normal_module", "face_width", "bore_diameter")
         names = ("tip_relief", "tip_relief_length", "profile_crowning")
         modification = replace(gear.modification, **{n: scale * getattr(gear.modification, n) for n in names})

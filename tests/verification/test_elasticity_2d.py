@@ -81,7 +81,7 @@ def ring_mesh(radial: int) -> tuple[np.ndarray, np.ndarray]:
         -1, 2
     )
 
-    def node(i: np.ndarray, j: np.ndarray) -> np.ndarray:
+    def node(i, j):
         return i * 2 * around + j % (2 * around)
 
     i, j = (2 * a.ravel() for a in np.meshgrid(np.arange(radial), np.arange(around), indexing="ij"))

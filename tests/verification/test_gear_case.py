@@ -14,7 +14,6 @@ from dynamics.housings import (
     Foot,
     MeshedHousing,
     Plane,
-    ReducedHousing,
     SeatBore,
     TetrahedralMesh,
     mesh_step,
@@ -39,7 +38,7 @@ POSITIONS = {
 
 
 @pytest.fixture(scope="module")
-def step(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def step(tmp_path_factory):
     """The STEP file of the case, for the scene of the opened unit."""
     folder = tmp_path_factory.mktemp("case")
     scene: Any = OpenedUnit.of(read_rexs(EXAMPLE / "two_stage.rexs")).scene
@@ -51,7 +50,7 @@ def step(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def mesh(step: Path) -> TetrahedralMesh:
+def mesh(step):
     """A coarse mesh of it: Delaunay's method alone leaves slivers at this size, which are refused."""
     return mesh_step(step, ELEMENT_SIZE)
 
@@ -63,7 +62,7 @@ def bores(mesh: TetrahedralMesh) -> tuple[SeatBore, ...]:
 
 
 @pytest.fixture(scope="module")
-def case(mesh: TetrahedralMesh) -> ReducedHousing:
+def case(mesh):
     """The case on its feet with a few modes."""
     low = float(mesh.points[:, 1].min())
     feet = (Foot("pads", Plane((0.0, low, 0.0), (0.0, -1.0, 0.0))),)

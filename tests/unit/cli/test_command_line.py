@@ -45,7 +45,7 @@ VERBS = (
 
 
 @pytest.fixture(scope="module")
-def table(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def table(tmp_path_factory):
     file = tmp_path_factory.mktemp("table") / "ste.nc"
     small_table().to_netcdf(file)
     return file
@@ -235,7 +235,7 @@ def test_a_setting_out_of_bounds_names_bound_and_variable():
 
 
 def test_what_the_client_warns_of_is_one_line_for_people(monkeypatch, capsys):
-    def verb() -> None:
+    def verb():
         warnings.warn("the table comes from the cache", OfflineWarning, stacklevel=1)
         warnings.warn("of a library", UserWarning, stacklevel=1)
 
@@ -261,7 +261,7 @@ def test_a_process_of_one_verb_keeps_freed_memory_and_a_server_does_not(verb, se
 
 
 def test_a_defect_is_a_number_and_a_log(tmp_path, monkeypatch, table):
-    def explode(*_: object, **__: object) -> None:
+    def explode(*_, **__):
         raise RuntimeError("the text of a defect")
 
     monkeypatch.setattr("lineofaction.cli.ste.curve_json", explode)
@@ -274,7 +274,7 @@ def test_a_defect_is_a_number_and_a_log(tmp_path, monkeypatch, table):
 
 @pytest.mark.parametrize("host", ["0.0.0.0", "192.168.1.5", "::", "example.org"])
 def test_the_service_refuses_an_address_that_others_reach(host, monkeypatch):
-    def open_nothing(_settings: object) -> None:
+    def open_nothing(_settings):
         raise AssertionError("a socket would have been opened")
 
     monkeypatch.setattr(
@@ -324,7 +324,7 @@ def drawn(*arguments: str) -> str:
 
     @app.command()
     @grouped
-    def draw(*, name: str, size: Size, bold: bool = False) -> None:
+    def draw(*, name, size, bold=False):
         typer.echo(f"{name} {size.length} {size.width} {bold}")
 
     return CliRunner().invoke(app, arguments).output
@@ -352,6 +352,6 @@ def test_an_option_of_a_group_has_its_own_faults(arguments, named):
 
 def test_options_stand_where_their_group_stood():
     @grouped
-    def verb(*, name: str, size: Size, bold: bool = False) -> None: ...
+    def verb(*, name, size, bold=False): ...
 
     assert [part.name for part in parameters_of(verb)] == ["name", "length", "width", "bold"]

@@ -163,7 +163,7 @@ def flanks_of(case: Any, mesh: Any) -> MeshFlanks:
 
 
 @pytest.fixture(scope="module")
-def result() -> GearboxDeflection:
+def result():
     """The two stages under four cases, with flanks as `flanks_of` makes them."""
     scene = two_stages()
     found = deflect(scene, CASES, 3)
@@ -329,8 +329,8 @@ def test_no_life_is_said_with_its_reason(result):
 
 
 def test_forces_within_rounding_are_zero(result):
-    def axial(force: float) -> Callable[[BearingLoad], BearingLoad]:
-        def changed(load: BearingLoad) -> BearingLoad:
+    def axial(force):
+        def changed(load):
             return replace(load, force=np.array([*load.force[:2], force, 0.0, 0.0]))
 
         return changed
@@ -342,7 +342,7 @@ def test_forces_within_rounding_are_zero(result):
 
 
 def test_displacements_within_rounding_are_zero(result):
-    def clear(play: float) -> Callable[[BearingLoad], BearingLoad]:
+    def clear(play):
         return lambda load: replace(load, clearance=np.full(5, play))
 
     noisy, small = (with_bearings(result, clear(play)) for play in (1e-19, 1e-12))

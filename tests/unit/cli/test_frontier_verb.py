@@ -35,7 +35,7 @@ def ladder(name: str, seconds: float, error: float) -> FidelityResult:
 
 
 @pytest.fixture
-def found() -> Frontier:
+def found():
     rungs = (ladder("iso6336", 1e-2, 0.3), ladder("corrected", 1.0, 1e-3), ladder("3d_fine", 9.0, 5e-4))
     return Frontier(rungs, {"3d_draft": "no mesh"}, "corrected", "3d_fine", 64)
 
@@ -137,7 +137,7 @@ def test_an_error_that_is_not_known_is_left_out(found):
 
 
 @pytest.fixture
-def of_scene() -> SceneFrontier:
+def of_scene():
     nothing = float("nan")
     rungs = (
         SceneResult("quasi_static", "quasi-static", 0.01, "model", 0.1, 0.2, 1.0),

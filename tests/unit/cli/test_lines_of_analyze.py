@@ -11,7 +11,7 @@ from command_line import loa
 from typer.testing import Result
 
 from bounds.error_digits import with_error
-from fe_contact import AllowedError, FlankModification, Gear, GearPair, SteDatabase, analyze
+from fe_contact import AllowedError, FlankModification, Gear, GearPair, analyze
 from fe_contact.analysis.run_plan import plan_run
 from fe_contact.options import AnalysisOptions, TableAxes
 from lineofaction.cli.tolerance_lines import tolerance_lines, tolerance_warnings
@@ -139,7 +139,7 @@ PASS = RAN | {"cpu_seconds": 0.5, "used": 3.0, "refined": []}
 
 
 @pytest.fixture(scope="module")
-def draft() -> SteDatabase:
+def draft():
     pair = GearPair(*[Gear(20, 2e-3, 12e-3, 20e-3)] * 2, 40e-3)
     return analyze(pair, torques=[2.0, 5.0], level="draft", model="plane_strain", positions=16)
 

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from command_line import loa
 
-from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.studies.sensitivity import RippleCurve, Sensitivity
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.problems import BadInput
@@ -58,7 +57,7 @@ positions = 8
 
 
 @pytest.fixture
-def small(tmp_path: Path) -> Path:
+def small(tmp_path):
     file = tmp_path / "small.toml"
     file.write_text(SMALL)
     return file
@@ -178,7 +177,7 @@ def test_the_examples_run_at_every_deviation(file, monkeypatch):
     assert [file.stem for file in EXAMPLES] == ["sensitivity_automotive", "sensitivity_wind_turbine"]
     studied = []
 
-    def study_nothing(checked: Checked, **_: object) -> tuple[()]:
+    def study_nothing(checked, **_):
         studied.append(checked.request)
         return ()
 

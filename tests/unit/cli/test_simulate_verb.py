@@ -21,7 +21,7 @@ SCENE = gear_pair_scene(duration=0.02)
 def test_ctrl_c_keeps_what_was_computed_and_resume_goes_on(tmp_path):
     path = tmp_path / "run.nc"
 
-    def stop(_stage: str, fraction: float) -> None:
+    def stop(_stage, fraction):
         if 0.3 < fraction < 0.33:
             signal.raise_signal(signal.SIGINT)
 

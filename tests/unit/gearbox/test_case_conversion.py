@@ -117,7 +117,7 @@ def test_other_flanks_make_the_pair_of_the_case_that_states_them(name, before):
     for gear in ("pinion", "wheel"):
         anew = whole["pair"] | {gear: with_figures(whole["pair"][gear], change)}
 
-        def expected(table: Any = anew) -> Any:
+        def expected(table=anew):
             return gear_pair(validated(Case, whole | {"pair": table}))
 
         assert _made(lambda own=gear: with_flanks(pair, stated, {own: change})) == _made(expected)
@@ -262,7 +262,7 @@ def test_arguments_of_the_analysis_are_si():
 
 
 def test_the_floor_of_a_tolerance_is_given_in_nm():
-    def allowed(**accuracy: float) -> AllowedError:
+    def allowed(**accuracy):
         return analysis_options(validated(Case, GOOD | {"accuracy": accuracy})).tolerance
 
     assert allowed() == AllowedError(0.01, 20e-9)

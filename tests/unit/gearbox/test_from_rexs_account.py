@@ -33,7 +33,7 @@ def unit() -> GearUnit:
         Component(4, "shaft_section"),
     )
 
-    def owned(number: int, kind: str, part: int, order: int | None = None) -> Relation:
+    def owned(number, kind, part, order=None):
         return Relation(number, kind, (Reference(1, "assembly"), Reference(part, "part")), order)
 
     relations = (

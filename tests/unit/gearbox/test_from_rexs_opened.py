@@ -54,7 +54,7 @@ def rotation(axis: int, degrees: float) -> np.ndarray[Any, np.dtype[np.float64]]
 def turned_document(turn: np.ndarray[Any, np.dtype[np.float64]], *, root: bool) -> Document:
     vectors = ("support_vector", "u_axis_vector", "w_axis_vector")
 
-    def each(number: int, _kind: str, values: dict[str, Any]) -> dict[str, Any]:
+    def each(number, _kind, values):
         if (number == ROOT) != root:
             return values
         return {k: tuple(turn @ v) if k in vectors else v for k, v in values.items()}
@@ -98,7 +98,7 @@ def test_a_mirrored_unit_is_the_mirrored_scene():
 def test_shafts_without_places_follow_from_the_angles_of_the_stages():
     places = ("support_vector", "u_axis_vector", "w_axis_vector", "reference_component_for_position")
 
-    def each(_number: int, _kind: str, values: dict[str, Any]) -> dict[str, Any]:
+    def each(_number, _kind, values):
         return {name: value for name, value in values.items() if name not in places}
 
     bare = two_stages(each=each)
@@ -173,7 +173,7 @@ def test_a_power_is_a_torque_at_the_speed():
 
 
 def test_the_scene_runs_at_the_load_case_of_the_largest_share():
-    def case(share: float, torque: float, speed: float) -> dict[int, tuple[str, dict[str, Any]]]:
+    def case(share, torque, speed):
         return {
             ROOT: ("gear_unit", {"operating_time_fraction": share}),
             INPUT: ("shaft", {"rotational_speed": speed}),

@@ -174,7 +174,7 @@ def test_a_usual_search_takes_the_contacts_that_are_predicted(monkeypatch):
     """Counted at few positions and at all, a design with its slopes as often as it costs; within 2."""
     solved: Counter[int] = Counter()
 
-    def counted(evaluator: Any, values: Any, nodes: Any, *slopes: Any) -> Any:
+    def counted(evaluator, values, nodes, *slopes):
         solved[evaluator.position.size] += LINEARIZED if slopes else 1.0
         return tabled_loads(evaluator, values, nodes, *slopes)
 
@@ -323,7 +323,7 @@ def test_what_gets_worse_is_said_first():
     ],
 )
 def test_a_scene_without_what_is_heard_is_refused_by_its_field(question, field):
-    def predicted() -> object:
+    def predicted():
         return RUN.predicted(SceneInput.model_validate(scene()), validated(Inputs, question), None)
 
     for refused in (lambda: optimize(scene(), question), predicted):
@@ -369,7 +369,7 @@ def test_a_limit_of_ripple_is_rows_of_the_merit_with_their_slopes():
     """The largest row is the peak-to-peak of the worst load, and moves as that of solved contacts does."""
     own = replace(problems()[0], limits=Limits(peak_to_peak=2e-7), scale=level(problems()[0], DESIGN))
 
-    def ripple(values: dict[str, float]) -> float:
+    def ripple(values):
         return float(own.evaluator.evaluate(values).peak_to_peak.max())
 
     assessed, merit = own.linearize(place(own), InProcess())

@@ -6,7 +6,7 @@ from housed_tubes import OFF, mount_of, subject_of, tube_on
 from scipy.spatial import cKDTree
 
 from dynamics.assembly.assemble import assemble
-from dynamics.housings import ReducedHousing, receptance
+from dynamics.housings import receptance
 from dynamics.housings.rigid_body import rigid_motions
 from dynamics.mechanism.bodies import modal_housing
 from lineofaction.gearbox.convert.scene import TabledScene
@@ -26,7 +26,7 @@ def amplitudes_move(subject: TabledScene) -> tuple[Hull, np.ndarray]:
 
 
 @pytest.fixture(scope="module")
-def mounted() -> ReducedHousing:
+def mounted():
     return tube_on(mount_of(2e8))
 
 

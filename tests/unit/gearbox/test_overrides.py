@@ -107,7 +107,7 @@ def test_what_is_no_toml_value_is_a_text(value):
 
 
 def test_shorthands_take_the_place_of_what_they_exclude():
-    def planned(*options: object) -> Any:
+    def planned(*options):
         return printed("plan", SPUR, *options)
 
     assert planned("--level", "fine")["choice"]["level"] == "fine"

@@ -56,7 +56,7 @@ def test_a_made_up_batch_is_read_back_within_its_sampling_error(tmp_path):
     pick = np.ix_(of_slopes, of_slopes)
     of_means = BETWEEN + WITHIN / len(TEETH)
 
-    def errors(covariance: FloatArray, freedom: float) -> FloatArray:
+    def errors(covariance, freedom):
         """Return standard errors of the entries of a sample covariance of normal deviates."""
         variance = np.diag(covariance)
         return np.sqrt((np.outer(variance, variance) + covariance**2) / freedom)

@@ -2,7 +2,6 @@
 
 import io
 import sys
-from collections.abc import Iterator
 from types import ModuleType, SimpleNamespace
 
 import pytest
@@ -21,7 +20,7 @@ class Terminal(io.StringIO):
 
 
 @pytest.fixture
-def cell(monkeypatch: pytest.MonkeyPatch) -> Iterator[Shown]:
+def cell(monkeypatch):
     """Run in a notebook; what its cell shows, first and later."""
     shown: Shown = []
     handle = SimpleNamespace(update=lambda text: shown.append(("later", text)))
@@ -29,7 +28,7 @@ def cell(monkeypatch: pytest.MonkeyPatch) -> Iterator[Shown]:
     ipython.get_ipython = lambda: SimpleNamespace(kernel=object())
     display.HTML = str
 
-    def show(text: str, *, display_id: bool) -> SimpleNamespace:
+    def show(text, *, display_id):
         assert display_id
         shown.append(("first", text))
         return handle
@@ -41,7 +40,7 @@ def cell(monkeypatch: pytest.MonkeyPatch) -> Iterator[Shown]:
 
 
 @pytest.fixture
-def clock(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
+def clock(monkeypatch):
     now = SimpleNamespace(s=100.0)
     monkeypatch.setattr("time.monotonic", lambda: now.s)
     return now

@@ -6,7 +6,7 @@ import random
 import re
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -35,13 +35,13 @@ def _note(event: str, details: tuple[object, ...]) -> None:
 
 
 @pytest.fixture(scope="module")
-def watched() -> Callable[[], object]:
+def watched():
     for data in (XML, JSON, ZIP):
         parsed(data)
     sys.addaudithook(_note)
 
     @contextmanager
-    def watch() -> Iterator[None]:
+    def watch():
         _touched.clear()
         _watching.append(True)
         try:

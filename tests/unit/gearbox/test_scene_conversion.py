@@ -288,7 +288,7 @@ def test_the_planetary_example_is_a_system():
     """On fake tables with the facts of its pairs: six meshes, all torques carried, planets that fit."""
     table = small_table()
 
-    def of(teeth: tuple[int, int], internal: bool) -> Any:
+    def of(teeth, internal):
         base = math.cos(math.radians(20.0)) * 1e-3
         radius = (base * teeth[0], base * teeth[1])
         geometry = replace(table.geometry, teeth=teeth, base_radius=radius, base_pitch=2.0 * math.pi * base)

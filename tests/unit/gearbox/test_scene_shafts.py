@@ -137,7 +137,7 @@ def test_a_part_beyond_an_end_of_its_shaft_is_a_fault_of_the_draft(kind):
     """Before any engine sees it; the ends themselves are on the shaft."""
     length = EXAMPLE["shafts"][0]["length_mm"]
 
-    def placed(position: float) -> SceneInput:
+    def placed(position):
         return validated(SceneInput, changed(EXAMPLE, disc() | {f"{kind}[0].position_mm": position}))
 
     for end in (0.0, length):

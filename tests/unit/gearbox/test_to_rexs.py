@@ -207,7 +207,7 @@ def vector(values: Values, name: str) -> np.ndarray[Any, Any]:
 
 
 @pytest.fixture(scope="module")
-def deflected_unit() -> tuple[Document, GearboxDeflection]:
+def deflected_unit():
     return written(spectrum())
 
 
@@ -405,7 +405,7 @@ def test_settings_of_the_computation_may_differ():
 def test_other_load_cases_and_lost_ones_are_refused(deflected_unit):
     result, unit = deflected_unit[1], OpenedUnit.of(spectrum())
 
-    def with_case(**changes: Any) -> GearboxDeflection:
+    def with_case(**changes):
         first, *others = result.deflection.cases
         cases = (replace(first, **changes), *others)
         return replace(result, deflection=replace(result.deflection, cases=cases))

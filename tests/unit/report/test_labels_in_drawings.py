@@ -218,7 +218,7 @@ def test_the_largest_parts_have_the_colors():
 def test_title_axis_and_legend_of_a_drawing_stand_apart(teeth, monkeypatch):
     sheets: list[Sheet] = []
 
-    def laid_out(sheet: Sheet, *_: object, **__: object) -> None:
+    def laid_out(sheet, *_, **__):
         sheet.draw_without_rendering()
         sheets.append(sheet)
 

@@ -1,7 +1,6 @@
 """Plots by one call: figures of the report on axes, on axes of the caller, by plotly."""
 
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, get_args, get_origin
 
@@ -19,7 +18,7 @@ EXAMPLES = Path(__file__).parents[3] / "examples"
 
 
 @pytest.fixture(autouse=True)
-def without_a_screen() -> Iterator[None]:
+def without_a_screen():
     with plt.rc_context():
         plt.switch_backend("Agg")
         yield

@@ -169,7 +169,7 @@ def test_a_legend_stays_within_the_sheet(count, length):
 
 
 def test_ordered_colors_lighten_and_stay_visible_on_white():
-    def luminance(color: str) -> float:
+    def luminance(color):
         parts = (int(color[i : i + 2], 16) / 255 for i in (1, 3, 5))
         linear = [p / 12.92 if p <= 0.04045 else ((p + 0.055) / 1.055) ** 2.4 for p in parts]
         return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from matplotlib.contour import ContourSet
 
-from fe_contact.analysis.flanks.load_distribution import FlankErrors, LoadDistribution
+from fe_contact.analysis.flanks.load_distribution import FlankErrors
 from fe_contact.analysis.flanks.pressure_map import pressure_map
 from lineofaction.report.document import write_report
 from lineofaction.report.drawing.figure import HeatMap, Panel, Strokes, number
@@ -167,7 +167,7 @@ def test_one_slice_has_a_curve_and_nothing_over_the_face(one_slice):
 
 
 @pytest.fixture
-def one_slice(flanks: LoadDistribution) -> LoadDistribution:
+def one_slice(flanks):
     middle = {
         name: getattr(flanks, name)[:, :, 2:3]
         for name in ("roll_length_1", "roll_length_2", "on_path", "force", "lever", "pressure", "gap")

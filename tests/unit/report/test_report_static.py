@@ -195,7 +195,7 @@ RIPPLE = np.array([[1.5, 1.2], [1.0, 0.8], [3.0, 2.4]])
 
 
 @pytest.fixture
-def deviating(database: SteDatabase) -> SteDatabase:
+def deviating(database):
     grid = (64, 4, 3, 2)
     arrays = {
         name: np.broadcast_to(getattr(database, name), grid + getattr(database, name).shape[4:])
@@ -265,7 +265,7 @@ def test_centroid_and_pressure_at_every_misalignment(deviating):
 
 
 def test_they_are_on_the_page_only_where_there_is_something_to_show(database, deviating):
-    def keys(table: SteDatabase) -> set[str]:
+    def keys(table):
         return {figure.key for section in static_results(table) for figure in section.figures}
 
     assert not has_deviations(database) and not has_face_load(database)

@@ -100,7 +100,7 @@ def test_the_finding_names_order_load_and_level(database):
 
 
 def test_one_load_has_no_spectrum_over_torque(database):
-    def keys(table: SteDatabase) -> set[str]:
+    def keys(table):
         return {figure.key for section in static_results(table) for figure in section.figures}
 
     along = {name: axes.index("force") for name, axes in database.stored.items() if "force" in axes}

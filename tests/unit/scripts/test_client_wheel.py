@@ -39,7 +39,7 @@ except ModuleNotFoundError as error:
 
 
 @pytest.fixture(scope="module")
-def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def tree(tmp_path_factory):
     """The sources of the distribution."""
     folder = tmp_path_factory.mktemp("client")
     client_wheel.collect(folder)

@@ -10,7 +10,6 @@ import tomllib
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import pytest
@@ -93,7 +92,7 @@ def variables_of(part: str) -> dict[str, str]:
 
 
 @pytest.fixture
-def kubernetes_validate() -> ModuleType:
+def kubernetes_validate():
     """Its import takes three seconds, of every worker if it stood above."""
     return importlib.import_module("kubernetes_validate")
 

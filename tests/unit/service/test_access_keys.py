@@ -3,7 +3,6 @@
 import json
 import stat
 from datetime import datetime, timedelta
-from pathlib import Path
 
 import pytest
 import structlog.testing
@@ -19,7 +18,7 @@ from service.settings import Settings
 
 
 @pytest.fixture
-def file(tmp_path: Path) -> KeyFile:
+def file(tmp_path):
     return KeyFile(tmp_path / "keys.json")
 
 
@@ -46,7 +45,7 @@ def test_only_its_owner_reads_the_file_whatever_the_mask(tmp_path, file):
 @pytest.mark.parametrize(
     "change", [lambda k: k[:-1], lambda k: k + "A", str.upper, lambda k: "", lambda k: k[4:]]
 )
-def test_anything_but_the_key_is_nobody(file: KeyFile, change) -> None:
+def test_anything_but_the_key_is_nobody(file, change):
     assert Keyring(file).holder(change(file.add("bench"))) is None
 
 
@@ -56,7 +55,7 @@ def test_every_key_is_compared_whichever_it_is(file, monkeypatch):
     keyring = Keyring(file)
     seen: list[str] = []
 
-    def compare(a: str, b: str) -> bool:
+    def compare(a, b):
         seen.append(b)
         return a == b
 
@@ -263,7 +262,7 @@ def test_a_key_that_ends_soon_is_mentioned_once_a_day(file):
 def test_the_verbs_show_rights_and_never_a_hash(tmp_path):
     path = tmp_path / "keys.json"
 
-    def verb(*arguments: str) -> str:
+    def verb(*arguments):
         shown = loa("keys", *arguments, "--file", path, "--json")
         assert shown.exit_code == 0, shown.output
         return shown.stdout

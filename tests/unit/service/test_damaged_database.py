@@ -4,7 +4,7 @@ import resource
 import shutil
 import sqlite3
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -37,7 +37,7 @@ PAGE = 4096
 
 
 @pytest.fixture(scope="module")
-def sound(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def sound(tmp_path_factory):
     directory = tmp_path_factory.mktemp("sound")
     with TestClient(create_app(Settings(data_directory=directory), REGISTRY, works=False)) as client:
         for number in range(8):
@@ -47,12 +47,12 @@ def sound(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def directory(tmp_path: Path, sound: Path) -> Path:
+def directory(tmp_path, sound):
     return shutil.copytree(sound, tmp_path / "data")
 
 
 @pytest.fixture
-def client(directory: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[TestClient]:
+def client(directory, monkeypatch):
     """A client of an app on it, which tries at each question whether it can write."""
     monkeypatch.setattr("service.store.write_check.VALID_S", 0.0)
     with TestClient(create_app(Settings(data_directory=directory), REGISTRY)) as found:
@@ -105,7 +105,7 @@ def test_a_start_does_not_wait_for_a_long_look_and_what_it_finds_makes_unready(d
     damage(directory / "service.sqlite3", "one bad page")
     found, look = threading.Event(), Schema.check
 
-    def late(schema: Schema) -> None:
+    def late(schema):
         found.wait(60.0)
         look(schema)
 
@@ -156,7 +156,7 @@ def test_a_database_that_takes_nothing_is_said_and_taken_up_again(client, pragma
     """Read-only, and full: when that is mended the service goes on."""
     engine = client.app.state.context.engine
 
-    def harm(connection: sqlite3.Connection, _record: object) -> None:
+    def harm(connection, _record):
         connection.execute(f"PRAGMA {pragma}")
 
     event.listen(engine, "connect", harm)
@@ -250,14 +250,14 @@ class Place:
 
 
 def failing(error: Exception) -> Callable[[], None]:
-    def step() -> None:
+    def step():
         raise error
 
     return step
 
 
 @pytest.fixture
-def place(monkeypatch: pytest.MonkeyPatch) -> Place:
+def place(monkeypatch):
     monkeypatch.setattr(write_check, "VALID_S", -1.0)
     return Place()
 

@@ -374,7 +374,7 @@ def test_what_is_bounded_once_is_not_bounded_again():
     class Uses(BoundaryModel):
         whole: Whole
 
-    def bounds(node: object) -> int:
+    def bounds(node):
         """Return the most functions that see the data of one schema in turn."""
         if not isinstance(node, dict) or node.get("type") != "function-before":
             return 0

@@ -1,12 +1,9 @@
 """The job table: single flight, shared dismissal, bounded queue, order."""
 
 import uuid
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
-from pathlib import Path
-from typing import Any
 
 import pytest
 from running_service import Bench, bench
@@ -23,7 +20,7 @@ from service.store.results import Mark
 
 
 @pytest.fixture
-def machine(tmp_path: Path, database_url: str | None) -> Iterator[Bench]:
+def machine(tmp_path, database_url):
     """The table without a running scheduler, on each database."""
     found = bench(tmp_path, REGISTRY, queue_limit=3, database_url=database_url)
     yield found
@@ -202,7 +199,7 @@ def test_a_callers_last_job_is_sought_among_its_own_alone(machine):
         pytest.skip("a server plans by the numbers of its rows")
     plan: list[str] = []
 
-    def explain(_connection: object, cursor: Any, statement: str, parameters: Any, *_: object) -> None:
+    def explain(_connection, cursor, statement, parameters, *_):
         rows = cursor.connection.execute(f"EXPLAIN QUERY PLAN {statement}", parameters)
         plan.extend(str(row[3]) for row in rows)
 

@@ -5,7 +5,6 @@ import json
 import re
 import tomllib
 from base64 import b64encode
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -65,7 +64,7 @@ def test_a_file_that_is_none_is_refused_in_one_line(tmp_path):
 
 
 @pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+def client(tmp_path_factory):
     folder = tmp_path_factory.mktemp("data")
     with TestClient(create_app(Settings(data_directory=folder))) as found:
         yield found

@@ -4,7 +4,6 @@ import json
 import math
 import re
 import tomllib
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -31,7 +30,7 @@ CASES = {example.name: validated(Case, example.content) for example in examples(
 
 
 @pytest.fixture
-def client(tmp_path: Path) -> Iterator[TestClient]:
+def client(tmp_path):
     with TestClient(create_app(Settings(data_directory=tmp_path))) as found:
         yield found
 

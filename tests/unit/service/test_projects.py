@@ -183,7 +183,7 @@ def test_a_job_reads_tables_of_its_project_alone(tmp_path):
     scene = validated(SceneInput, {**SCENE, "meshes": [{**of_table, "database_hash": KEY}]})
     claim = Claim("c", "simulate", "k", {"scene": scene.model_dump(mode="json")}, 1)
 
-    def table(project: str) -> Any:
+    def table(project):
         orders: list[WorkOrder] = []
         crew: Any = SimpleNamespace(
             begin=lambda order, *_: orders.append(order) or SimpleNamespace(log_fields={})

@@ -42,14 +42,14 @@ NOTHING_STORED = SimpleNamespace(find=lambda *_: None)
 
 
 @pytest.fixture(autouse=True)
-def small_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
+def small_tasks(monkeypatch):
     """Cut small tables as large ones are."""
     monkeypatch.setattr(contact_lines, "TASK_SECONDS", 1e-4)
     monkeypatch.setattr(dispatch, "START_SECONDS", 0.0)
 
 
 @pytest.fixture(scope="module")
-def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def data(tmp_path_factory):
     return tmp_path_factory.mktemp("service")
 
 
@@ -103,7 +103,7 @@ class Recording:
 def test_these_jobs_give_their_tasks_to_the_cluster(process, further, task, tmp_path, monkeypatch):
     recording = Recording()
 
-    def connected(address: str, spent: RunCost) -> Any:
+    def connected(address, spent):
         assert address == ADDRESS
         return recording
 

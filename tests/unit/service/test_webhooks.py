@@ -120,11 +120,11 @@ def test_the_address_that_was_looked_at_is_the_one_connected_to(monkeypatch):
     answers = iter(["93.184.216.34", "127.0.0.1"])
     connected: list[Any] = []
 
-    def resolved(*_args: object, **_more: object) -> list[Any]:
+    def resolved(*_args, **_more):
         return [(socket.AF_INET, socket.SOCK_STREAM, 0, "", (next(answers), 80))]
 
     class Recorded(socket.socket):
-        def connect(self, address: Any) -> None:
+        def connect(self, address):
             connected.append(address)
             raise ConnectionRefusedError
 

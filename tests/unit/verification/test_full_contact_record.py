@@ -25,7 +25,7 @@ FORCES = [200.0, 500.0]
 def solved_table(
     torques: list[float], positions: list[float], failed: tuple[int, ...] = ()
 ) -> FullContactTable:
-    def point(number: int, position: float, torque: float) -> FullContactPoint:
+    def point(number, position, torque):
         if number in failed:
             return FullContactPoint.failed(Status.ITERATION_LIMIT, "cut back too often", 9, torque)
         lag = 1e-7 * torque

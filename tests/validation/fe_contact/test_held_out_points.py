@@ -24,7 +24,7 @@ def held_out(tmp_path_factory):
     contact = pair_contact(pair, plan, cache)
     position = np.random.default_rng(0).random(800)
 
-    def errors(force: np.ndarray) -> np.ndarray:
+    def errors(force):
         solved = contact.solve(checked.model, position, force)[1].deflection
         return np.abs(table.ste(position[:, None], force) - solved) / np.ptp(solved, axis=0)
 

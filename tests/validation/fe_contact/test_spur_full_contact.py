@@ -69,7 +69,7 @@ def spur_pair() -> GearPair:
 
 
 @pytest.fixture(scope="module")
-def database() -> SteDatabase:
+def database():
     return analyze(spur_pair(), torques=[10, 50, 100, 200, 400], model="plane_strain")
 
 

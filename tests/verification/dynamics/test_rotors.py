@@ -12,7 +12,7 @@ from dynamics.assembly.assemble import System, assemble
 from dynamics.bearings import Bushing
 from dynamics.integrators import static_equilibrium
 from dynamics.joints import FreeRotation, ImposedRotation
-from dynamics.linearize import ForcedResponse, forced_response, natural_modes
+from dynamics.linearize import forced_response, natural_modes
 from dynamics.loads import LoadTorque, TimeLaw, Unbalance
 from dynamics.motion.observation import observe
 from dynamics.periodic.period_map import periodic_problem
@@ -108,7 +108,7 @@ BY_ROSS = {
 
 
 @pytest.fixture(scope="module")
-def response() -> ForcedResponse:
+def response():
     """Return the response up to the first order of the mesh, in which both shafts' orders lie."""
     return forced_response(assemble(dynamic_scene(scene_of(EXAMPLE)[0], {})), SPEEDS, orders=1)
 

@@ -71,7 +71,7 @@ def deflection(place: OperatingPoint, slices: int) -> np.ndarray:
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("bodies")
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene
 
-from dynamics.ablation import WARM_UP, Ablation, ablate, runs_of_ablation
+from dynamics.ablation import WARM_UP, ablate, runs_of_ablation
 from dynamics.errors import InputError
 from dynamics.scene import Outputs
 from dynamics.simulation import simulate
@@ -18,7 +18,7 @@ ONLY = ["lateral", "axial", "tilt", "friction"]
 
 
 @pytest.fixture(scope="module")
-def made() -> Ablation:
+def made():
     return ablate(SCENE, only=ONLY)
 
 

@@ -117,7 +117,7 @@ def test_the_recorded_angles_of_a_run_give_its_mesh_force(tmp_path):
     }
     driver, driven = (shaft.name for shaft in scene.shafts)
 
-    def along(rate: bool):
+    def along(rate):
         return sum(
             sign * (line[0] * state[rate][f"{shaft}.x"] + line[1] * state[rate][f"{shaft}.y"])
             for sign, shaft in ((1.0, driver), (-1.0, driven))

@@ -1,7 +1,6 @@
 """Estimated influence of effects, and the decision by a tolerance."""
 
 import json
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -10,12 +9,11 @@ from flexible_scenes import flexible_pair
 from geared_scenes import RPM, gear_pair_scene, spring_table, with_gear
 
 from dynamics.ablation import ablate
-from dynamics.assembly.assemble import System
 from dynamics.errors import InputError
 from dynamics.forces import RollingContact
 from dynamics.influence import decide_effects, estimate_influences, neglected_check
-from dynamics.influence.linear_figures import LinearFigures, linear_figures
-from dynamics.influence.operating_conditions import OperatingCondition, operating_conditions
+from dynamics.influence.linear_figures import linear_figures
+from dynamics.influence.operating_conditions import operating_conditions
 from dynamics.joints import FreeRotation, Housing
 from dynamics.loads import AppliedForce, TimeLaw
 from dynamics.loads.load_course import Orders
@@ -58,7 +56,7 @@ def test_an_effect_that_changes_no_force_is_not_solved_for(monkeypatch):
     """Lateral motion alone does not turn with the shafts: gyroscopic terms are none, and known to be 0."""
     looked: list[str] = []
 
-    def figures(system: System, conditions: Sequence[OperatingCondition]) -> LinearFigures:
+    def figures(system, conditions):
         looked.append(" ".join(name for name, choice in system.scene.effects.items() if choice != "auto"))
         return linear_figures(system, conditions)
 

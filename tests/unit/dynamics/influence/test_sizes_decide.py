@@ -13,7 +13,6 @@ from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.influence import decide_effects, estimate_influences, neglected_check
 from dynamics.influence.content_key import content_key
-from dynamics.influence.neglected_check import Decision
 from dynamics.linearize import partial_fractions
 from dynamics.linearize.parametric_response import parametric_response
 from dynamics.linearize.steady_vibration import excited
@@ -84,7 +83,7 @@ def test_sizes_are_computed_once_for_one_content(monkeypatch):
     scene, count = helical(), [0]
     computed = neglected_check.linear_figures
 
-    def counted(*parts: object) -> object:
+    def counted(*parts):
         count[0] += 1
         return computed(*parts)
 
@@ -112,7 +111,7 @@ def test_an_ablation_decides_once_for_the_scene_itself(monkeypatch):
     """Toggled scenes decide nothing anew: each differs from the scene by one effect."""
     decision: list[float | None] = []
 
-    def recorded(scene: Scene) -> Decision:
+    def recorded(scene):
         decision.append(scene.level_tolerance)
         return decide_effects(scene)
 

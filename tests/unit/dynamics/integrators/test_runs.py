@@ -52,7 +52,7 @@ def test_no_step_jumps_over_a_part_of_the_table():
 
 
 def test_an_exception_in_the_progress_callback_ends_the_run():
-    def stop(fraction: float, text: str) -> None:
+    def stop(fraction, text):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):

@@ -63,7 +63,7 @@ def tilting(found: ModalAnalysis) -> np.ndarray:
 
 
 @pytest.fixture(scope="module")
-def disc() -> ModalAnalysis:
+def disc():
     return modal_analysis(assemble(disc_scene()), SPEEDS, orders=3)
 
 
@@ -225,7 +225,7 @@ def test_critical_speeds_follow_eigenvectors_and_agree_with_the_dense_solve(monk
     solved: list[float] = []
     dense = campbell.modes_at
 
-    def counted(of: System, linear: LinearSystem, speed: float) -> WhirlModes:
+    def counted(of, linear, speed):
         solved.append(speed)
         return dense(of, linear, speed)
 

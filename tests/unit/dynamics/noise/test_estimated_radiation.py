@@ -11,7 +11,6 @@ from dynamics.acoustics import (
     sphere_efficiency,
 )
 from dynamics.noise import (
-    EstimatedRadiation,
     HousingRadiation,
     estimated_radiation,
     panel_sound,
@@ -67,7 +66,7 @@ def test_monopoles_alone_count_where_a_small_body_hardly_radiates():
 
 
 @pytest.fixture(scope="module")
-def estimate() -> EstimatedRadiation:
+def estimate():
     return estimated_radiation(housing(), radiation(), AIR)
 
 

@@ -264,7 +264,7 @@ def test_damping_of_a_resonance_costs_a_decibel_for_an_eighth():
     near = coarse[int(np.argmax(forced_power(model, coarse, 1)[1].power[0]))]
     fine = np.linspace(0.995 * near, 1.005 * near, 60)
 
-    def level(factor: float) -> float:
+    def level(factor):
         varied = GUESSES["housing_damping"].varied(model, factor)
         return largest_level(fine, forced_power(varied, fine, 1)[1])
 

@@ -36,7 +36,7 @@ def light_pair(sense=1.0):
 
 
 @pytest.fixture(scope="module")
-def light() -> SteadyStates:
+def light():
     return steady_states(assemble(light_pair()), SPEEDS)
 
 

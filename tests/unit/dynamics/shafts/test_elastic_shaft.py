@@ -234,7 +234,7 @@ def clamped_frequency(r: float) -> float:
     Z the Bessel functions J, Y, I, K; y = y' = 0 at x = 1, y'' = (x^4 y'')' = 0 at x = r.
     """
 
-    def determinant(p: float) -> float:
+    def determinant(p):
         base, tip = 2.0 * math.sqrt(p), 2.0 * math.sqrt(p * r)
         rows = [[f(2, base), s * f(3, base), f(4, tip), t * f(3, tip)] for f, s, t in KINDS]
         return float(np.linalg.det(rows))
@@ -263,10 +263,10 @@ def test_many_steps_come_to_the_cone():
         PointOfApplication(LENGTH, True, True, True, True),
     )
 
-    def first(sections: tuple[BeamSection, ...]) -> float:
+    def first(sections):
         return float(elastic_shaft(sections, (), ends, 4e3, 0.0).bending.frequency[0])
 
-    def stepped(count: int) -> tuple[BeamSection, ...]:
+    def stepped(count):
         middles = (np.arange(count) + 0.5) / count
         return tuple(BeamSection(LENGTH / count, DIAMETER * (1.0 - 0.4 * x)) for x in middles)
 

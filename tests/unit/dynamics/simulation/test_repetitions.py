@@ -13,7 +13,7 @@ from dynamics.influence import decide_effects
 from dynamics.integrators import march
 from dynamics.integrators.start_value import added_rows
 from dynamics.loads import TimeLaw
-from dynamics.meshes import CoastFlank, MeshTable
+from dynamics.meshes import CoastFlank
 from dynamics.results import RunResult
 from dynamics.scene import Outputs, Scene
 from dynamics.simulation import simulate, simulate_to_file
@@ -105,7 +105,7 @@ def test_what_a_tolerance_neglected_is_on_after_flanks_parted():
 
 
 @pytest.fixture(scope="module")
-def table() -> MeshTable:
+def table():
     knots = (-60e-6, -30e-6, -10e-6, 0.0, 10e-6, 30e-6, 60e-6)
     return sliced_database(knots, (-1e-4, 0.0, 1e-4), positions=12).force_table()
 

@@ -74,7 +74,7 @@ def test_a_streamed_run_is_repeated_too_and_may_be_interrupted_in_between(tmp_pa
     stop = threading.Event()
     runs: list[float] = []
 
-    def progress(fraction: float, what: str) -> None:
+    def progress(fraction, what):
         if runs and fraction < runs[-1]:
             stop.set()  # the second run has begun
         runs.append(fraction)
@@ -102,7 +102,7 @@ def test_forces_beyond_the_table_are_noticed():
 
 
 def test_a_bearing_that_lets_go_is_noticed():
-    def checks(result: RunResult) -> list[Json]:
+    def checks(result):
         found = result.effect_ledger["checks"]
         return [one for one in found if one["assumption"] == "linear bearing stays loaded"]
 

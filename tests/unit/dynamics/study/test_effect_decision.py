@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from geared_scenes import RPM, gear_pair_scene, with_gear
@@ -112,7 +111,7 @@ def test_sizes_are_estimated_at_the_points_of_the_decision_alone(monkeypatch):
     estimated: list[Scene] = []
     estimate = neglected_check._estimated
 
-    def counted(scene: Scene, *others: Any) -> object:
+    def counted(scene, *others):
         estimated.append(scene)
         return estimate(scene, *others)
 

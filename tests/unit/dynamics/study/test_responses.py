@@ -19,7 +19,7 @@ def value(run: RunResult, response: Response, start: float = 0.0) -> float:
 
 
 @pytest.fixture(scope="module")
-def run() -> RunResult:
+def run():
     return simulate(gear_pair_scene(duration=0.1))
 
 

@@ -6,7 +6,6 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from threading import Barrier
-from typing import Any
 
 import numpy as np
 import pytest
@@ -18,7 +17,6 @@ import fe_contact.compliance.flank_compliance_2d as flow
 from fe_contact.cache_reads import COMPLIANCE_READS
 from fe_contact.compliance import (
     FlankCompliance,
-    FlankCompliance3D,
     PlaneHypothesis,
     cache,
     condensation_cost,
@@ -36,12 +34,12 @@ from host import lock
 
 
 @pytest.fixture
-def counted(monkeypatch: pytest.MonkeyPatch) -> list[Gear]:
+def counted(monkeypatch):
     """Collect the gears that were computed."""
     computed: list[Gear] = []
     genuine = flow.compute_flank_compliance
 
-    def counting(gear: Gear, *arguments: object) -> FlankCompliance:
+    def counting(gear, *arguments):
         computed.append(gear)
         return genuine(gear, *arguments)
 
@@ -80,7 +78,7 @@ def test_who_wants_a_body_that_is_being_condensed_waits_for_it(tmp_path, monkeyp
     gear, all_missed = make_gear(), Barrier(4)
     recipe, read = coarse_plane(gear), cache.read_compliance
 
-    def missed(*arguments: Any) -> Any:
+    def missed(*arguments):
         result = read(*arguments)
         all_missed.wait(60.0)
         return result
@@ -100,7 +98,7 @@ def test_a_process_that_does_not_come_back_is_not_waited_for(tmp_path, monkeypat
     recipe, strain = coarse_plane(gear), PlaneHypothesis.PLANE_STRAIN
     key = flow.compliance_key(gear, recipe, strain, flow.condensed_teeth(gear, recipe, 1))
 
-    def counting(descriptor: int) -> None:
+    def counting(descriptor):
         tries.append(descriptor)
         lock(descriptor)
 
@@ -118,7 +116,7 @@ def test_a_process_that_does_not_come_back_is_not_waited_for(tmp_path, monkeypat
 def test_an_interruption_while_it_waits_is_told_as_such(tmp_path, monkeypatch, counted):
     gear, descriptors = make_gear(), []
 
-    def interrupted(descriptor: int) -> None:
+    def interrupted(descriptor):
         descriptors.append(descriptor)
         raise KeyboardInterrupt
 
@@ -131,7 +129,7 @@ def test_an_interruption_while_it_waits_is_told_as_such(tmp_path, monkeypatch, c
 
 
 def test_a_failure_where_nothing_can_be_locked_is_that_of_the_computation(tmp_path):
-    def failing() -> FlankCompliance:
+    def failing():
         raise ZeroDivisionError
 
     file = tmp_path / "no directory"
@@ -244,7 +242,7 @@ def count_runs(monkeypatch: pytest.MonkeyPatch) -> list[Gear]:
     computed: list[Gear] = []
     genuine = cyclic.compute_flank_compliance_3d
 
-    def counting(gear: Gear, *arguments: object, **reports: object) -> FlankCompliance3D:
+    def counting(gear, *arguments, **reports):
         computed.append(gear)
         return genuine(gear, *arguments, **reports)
 
@@ -353,7 +351,7 @@ def test_one_process_meshes_a_pair_and_the_coarse_meshes_that_follow(tmp_path, m
     sizes: list[int] = []
     genuine = quadratic_mesh.ask_gmsh
 
-    def counted(request: dict[str, Any], *rest: Any) -> dict[str, Any]:
+    def counted(request, *rest):
         sizes.append(len(request["regions"]))
         return genuine(request, *rest)
 

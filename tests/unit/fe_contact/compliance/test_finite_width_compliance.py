@@ -42,12 +42,12 @@ def self_compliance(found: FiniteWidthCompliance) -> float:
 
 
 @pytest.fixture(scope="module")
-def gear() -> Gear:
+def gear():
     return Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 
 
 @pytest.fixture(scope="module")
-def usual(gear: Gear) -> FiniteWidthCompliance:
+def usual(gear):
     return beyond(gear)
 
 

@@ -181,7 +181,7 @@ def test_checks_see_a_wrong_ring(monkeypatch):
     genuine = gear_module.close_ring
     spoil: Callable[..., object]
 
-    def spoiled(*arguments: object) -> object:
+    def spoiled(*arguments):
         return spoil(genuine(*arguments))
 
     monkeypatch.setattr(gear_module, "close_ring", spoiled)
@@ -214,7 +214,7 @@ def test_least_eigenvalue_and_pressure_are_those_of_closed_forms():
     grid_s, grid_z = np.broadcast_arrays(s, planes[:, None])
     for p, q in ((0, 0), (1, 0), (0, 1), (1, 1), (2, 0), (0, 2)):
 
-        def integral(low: float, high: float, power: int) -> float:
+        def integral(low, high, power):
             return float((high ** (power + 1) - low ** (power + 1)) / (power + 1))
 
         exact = integral(0, 1, p) * integral(-1, 0, q) + 2.0 * integral(1, 3, p) * integral(0, 2, q)

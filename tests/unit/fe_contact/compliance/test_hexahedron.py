@@ -25,12 +25,12 @@ RECIPE = replace(SectorRecipe.draft(GEAR), layers=8, merge_rows=(-1, -3))
 
 
 @pytest.fixture(scope="module")
-def section() -> QuadSector:
+def section():
     return quad_sector(GEAR, RECIPE)
 
 
 @pytest.fixture(scope="module")
-def nodes(section: QuadSector) -> np.ndarray:
+def nodes(section):
     """Nodes (m, 20, 3) of one strongly turned layer."""
     return layer_nodes(section.points[section.grid.quads], 5e-3, 0.1)
 

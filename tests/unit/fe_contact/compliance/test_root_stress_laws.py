@@ -299,7 +299,7 @@ def test_a_broken_law_is_refused_by_name(name):
 def test_checks_see_a_wrong_ring(monkeypatch):
     genuine = face_module.loaded_cuts
 
-    def spoiled(*arguments: object) -> object:
+    def spoiled(*arguments):
         cuts = genuine(*arguments)
         return replace(cuts, near={m: cuts.near[m] * (1.0 + 1e-3) for m in cuts.near})
 

@@ -50,7 +50,7 @@ def test_cut_planes_and_bore_do_not_move():
 
 @pytest.mark.filterwarnings("ignore::bounds.PlausibilityWarning")
 def test_a_pair_with_a_sector_deflects_less_and_is_another_result():
-    def mean(gear: Gear) -> float:
+    def mean(gear):
         pair = GearPair(WHOLE, gear)
         options = AnalysisOptions(level="draft", model="plane_strain", positions=8, receipt="minimal")
         return float(analyze(pair, TableAxes(torques=[100.0]), options).static_transmission_error.mean())

@@ -266,7 +266,7 @@ def candidates(slices: int, corner: bool = True) -> Candidates:
 
 
 @pytest.fixture(scope="module")
-def springs() -> ContactProblem:
+def springs():
     return Springs(PAIR)._springs(MODEL)
 
 

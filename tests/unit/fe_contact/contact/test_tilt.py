@@ -41,7 +41,7 @@ def bodies():
 
 
 @pytest.fixture(scope="module")
-def problem(bodies) -> ContactProblem:
+def problem(bodies):
     rule = PatchRule(0.25 * MODULE, 0.02 * MODULE, 1e-6)
     plain = contact_candidates(
         PAIR, ContactModel(corner_contact=True), POSITION, rule, Slices.of_pair(PAIR, 1)
@@ -195,7 +195,7 @@ def test_the_tangent_is_the_change_of_the_deflection_with_the_load(problem):
     point, total = tilted(problem), 4000.0
     point = point._replace(radius=np.full(len(point.bodies), 6e-3))
 
-    def solve(load: float, point: PointProblem = point) -> tuple[float, float]:
+    def solve(load, point=point):
         residual, force = np.zeros(4), np.zeros(point.gap.size)
         deflection, tangent, status, *_ = solve_point(point, load, force, residual)
         assert status == Status.CONVERGED

@@ -138,7 +138,7 @@ def test_an_explicit_model_decides(options, across, corrected):
 
 
 def test_the_estimate_falls_with_width_and_vanishes_with_poissons_ratio():
-    def excess(width: float, ratio: float) -> float:
+    def excess(width, ratio):
         gear = dataclasses.replace(GEAR, face_width=width, material=Material(210e9, ratio))
         return finite_width_excess(GearPair(gear, gear, 80e-3))[0]
 

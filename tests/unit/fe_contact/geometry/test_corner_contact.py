@@ -25,7 +25,7 @@ sides = pytest.mark.parametrize("side", SIDES)
 
 
 @pytest.fixture
-def pair() -> GearPair:
+def pair():
     return GearPair(make_gear(teeth=17, profile_shift_coefficient=0.3), make_gear(teeth=43))
 
 

@@ -223,7 +223,7 @@ def test_what_is_quadratic_in_either_direction_is_reproduced(shape):
 
 
 def test_a_smooth_flank_is_met_at_third_order():
-    def worst(count: int) -> float:
+    def worst(count):
         roll, face = np.linspace(4e-3, 19e-3, count), np.linspace(-12.5e-3, 12.5e-3, count)
         nodes = FlankGrid(roll, face, 1e-5 * np.sin(300.0 * roll)[:, None] * np.cos(150.0 * face))
         x, y = inside(83)

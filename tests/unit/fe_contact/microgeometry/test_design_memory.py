@@ -26,11 +26,11 @@ SEARCH = Search(DifferentialEvolution(), evaluations=60, positions=24, explorati
 
 
 @pytest.fixture
-def solved(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+def solved(monkeypatch):
     """Contact solves of designs, counted."""
     count, evaluate = [0], Evaluator.evaluate
 
-    def counted(self: Evaluator, values: Any) -> Any:
+    def counted(self, values):
         count[0] += 1
         return evaluate(self, values)
 
@@ -50,7 +50,7 @@ def test_a_stopped_search_goes_on_where_it_was(tmp_path, solved):
     whole, solved[0] = solved[0], 0
     asked = [0]
 
-    def cancel() -> bool:
+    def cancel():
         asked[0] += 1
         return asked[0] > 40
 

@@ -26,7 +26,7 @@ CORNERS = {"corner_contact": "on"}
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 

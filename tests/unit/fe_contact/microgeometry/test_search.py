@@ -174,7 +174,7 @@ def test_a_search_of_hardly_any_design_keeps_the_best(method, evaluations):
 def test_a_cancelled_search_keeps_the_best_so_far(after):
     bowl, asked = Bowl(), [0]
 
-    def cancel() -> bool:
+    def cancel():
         asked[0] += 1
         return asked[0] > after
 
@@ -218,7 +218,7 @@ def test_starts_that_have_ended_survive_an_interruption():
     assert len(every) == 4
     asked = [0]
 
-    def once_one_ended() -> bool:
+    def once_one_ended():
         asked[0] += 1
         return asked[0] > 1
 
@@ -317,11 +317,11 @@ def test_positions_of_every_analysis_join_until_the_limits_are_kept(exceeded, ro
     searched: list[list[float]] = []
     confirmed = iter([(0.0, 0.9), *((violation, 0.1 * k) for k, violation in enumerate(exceeded, 1))])
 
-    def confirm(*_: Any) -> Any:
+    def confirm(*_):
         violation, place = next(confirmed)
         return SimpleNamespace(violation=violation, harris_map=SimpleNamespace(position=np.array([place])))
 
-    def search_from(problem: DesignProblem, *_: Any, **__: Any) -> SearchRun:
+    def search_from(problem, *_, **__):
         searched.append(problem.evaluator.position.tolist())
         return CONVERGED
 
@@ -354,7 +354,7 @@ def harris(*ripples: float) -> HarrisMap:
 def concluded(after: HarrisMap, objective: float = 0.2, violation: float = 0.0) -> tuple[Outcome, str]:
     """Return the conclusion of a search from 0.042, 0.2 and 0.3 µm."""
 
-    def design(table: HarrisMap, value: float, over: float = 0.0) -> Any:
+    def design(table, value, over=0.0):
         return SimpleNamespace(
             harris_map=table, objective=Estimate(value * UM, 0.01 * UM, "m"), violation=over
         )

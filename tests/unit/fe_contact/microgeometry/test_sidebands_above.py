@@ -26,7 +26,7 @@ from fe_contact.microgeometry.drawn_teeth import (
     iso1328_tooth_tolerances,
 )
 from fe_contact.microgeometry.evaluator import Evaluator
-from fe_contact.microgeometry.order_limit import OrderLimit, PairsAbove
+from fe_contact.microgeometry.order_limit import OrderLimit
 from fe_contact.microgeometry.scatter import ONE_NODE
 from fe_contact.microgeometry.sidebands_above import MadePairs, ToothPassing, lines_of_pairs
 from fe_contact.microgeometry.tolerance_study import (
@@ -52,7 +52,7 @@ KINDS = [name for name in TEETH.widths if name != RUN_OUT]
 
 
 @pytest.fixture(scope="module")
-def designed() -> Evaluator:
+def designed():
     request = ToleranceRequest(PAIR, TORQUES, ALIKE, Sampling(positions=POSITIONS), OPTIONS, 0.0)
     study = design_study(request.space, TORQUES, [], StageClock(), Run(), request.checked)
     return replace(study.evaluator, nodes=ONE_NODE)
@@ -220,7 +220,7 @@ def study_of(limit: OrderLimit, teeth: ToothTolerances = TEETH) -> ToleranceStud
 
 
 @pytest.fixture(scope="module")
-def above() -> PairsAbove:
+def above():
     found = study_of(SIDEBAND).above
     assert found is not None
     return found

@@ -17,7 +17,6 @@ from fe_contact.microgeometry.sweep_request import SweepAxis, SweepRequest
 from fe_contact.microgeometry.tolerance_study import (
     Sampling,
     ToleranceRequest,
-    ToleranceStudy,
     estimated_quantile,
     scatter,
 )
@@ -35,7 +34,7 @@ SLOPES = Tolerances(0.0, {"pinion.profile_slope": 10e-6, "wheel.profile_slope": 
 
 
 @pytest.fixture(scope="module")
-def found() -> ToleranceStudy:
+def found():
     return scatter(
         PAIR, TORQUES, SLOPES, Sampling(samples=120, seed=3, positions=16), AnalysisOptions(**DRAFT)
     )
@@ -234,7 +233,7 @@ def request(pair: GearPair, axes: tuple[SweepAxis, ...] = AXES, **options: Any) 
 
 
 @pytest.fixture(scope="module")
-def swept() -> Sweep:
+def swept():
     return sweep(request(LONG_RELIEFS))
 
 

@@ -25,7 +25,7 @@ def table(pair: GearPair, cache: Path, **how: object) -> SteDatabase:
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 

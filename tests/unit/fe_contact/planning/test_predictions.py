@@ -40,7 +40,7 @@ LEVELS = ("draft", "standard", "fine")
 
 
 @pytest.fixture(scope="module", autouse=True)
-def condensed_once() -> None:
+def condensed_once():
     """Condense each time: what that costs is what is predicted and logged."""
 
 

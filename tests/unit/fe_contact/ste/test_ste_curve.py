@@ -244,7 +244,7 @@ def test_what_differs_from_pitch_to_pitch_is_beside_the_mesh_orders():
 
 
 @pytest.fixture
-def assessed(spur: SteDatabase) -> SteDatabase:
+def assessed(spur):
     """The fake table with errors of every source: source number in nm, times the load's number."""
     shape = spur.static_transmission_error.shape[1:]
     errors = np.zeros((len(SOURCES), QUANTITIES, *shape))

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from calculix import (
     Loading,
-    PlacedPair,
     flank_sides,
     input_deck,
     numbered_bodies,
@@ -73,7 +72,7 @@ PRINTED = """
 
 
 @pytest.fixture(scope="module")
-def placed() -> PlacedPair:
+def placed():
     pair, coarse = GearPair(GEAR, GEAR, 80e-3), Resolution(1.5)
     sites = contact_sites(pair, 0.3, Range((1e5, 1e5), 1e-6), coarse)
     return placed_pair(pair, placed_bodies(pair, 0.3, sites, coarse), 0.0)

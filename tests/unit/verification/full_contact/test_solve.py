@@ -154,7 +154,7 @@ def test_what_it_cannot_hold_is_refused_by_reason():
 
 
 def test_a_position_without_a_mesh_says_why(monkeypatch):
-    def fail(*_: object) -> None:
+    def fail(*_):
         raise MeshError("gmsh: no")
 
     monkeypatch.setattr(solved_position, "placed_bodies", fail)

@@ -32,7 +32,7 @@ TINY = {"torques": [100.0], "misalignments": [0.02e-6], "positions": 16, "tolera
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 

@@ -154,11 +154,11 @@ def test_a_study_that_reads_nodes_alone_gets_nothing_between_them(cache):
 
 
 def test_misalignments_are_inserted_until_every_interval_meets_the_tolerance(tmp_path):
-    def gear(hand: float) -> Gear:
+    def gear(hand):
         flank = FlankModification(helix_crowning=4e-6)
         return Gear(24, 2e-3, 15e-3, 24e-3, helix_angle=hand * 0.3, modification=flank)
 
-    def helical(skews, force) -> SteDatabase:
+    def helical(skews, force):
         pair = GearPair(gear(1.0), gear(-1.0), 48e-3 / np.cos(0.3))
         wish = {"tolerance": 0.05, "model": "3d", "cache": tmp_path}
         return analyze(pair, normal_forces=force, misalignments=skews, **wish)

@@ -31,7 +31,7 @@ pytestmark = pytest.mark.usefixtures("coarse_sectors")
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 
@@ -189,7 +189,7 @@ def flank_point(gear: Toothing, tooth: int, angle: float, roll: float, along: fl
 
 
 @pytest.fixture(scope="module")
-def found(cache: Path) -> Any:
+def found(cache):
     return deformed_pairs(
         helical_pair(),
         *point_request(normal_force=2000.0, misalignment=15e-6, level="draft"),

@@ -34,12 +34,12 @@ def with_flank(modification: FlankModification) -> GearPair:
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 
 @pytest.fixture(scope="module")
-def pair(cache: Path) -> CondensedPair:
+def pair(cache):
     """Return the corrected plane, analyzed with a full receipt."""
     return condensed(analyze(PAIR, torques=TORQUES, level="draft", positions=64, cache=cache), cache)
 

@@ -44,7 +44,7 @@ def table_of(pair: GearPair, cache: Path, model: str = "plane_strain", **wish: o
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 

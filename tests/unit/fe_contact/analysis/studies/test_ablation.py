@@ -2,7 +2,6 @@
 
 import json
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -12,13 +11,11 @@ from spur_gears import GEAR
 from fe_contact import FlankModification, Gear, GearPair, PitchDeviation, ablate, analyze, study_sensitivity
 from fe_contact.analysis.database.compute_database import compute_database
 from fe_contact.analysis.pairs import contact_lines
-from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.studies import ablation
 from fe_contact.analysis.studies.ablation import Ablation, predicted_ablation
 from fe_contact.analysis.studies.sensitivity import RippleCurve
 from fe_contact.errors import InputError
 from fe_contact.options import Run, TableAxes
-from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.studies.ablate.run import RUN
 from model_studies.workers import RunCost, dispatch
 
@@ -29,7 +26,7 @@ ASKED = {"normal_forces": [800.0, 2500.0], "level": "draft", "positions": 64}
 
 
 @pytest.fixture(scope="module")
-def made() -> Ablation:
+def made():
     return ablate(PAIR, *table_request(**ASKED), only=ONLY)
 
 
@@ -77,7 +74,7 @@ def test_large_tables_are_shared_by_their_blocks_and_small_ones_whole(made, star
     class Noting:
         cost = RunCost()
 
-        def run(self, function: Any, shared: Any, items: Any) -> Any:
+        def run(self, function, shared, items):
             names.add(function.__name__)
             return (function(shared, item) for item in items)
 
@@ -130,7 +127,7 @@ def test_what_no_plane_holds_stays_in():
 def test_a_tolerance_chooses_one_mesh_for_all_tables(monkeypatch):
     made = []
 
-    def noted(checked: Checked, *further: object) -> SteDatabase:
+    def noted(checked, *further):
         made.append((checked.request.options.level, checked.request.options.tolerance))
         return compute_database(checked, *further)
 

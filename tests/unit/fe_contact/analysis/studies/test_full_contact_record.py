@@ -9,7 +9,6 @@ from analysis_requests import table_request
 
 from bounds import written
 from fe_contact import FlankModification, Gear, GearPair
-from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.studies.closed_form_fidelity import THIN_SLICES
 from fe_contact.analysis.studies.frontier import frontier
@@ -36,12 +35,12 @@ FIDELITIES = ["iso6336", "thin_slices"]
 
 
 @pytest.fixture(scope="module")
-def checked() -> Checked:
+def checked():
     return check_request(PAIR, TableAxes(normal_forces=FORCES), AnalysisOptions(positions=32))
 
 
 @pytest.fixture(scope="module")
-def table(checked: Checked) -> SteDatabase:
+def table(checked):
     """Of thin slices, which take no mesh."""
     return THIN_SLICES.run(checked)
 
