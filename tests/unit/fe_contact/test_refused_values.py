@@ -1,6 +1,6 @@
 """Values that make no object are refused by the name of their field, impossible gears by what is wrong.
 
-Far ends of bounds are walked in tests/contract/test_every_bound_in_python.py, the slips of a case are in
+Declared bounds are those of tests/contract/test_declared_bounds.py, the slips of a case are in
 test_bad_input.py beside it.
 """
 
@@ -38,7 +38,7 @@ from fe_contact.microgeometry.tolerances import Tolerances
 from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.options import AnalysisOptions, OperatingPoint
 
-NAN, INF = math.nan, math.inf
+NAN = math.nan
 SHIFT = "profile_shift_coefficient"
 ZEROS = ((0.0, 0.0), (0.0, 0.0))
 PLANE: dict[str, Any] = {"level": "draft", "model": "plane_strain"}
@@ -68,10 +68,6 @@ def pitches(count: int) -> object:
     return make_gear(pitch_deviation=PitchDeviation((1e-6,) * count))
 
 
-def blank(**fields: Any) -> object:
-    return replace(BLANK, **fields)
-
-
 def shaft(**fields: Any) -> object:
     return Shaft(**({"length": 0.2, "diameter": 0.04, "position": 0.06, "bearing_stiffness": 4e8} | fields))
 
@@ -82,14 +78,6 @@ def recipe(**fields: Any) -> object:
 
 def sector(**fields: Any) -> object:
     return replace(SectorRecipe.draft(GEAR), **fields)
-
-
-def pair(distance: Any) -> object:
-    return GearPair(make_gear(), make_gear(), distance)
-
-
-def internal(distance: Any) -> object:
-    return InternalGearPair(make_gear(30), make_ring(80, addendum_coefficient=0.8), distance)
 
 
 def table(**options: Any) -> object:
@@ -120,46 +108,12 @@ def scattered(points: int) -> object:
 
 Row = tuple[Callable[..., object], Any, str]
 ROWS: list[Row] = [
-    (rack, {"normal_module": 0.0}, "normal_module"),
-    (rack, {"normal_module": NAN}, "normal_module"),
-    (rack, {"normal_pressure_angle": 20.0}, "normal_pressure_angle"),
-    (rack, {"addendum_coefficient": -1.0}, "addendum_coefficient"),
-    (rack, {"dedendum_coefficient": 0.0}, "dedendum_coefficient"),
-    (rack, {"root_radius_coefficient": -0.1}, "root_radius_coefficient"),
-    (make_gear, {"teeth": 20.0}, "teeth"),
-    (make_gear, {"teeth": True}, "teeth"),
-    (make_gear, {"bore_diameter": -1.0}, "bore_diameter"),
-    (make_gear, {"normal_module": "4"}, "normal_module"),
-    (make_gear, {"normal_pressure_angle": 20.0}, "normal_pressure_angle"),
-    (make_gear, {"helix_angle": 15.0}, "helix_angle"),
-    (make_gear, {SHIFT: NAN}, SHIFT),
-    (make_gear, {"tip_diameter": 0.0}, "tip_diameter"),
-    (make_gear, {"thickness_allowance": 0.1}, "thickness_allowance"),
-    (make_ring, {"teeth": -60}, "teeth"),
     (make_ring, {"cutter_teeth": 60}, "cutter_teeth"),
-    (make_ring, {"rim_diameter": 0.0}, "rim_diameter"),
-    (make_ring, {"helix_angle": 1.0}, "helix_angle"),
-    (make_ring, {"face_width": NAN}, "face_width"),
-    (make_ring, {"thickness_allowance": -1e-6}, "thickness_allowance"),
-    (make_ring, {"root_radius_coefficient": -0.1}, "root_radius_coefficient"),
-    (make_ring, {SHIFT: 4.0}, SHIFT),
-    (make_ring, {"tip_diameter": -0.2}, "tip_diameter"),
     (FlankModification, {"root_relief": 2e-5}, "root_relief_length"),
     (FlankModification, {"end_relief": 2e-5}, "end_relief_length"),
     (FlankModification, {"end_relief_datum_face": 1e-6}, "end_relief_datum_face_length"),
     (FlankModification, {"profile_crowning_tip": 1e-6}, "profile_crowning_tip_length"),
     (FlankModification, {"triangular_root_relief": 1e-6}, "triangular_root_relief_length"),
-    (FlankModification, {"tip_relief": 20.0, "tip_relief_length": 1e-3}, "tip_relief"),
-    (FlankModification, {"tip_relief_length": -1e-3}, "tip_relief_length"),
-    (FlankModification, {"tip_relief_length": NAN}, "tip_relief_length"),
-    (FlankModification, {"profile_slope": NAN}, "profile_slope"),
-    (FlankModification, {"helix_crowning": 5.0}, "helix_crowning"),
-    (FlankModification, {"helix_slope": -5.0}, "helix_slope"),
-    (FlankModification, {"flank_twist": 5.0}, "flank_twist"),
-    (FlankModification, {"tip_rounding": NAN}, "tip_rounding"),
-    (FlankModification, {"tip_rounding": 0.3}, "tip_rounding"),
-    (FlankModification, {"tip_chamfer": -1e-4}, "tip_chamfer"),
-    (FlankModification, {"tip_chamfer": 1e-4, "tip_chamfer_angle": 45.0}, "tip_chamfer_angle"),
     (relieved, {"root_relief": 1e-5, "root_relief_length": 9e-3}, "modification.root_relief_length"),
     (relieved, {"end_relief": 1e-5, "end_relief_length": 0.0126}, "modification.end_relief_length"),
     (
@@ -192,24 +146,8 @@ ROWS: list[Row] = [
     (PitchDeviation, [(0.0, 5.0)], "pitch_deviation[1]"),
     (PitchDeviation, [("5",)], "pitch_deviation[0]"),
     *[(pitches, [count], "pitch_deviation") for count in (1, 19, 21)],
-    (blank, {"rim_thickness": 0.0}, "rim_thickness"),
-    (blank, {"web_thickness": NAN}, "web_thickness"),
-    (blank, {"hub_diameter": -1.0}, "hub_diameter"),
-    (blank, {"web_offset": INF}, "web_offset"),
-    (BoreSeat, {"radial_foundation": 0.0}, "radial_foundation"),
-    (BoreSeat, {"axial_foundation": -1.0}, "axial_foundation"),
-    (BoreSeat, {"width": 0.0}, "width"),
-    (BoreSeat, {"offset": NAN}, "offset"),
     (BoreSeat, {"key": Key(1e-3)}, "tangential_foundation"),
-    (Key, [0.0], "width"),
-    (Key, [1e-3, 4.0], "angle"),
-    (shaft, {"length": 0.0}, "length"),
-    (shaft, {"diameter": -1.0}, "diameter"),
     (shaft, {"position": 0.41}, "position"),
-    (shaft, {"position": NAN}, "position"),
-    (shaft, {"bearing_stiffness": 0.0}, "bearing_stiffness"),
-    *[(pair, [distance], "center_distance") for distance in (0.0, NAN, INF, "0.08")],
-    *[(internal, [distance], "center_distance") for distance in (0.0, -0.1, NAN, "0.1")],
     (recipe, {"flank_size": 0.0}, "flank_size"),
     (recipe, {"tip_size": -1e-5}, "tip_size"),
     (recipe, {"tip_size": 1.0}, "tip_size"),

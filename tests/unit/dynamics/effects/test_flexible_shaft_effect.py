@@ -120,7 +120,6 @@ def test_without_bearings_that_hold_it_a_shaft_twists_only():
     [
         ({"sections": (BeamSection(0.1, 0.04),)}, "as long as the shaft"),
         ({"inertia": Inertia(1.0, 1.0, 1.0)}, "left out where sections are given"),
-        ({"damping_ratio": -0.1}, "damping_ratio"),
     ],
 )
 def test_shafts_that_do_not_fit_their_sections_are_refused(changes, words):

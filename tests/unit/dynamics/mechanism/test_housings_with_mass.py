@@ -260,7 +260,6 @@ def test_what_is_no_housing_with_mass_is_named():
         "stiffness": {"stiffness": rows(np.diag([1.0] * 19 + [0.0]))},
         "modal_coordinates": {"mass": None, "modal_coordinates": 3},
         "seat_positions": {"seat_positions": at[:2]},
-        "damping_ratio": {"damping_ratio": -0.1},
     }
     for field, changes in cases.items():
         with pytest.raises(InputError) as caught:

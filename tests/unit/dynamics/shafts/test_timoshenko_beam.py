@@ -203,9 +203,7 @@ def test_a_bearing_at_the_end_of_added_lengths_is_at_the_end():
 
 def test_what_is_no_beam_is_named():
     cases = {
-        "length": lambda: BeamSection(0.0, 0.04),
         "bore_diameter": lambda: BeamSection(0.1, 0.04, 0.04),
-        "poissons_ratio": lambda: BeamSection(0.1, 0.04, poissons_ratio=0.5),
         "sections": lambda: timoshenko_beam([]),
         "stations[0]": lambda: timoshenko_beam([STUBBY], stations=[0.4]),
         "longest": lambda: timoshenko_beam([STUBBY], longest=0.0),
