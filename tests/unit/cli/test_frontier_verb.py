@@ -171,10 +171,3 @@ def test_the_verb_chooses_the_rung_of_a_run_up(tmp_path):
     assert done.exit_code == 0, done.output
     printed = json.loads(done.stdout)
     assert (printed["chosen"], printed["reference"]) == ("1_nm", "0.1_nm")
-
-
-def test_unknown_rungs_of_a_scene_are_said_by_name():
-    scene = EXAMPLE.with_name("palermo_scene.toml")
-    done = loa("frontier", scene, "--rungs", "2_nm")
-    assert done.exit_code == 2
-    assert "rungs" in done.stderr

@@ -5,7 +5,6 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
-import h5netcdf
 import numpy as np
 import pytest
 from command_line import loa
@@ -25,7 +24,6 @@ from lineofaction.gearbox.studies.sensitivity.run import (
 from lineofaction.report.design.sensitivity import PAGE
 from lineofaction.report.document import write_report
 from lineofaction.report.drawing.figure import Panel
-from model_studies.netcdf import UnreadableFile
 
 STUDY = "lineofaction.gearbox.studies.sensitivity.run"
 
@@ -246,18 +244,6 @@ def test_studies_come_back_from_their_file(tmp_path):
             assert np.array_equal(
                 mine.center_distance_change.deviation, theirs.center_distance_change.deviation
             )
-
-
-def test_a_damaged_or_foreign_study_is_refused(tmp_path):
-    write_studies((study(),), tmp_path / "s.nc")
-    with h5netcdf.File(tmp_path / "s.nc", "a") as file:
-        file.variables["pairs.normal_force"][0] = 7.0
-    with pytest.raises(UnreadableFile, match="checksum"):
-        read_studies(tmp_path / "s.nc")
-    with h5netcdf.File(tmp_path / "s.nc", "a") as file:
-        file.attrs["schema"] = "else"
-    with pytest.raises(UnreadableFile, match="expected lineofaction sensitivity study"):
-        read_studies(tmp_path / "s.nc")
 
 
 def test_a_study_is_on_the_report_page(tmp_path):

@@ -325,11 +325,6 @@ def test_a_rigid_bearing_is_stiff_and_a_floating_one_free_along_the_axis():
     assert said(OpenedUnit.of(document), 31, "radial_stiffness")[1].startswith("1e+23 N/m means rigid")
 
 
-def test_a_bearing_without_any_stiffness_is_defaulted_and_said():
-    unit = OpenedUnit.of(two_stages({32: {"radial_stiffness": None}}))
-    assert said(unit, 32, "radial_stiffness")[0] == "defaulted"
-
-
 def test_a_stiffness_at_the_operating_point_turns_from_u_v_w_to_x_y_z():
     # axial 1, across v 2, across w 3 (1e8 N/m), about v 4 (1e7 N mm/rad), v with the rotation about w
     values = {"f_u_d_u": 1e8, "f_v_d_v": 2e8, "f_w_d_w": 3e8, "m_v_rot_v": 4e7, "m_w_rot_w": 5e7}

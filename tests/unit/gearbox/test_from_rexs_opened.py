@@ -258,23 +258,3 @@ def test_a_bearing_between_two_shafts_leaves_their_speeds_alone():
     (coupling,) = unit.scene.couplings
     assert coupling.torsional_stiffness_n_m_per_rad == 0.0
     assert np.diag(coupling.stiffness_matrix) == pytest.approx([1e8, 1e8, 0.0, 0.0, 0.0, 0.0])
-
-
-def test_every_value_is_accounted_for_once():
-    document = two_stages()
-    lines = OpenedUnit.of(document).lines
-    stated = [(place, a.id) for place, part in document.model.all_components() for a in part.attributes]
-    known = [(line.place, line.item) for line in lines]
-    assert len(known) == len(set(known))
-    assert set(stated) <= set(known)
-
-
-def test_the_files_are_a_case_a_stage_the_scene_and_the_account():
-    names = list(OpenedUnit.of(two_stages()).files())
-    assert names == [
-        "cylindrical_stage_21.toml",
-        "cylindrical_stage_22.toml",
-        "scene.toml",
-        "load_cases.toml",
-        "import.csv",
-    ]

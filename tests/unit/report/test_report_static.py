@@ -93,17 +93,6 @@ def test_the_table_has_every_load_with_its_error(database):
     assert table.rows[2][2] == "5.978 ± 0.012"
 
 
-def test_the_load_that_serves_lift_off_is_not_drawn(database):
-    assert drawn_loads(database) == (1, 2, 3)
-
-
-def test_shares_sum_to_one_wherever_a_pair_is(database):
-    position, followed = pair_shares(database, 2)
-    total = np.sum(list(followed.values()), axis=0)
-    assert position[-1] == 2.0
-    np.testing.assert_allclose(total, 1.0, atol=1e-12)
-
-
 def test_each_pair_passes_as_the_one_before_did_a_pitch_earlier(database):
     position, followed = pair_shares(database, 2)
     pitch = len(database.position)
@@ -112,11 +101,6 @@ def test_each_pair_passes_as_the_one_before_did_a_pitch_earlier(database):
     assert 0.28 < carried[0] < 0.31  # enters
     assert 1.69 < carried[-1] < 1.72  # leaves
     assert np.all(np.diff(carried) < 0.02)  # without a gap
-
-
-def test_load_sharing_shows_three_loads(database):
-    titles = [panel.title for panel in load_sharing(database).content]
-    assert titles == ["10 N m", "100 N m", "400 N m"]
 
 
 def test_secant_stiffness_is_force_over_ste_and_width(database):
@@ -382,13 +366,6 @@ def test_a_pair_of_contact_ratio_one_and_a_half_is_told_by_its_numbers(database)
     assert "One pair carries the whole load in" in text
     assert "low where more do, high where fewer" in text
     assert "single" not in text
-
-
-def test_a_pair_of_high_contact_ratio_never_stands_on_one_pair(database):
-    text = words(of_high_contact_ratio(database))
-    assert "2 or 3 tooth pairs carry the load" in text
-    assert "no pair is ever alone" in text
-    assert "One pair" not in text and "single" not in text
 
 
 def test_a_helical_pair_has_no_steps(database):

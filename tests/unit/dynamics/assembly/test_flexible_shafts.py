@@ -211,15 +211,6 @@ def test_the_mass_of_each_shaft_moves_as_mesh_and_bearings_push():
             assert np.max(np.abs(taken)) > 1.0
 
 
-def test_both_integrators_agree():
-    runs = [
-        simulate(run_up(0.02, integration=Integration(method, 1e-11))) for method in ("implicit", "explicit")
-    ]
-    first, second = (run.dynamic_transmission_error[0] for run in runs)
-    assert np.sqrt(np.mean((first - second) ** 2)) < 2e-11
-    assert np.ptp(first) > 1e-6
-
-
 @pytest.mark.parametrize("helix", [0.0, 0.15])
 def test_a_mesh_reads_the_tilt_of_its_gears_and_not_that_of_their_shafts(helix):
     """m = s b (tilt_1 - tilt_2) . (z x n) with the tilts of the sections that carry the gears."""

@@ -131,15 +131,6 @@ def test_the_audit_closes_with_friction_as_its_own_column(wide, method):
     assert energy.relative < 1e-3
 
 
-def test_both_integrators_agree(wide):
-    runs = [
-        simulate(replace(sliding_scene(wide, duration=0.01), integration=Integration(m, tolerance=1e-11)))
-        for m in ("implicit", "explicit")
-    ]
-    difference = runs[0].dynamic_transmission_error - runs[1].dynamic_transmission_error
-    assert np.sqrt(np.mean(difference**2)) < 1e-11
-
-
 def test_off_changes_no_bit(rigid):
     bare = replace(rigid, sliding_share=None, sliding_lever=None)
     plain = simulate(sliding_scene(bare, None))

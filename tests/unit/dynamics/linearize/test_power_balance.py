@@ -12,7 +12,7 @@ from two_stage_scenes import two_stages
 from dynamics.assembly.assemble import assemble
 from dynamics.forces import RollingContact
 from dynamics.joints import Housing
-from dynamics.linearize import ForcedResponse, forced_response
+from dynamics.linearize import forced_response
 from dynamics.loads import TimeLaw, Unbalance
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate
@@ -123,11 +123,3 @@ def test_a_run_in_steady_state_loses_what_linear_theory_says():
     assert power("meshes") == pytest.approx(kinds["mesh"], rel=0.01)
     assert power("bushings") == pytest.approx(kinds["bearing"] + kinds["housing"], rel=0.01)
     assert power("position", "axes") == pytest.approx(float(np.sum(found.input)), rel=0.01)
-
-
-def test_a_file_keeps_the_balance(tmp_path):
-    response = forced_response(assemble(in_housing(gear_pair_scene(effects=ON))), SPEEDS[:2], 2)
-    response.to_netcdf(tmp_path / "response.nc")
-    found, expected = ForcedResponse.from_netcdf(tmp_path / "response.nc").power, response.power
-    assert (found.source, found.sink, found.kind) == (expected.source, expected.sink, expected.kind)
-    np.testing.assert_array_equal(found.loss, expected.loss)

@@ -21,7 +21,7 @@ from dynamics.acoustics import (
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.linearize import forced_response
-from dynamics.noise import RadiatedSound, housing_radiation, radiated_sound
+from dynamics.noise import housing_radiation, radiated_sound
 
 AIR = Air()
 
@@ -116,14 +116,6 @@ def test_without_mass_to_speak_of_the_hull_follows_its_springs():
     velocity = 3.0 * 2.0 * np.pi * driven.frequency / stiffness
     area = normal_displacement(body.surface)[1].sum()
     np.testing.assert_allclose(found.power, AIR.impedance * area * velocity**2 / 6.0, rtol=0.03)
-
-
-def test_a_result_comes_back_from_its_file_as_it_was(tmp_path):
-    sound().to_netcdf(tmp_path / "sound.nc")
-    again = RadiatedSound.from_netcdf(tmp_path / "sound.nc")
-    for name in RadiatedSound.arrays():
-        np.testing.assert_array_equal(getattr(again, name), getattr(sound(), name))
-    assert (again.housing, again.bearing, again.metadata) == (("housing",), PAIR, sound().metadata)
 
 
 def test_what_does_not_belong_together_is_refused():
