@@ -124,7 +124,6 @@ UNIT = {"mass_kg": 1.0, "polar_kg_m2": 1.0, "transverse_kg_m2": 1.0}
         ("discs[0].position_mm", disc(position_mm=1000.0)),
         ("discs[0].inertia", disc(inertia=UNIT)),
         ("discs[0].cylinder.bore_diameter_mm", disc(cylinder=CYLINDER)),
-        ("shafts[0].damping_ratio", -1.0),
     ],
 )
 def test_shafts_that_cannot_be_are_one_fault_by_name(field, value):
