@@ -9,8 +9,7 @@ import pytest
 from fastapi.testclient import TestClient
 from running_service import PATIENCE_S, REFERENCES, until
 
-from fe_contact.analysis.flanks.flank_results import flank_results
-from fe_contact.options import AnalysisOptions, OperatingPoint
+from fe_contact import AnalysisOptions, OperatingPoint, flank_results
 from lineofaction.client import LineOfActionClient
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.problems import ServiceError

@@ -12,13 +12,11 @@ import numpy as np
 import pytest
 from study_service import CASE, prepared, scene_by_hash, study_service
 
-from dynamics.loads import TimeLaw
-from dynamics.results import RunResult
-from dynamics.simulation import simulate
+from dynamics import RunResult, TimeLaw, simulate
 from dynamics.study import Response, responses_of
+from fe_contact import SteDatabase
 from fe_contact.analysis.studies.frontier import FIDELITIES
 from fe_contact.errors import SolveError
-from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.result_figures import figures_of
 from lineofaction.gearbox.stages import PacedFraction

@@ -12,14 +12,13 @@ from spur_gears import make_gear, make_ring
 import dynamics
 import fe_contact
 from bounds import Choice, Kind, RefusedValue, declarations
-from dynamics.bearings.rolling_bearing import BallBearing
+from dynamics import Inertia, TimeLaw, hollow_cylinder
+from dynamics.bearings import BallBearing
 from dynamics.housings import MeshedHousing
-from dynamics.loads import TimeLaw
 from dynamics.meshes.stiffness_table import straight_table
 from dynamics.settings.load_case import CaseForce
-from dynamics.shafts import Inertia, hollow_cylinder
 from dynamics.solid_housing import Material
-from fe_contact.geometry import GearPair, InternalGearPair, RingGear
+from fe_contact import GearPair, InternalGearPair, RingGear
 
 UNDECLARED = {
     **dict.fromkeys(("name", "shaft", "first", "driver"), "a"),

@@ -11,13 +11,10 @@ import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene, spring_table, with_gear, with_mesh
 
+from dynamics import CoastFlank, Scene, TimeLaw, simulate
 from dynamics.assembly import assemble
 from dynamics.effects import EFFECTS as OF_DYNAMICS
 from dynamics.influence import decide_effects, estimate_influences
-from dynamics.loads import TimeLaw
-from dynamics.meshes import CoastFlank
-from dynamics.scene import Scene
-from dynamics.simulation import simulate
 from fe_contact import FlankModification, Gear, GearPair, PitchDeviation, Shaft, SteDatabase, analyze
 from fe_contact.analysis.request import request
 from fe_contact.contact import ContactModel

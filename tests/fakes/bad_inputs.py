@@ -7,9 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from fe_contact.analysis.analyze import analyze
-from fe_contact.geometry import FlankModification, Gear, GearPair
-from fe_contact.material import Material
+from fe_contact import FlankModification, Gear, GearPair, Material, analyze
 
 MM, UM, DEG = 1e-3, 1e-6, math.pi / 180.0
 Table = dict[str, Any]

@@ -9,10 +9,7 @@ from typing import Any
 
 from planetary_scenes import driven_scene, published_set
 
-from dynamics.joints import Coupling, ImposedRotation
-from dynamics.loads import LoadTorque, TimeLaw
-from dynamics.scene import Scene
-from dynamics.simulation import simulate
+from dynamics import Coupling, ImposedRotation, LoadTorque, Scene, TimeLaw, simulate
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 Table = dict[str, Any]

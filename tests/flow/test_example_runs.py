@@ -7,9 +7,8 @@ from pathlib import Path
 import pytest
 from command_line import loa
 
-from dynamics.simulation import simulate
-from fe_contact import analyze
-from fe_contact.ste import SteDatabase
+from dynamics import simulate
+from fe_contact import SteDatabase, analyze
 from lineofaction.gearbox.convert.case import analysis_options, gear_pair, table_axes
 from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.subjects import scene_of, with_case

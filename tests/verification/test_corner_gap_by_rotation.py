@@ -13,21 +13,11 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from fe_contact import FlankModification, Gear, GearPair, InternalGearPair, RingGear
 from fe_contact.contact.plain_touch import conjugate_touch
 from fe_contact.contact.touch import modified_touch
 from fe_contact.effects.flank_modification import ModificationGap
-from fe_contact.geometry import (
-    FlankModification,
-    Gear,
-    GearPair,
-    InternalGearPair,
-    ParallelAxes,
-    RingGear,
-    Toothing,
-    corner_contact,
-    tooth_profile,
-)
-from fe_contact.geometry.corner_contact import Side
+from fe_contact.geometry import ParallelAxes, Side, Toothing, corner_contact, tooth_profile
 
 
 def gear(teeth: int, **fields: Any) -> Gear:

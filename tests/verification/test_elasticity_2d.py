@@ -9,10 +9,9 @@ from scipy.sparse.linalg import splu
 from skfem import Basis, ElementTriP2, ElementVector, MeshTri2
 from skfem.models.elasticity import linear_elasticity
 
+from fe_contact import Gear, Material
 from fe_contact.compliance import PlaneHypothesis
 from fe_contact.compliance.plane_elasticity import stiffness_matrix
-from fe_contact.geometry import Gear
-from fe_contact.material import Material
 from fe_contact.mesh import MeshRecipe, mesh_gear
 
 STEEL = Material()

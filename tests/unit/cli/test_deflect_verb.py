@@ -27,11 +27,7 @@ from lineofaction.gearbox.studies.deflect.figures import optimization_inputs, wr
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks, Outline
 from lineofaction.gearbox.studies.deflect.run import RUN
 from lineofaction.gearbox.studies.optimize import Inputs as OptimizeInputs
-from lineofaction.report.deflection.deflect import (
-    PAGE,
-    _force_table,
-    _meshes_worst_first,
-)
+from lineofaction.report.deflection.deflect import PAGE, _force_table, _meshes_worst_first
 from lineofaction.report.deflection.gearbox_drawing import _exaggeration
 from lineofaction.report.document import write_report
 from lineofaction.report.drawing.figure import Table, number

@@ -10,15 +10,10 @@ from command_line import loa
 
 from dynamics.accuracy import FidelityResult as SceneResult
 from dynamics.accuracy import Frontier as SceneFrontier
+from fe_contact import FlankModification, Frontier, GearPair
 from fe_contact.analysis.studies.fidelity_result import FidelityResult
-from fe_contact.analysis.studies.frontier import Frontier
 from fe_contact.analysis.studies.full_contact_cost import FULL_CONTACT, MEASURED_GEAR, known_full_contact
-from fe_contact.analysis.studies.full_contact_record import (
-    PLANE,
-    FullContactComparison,
-    FullContactRecord,
-)
-from fe_contact.geometry import FlankModification, GearPair
+from fe_contact.analysis.studies.full_contact_record import PLANE, FullContactComparison, FullContactRecord
 from lineofaction.gearbox.studies.frontier.run import RUN
 from lineofaction.report.drawing.image import png
 from lineofaction.report.drawing.interactive import plotly_figure

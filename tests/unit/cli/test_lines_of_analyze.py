@@ -11,9 +11,8 @@ from command_line import loa
 from typer.testing import Result
 
 from bounds.error_digits import with_error
-from fe_contact import AllowedError, FlankModification, Gear, GearPair, analyze
+from fe_contact import AllowedError, AnalysisOptions, FlankModification, Gear, GearPair, TableAxes, analyze
 from fe_contact.analysis.run_plan import plan_run
-from fe_contact.options import AnalysisOptions, TableAxes
 from lineofaction.cli.tolerance_lines import tolerance_lines, tolerance_warnings
 from lineofaction.gearbox.convert.answers import draft_line
 from lineofaction.gearbox.convert.effects import assumption_lines, ledger_table, run_lines

@@ -9,18 +9,14 @@ import numpy as np
 import pytest
 from command_line import loa
 
-from fe_contact.analysis.studies.sensitivity import RippleCurve, Sensitivity
+from fe_contact import Sensitivity
+from fe_contact.analysis.studies.sensitivity import RippleCurve
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, read_model
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.sensitivity import Inputs
-from lineofaction.gearbox.studies.sensitivity.run import (
-    RUN,
-    PairStudy,
-    read_studies,
-    write_studies,
-)
+from lineofaction.gearbox.studies.sensitivity.run import RUN, PairStudy, read_studies, write_studies
 from lineofaction.report.design.sensitivity import PAGE
 from lineofaction.report.document import write_report
 from lineofaction.report.drawing.figure import Panel

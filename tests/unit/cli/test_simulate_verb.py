@@ -7,8 +7,7 @@ import pytest
 from command_line import loa
 from geared_scenes import gear_pair_scene
 
-from dynamics.results import RunResult
-from dynamics.simulation import simulate
+from dynamics import RunResult, simulate
 from dynamics.types import RunStatus
 from lineofaction.cli.simulate import _run, _run_headlines
 from lineofaction.gearbox.convert.scene_effects import scene_table

@@ -19,8 +19,7 @@ from declared_figures import check_declared
 from scene_files import SCENE, scene_file
 from spur_case import spur_case
 
-from dynamics.results import RunResult
-from dynamics.simulation import simulate
+from dynamics import RunResult, simulate
 from dynamics.study import QUANTITIES, Design, Levels, Response, Study, StudyTask, responses_of, study
 from dynamics.study.run_study import _run_batch
 from fe_contact.ste import PairGeometry

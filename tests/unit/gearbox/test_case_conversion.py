@@ -15,13 +15,7 @@ from spur_case import spur_case
 from bounds import Kind
 from fe_contact import AllowedError, FlankModification
 from fe_contact.flank.drawing_starts import DrawingStarts
-from lineofaction.gearbox.convert.case import (
-    analysis_options,
-    case_json,
-    gear_pair,
-    table_axes,
-    with_flanks,
-)
+from lineofaction.gearbox.convert.case import analysis_options, case_json, gear_pair, table_axes, with_flanks
 from lineofaction.gearbox.convert.checked_case import check_case
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, read_model, validated

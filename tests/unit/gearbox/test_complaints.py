@@ -15,12 +15,7 @@ from dynamics.mechanism.passing import MESH, SIDEBAND
 from lineofaction.cli.commands import app
 from lineofaction.gearbox.convert.case_plausibility import case_warnings
 from lineofaction.gearbox.convert.checked_case import CheckedCase
-from lineofaction.gearbox.convert.complaint import (
-    Complaint,
-    complaint_of,
-    complaint_of_case,
-    marks_of_case,
-)
+from lineofaction.gearbox.convert.complaint import Complaint, complaint_of, complaint_of_case, marks_of_case
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import validated

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from small_inputs import small_inputs
 
+from fe_contact import Limits
 from fe_contact.microgeometry.design_problem import PENALTY
 from fe_contact.microgeometry.linearized_table import tabled_loads
-from fe_contact.microgeometry.objective import Limits
 from fe_contact.microgeometry.scatter import ScatterNodes
 from fe_contact.types import FloatArray
 from host.directories import cache_home

@@ -12,8 +12,7 @@ from fzg_reference import FOLDER, needs_fzg_reference
 from machine_texts import GEAR, Wave, heading, machine_text, wave_texts
 from spur_case import spur_case
 
-from fe_contact.flank.modification import FlankModification
-from fe_contact.geometry import Gear, ToothFlank
+from fe_contact import FlankModification, Gear, ToothFlank
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.inspection.measured_gear import Chart
 from lineofaction.gearbox.inspection.population import gear_files, inspected_gear, population, values_beside

@@ -10,9 +10,8 @@ import pytest
 from changed_scenes import DROP, By, assert_refused, changed, changed_scene, check_refused
 from small_table import small_table
 
+from dynamics import Inertia, Scene, hollow_cylinder
 from dynamics.assembly.assemble import assemble
-from dynamics.scene import Scene
-from dynamics.shafts import Inertia, hollow_cylinder
 from fe_contact import STEEL
 from lineofaction.gearbox.convert.scene import check_scene, dynamic_scene
 from lineofaction.gearbox.schemas import validated

@@ -9,9 +9,7 @@ import pytest
 from geared_scenes import RPM, gear_pair_scene
 from recordings import FULL_SCALE, PULSES, WRITERS, universal
 
-from dynamics.loads import TimeLaw
-from dynamics.results import RunResult
-from dynamics.simulation import simulate
+from dynamics import RunResult, TimeLaw, simulate
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.report.comparison.compare import compare
 from lineofaction.report.comparison.recorded import Measurement

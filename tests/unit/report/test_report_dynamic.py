@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene
 
-from dynamics.scene import Outputs
-from dynamics.simulation import simulate
+from dynamics import Outputs, simulate
 from dynamics.types import RunStatus
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.report.drawing.placing import envelope

@@ -10,14 +10,12 @@ from command_line import loa
 from planetary_scenes import driven_scene, planetary_scene, published_set
 from rich.table import Table
 
+from dynamics import RunResult, TimeLaw, simulate
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.linearize import whirl_modes
-from dynamics.loads import TimeLaw
 from dynamics.orders import order_waterfall
-from dynamics.results import RunResult
 from dynamics.results.run_result import SERIES
-from dynamics.simulation import simulate
 from lineofaction.cli.output import console
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import STUDIES

@@ -12,19 +12,7 @@ import pytest
 from command_line import loa
 from pydantic import BaseModel, ValidationError
 
-from bounds import (
-    Bound,
-    FieldName,
-    Quantity,
-    SiNote,
-    Text,
-    above,
-    at_least,
-    at_most,
-    below,
-    exactly,
-    from_to,
-)
+from bounds import Bound, FieldName, Quantity, SiNote, Text, above, at_least, at_most, below, exactly, from_to
 from dynamics.errors import InputError as DynamicsInputError
 from dynamics.errors import SolveError as DynamicsSolveError
 from fe_contact.errors import InputError, MeshError

@@ -6,12 +6,10 @@ import numpy as np
 import pytest
 from analysis_requests import table_request
 
-from fe_contact import Gear, GearPair
+from fe_contact import Gear, GearPair, Status, TableAxes
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.studies.full_contact_record import FACE, PLANE, full_contact_records
 from fe_contact.errors import SolveError
-from fe_contact.options import TableAxes
-from fe_contact.types import Status
 from model_studies.progress import unreported
 from verification import full_contact_record as recording
 from verification.full_contact import FullContactPoint, FullContactTable, solve_full_contact

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 from spur_gears import PAIR
 
-from fe_contact import analyze
+from fe_contact import TableAxes, analyze
 from fe_contact.analysis.pairs.pair_contact import pair_contact
 from fe_contact.analysis.request.request_check import check_request
-from fe_contact.options import TableAxes
 from fe_contact.planning.plan import make_plan
 
 TORQUES = np.geomspace(10.0, 400.0, 12)

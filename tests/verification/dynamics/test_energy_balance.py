@@ -18,13 +18,11 @@ from geared_scenes import (
 from housed_pair import housed_pair
 from planetary_scenes import planetary_scene, published_set
 
+from dynamics import Integration, Outputs, TimeLaw, simulate
 from dynamics.assembly.assemble import assemble
 from dynamics.integrators import integrate, static_equilibrium, tableaus
 from dynamics.integrators.workspace import Count, Power
-from dynamics.loads import TimeLaw
 from dynamics.results.order_fit import order_amplitudes, unwrapped
-from dynamics.scene import Integration, Outputs
-from dynamics.simulation import simulate
 from dynamics.simulation.error_by_source import _windows, window_starts
 
 # Energy: conserved without damping and drive, and the audit closes with everything on.

@@ -15,12 +15,11 @@ import numpy as np
 import pytest
 from small_table import small_table
 
+from dynamics import Scene, simulate
 from dynamics.assembly.assemble import assemble
 from dynamics.integrators import static_equilibrium
 from dynamics.mechanism.phases import frame_turns
 from dynamics.motion.observation import local_state
-from dynamics.scene import Scene
-from dynamics.simulation import simulate
 from fe_contact.ste import PairGeometry
 from lineofaction.gearbox.convert.checked_case import check_case
 from lineofaction.gearbox.convert.scene import dynamic_scene

@@ -16,18 +16,13 @@ from flexible_scenes import (
 from geared_scenes import RPM, spring_table, with_bushings, with_gear, with_mesh
 from sliced_face import sliced_database
 
+from dynamics import Bushing, CoastFlank, Coupling, Inertia, Integration, Outputs, Shaft, TimeLaw, simulate
 from dynamics.assembly.assemble import assemble
-from dynamics.bearings import Bushing
 from dynamics.integrators import integrate, static_equilibrium
-from dynamics.joints import Coupling
-from dynamics.loads import TimeLaw
 from dynamics.mechanism.flank_gradients import common_face_width, misalignment_gradient
-from dynamics.meshes import CoastFlank
 from dynamics.motion.force_balance import force_balance
 from dynamics.results import EnergyAudit
-from dynamics.scene import Integration, Outputs
-from dynamics.shafts import BeamSection, Inertia, Shaft
-from dynamics.simulation import simulate
+from dynamics.shafts import BeamSection
 
 # Flexible shafts at rest: closed forms of bending, twist and bearing forces.
 

@@ -15,12 +15,11 @@ from flexible_scenes import (
 from geared_scenes import gear_pair_scene, with_mesh
 from planetary_scenes import driven_scene, published_set
 
+from dynamics import FreeRotation, Inertia, Outputs, Shaft
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.integrators import static_equilibrium
-from dynamics.joints import FreeRotation
-from dynamics.scene import Outputs
-from dynamics.shafts import BeamSection, Inertia, Shaft
+from dynamics.shafts import BeamSection
 
 
 def entry(scene, shaft="input"):

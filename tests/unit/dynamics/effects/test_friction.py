@@ -8,15 +8,12 @@ import pytest
 from geared_scenes import BASE_RADIUS, RPM, gear_pair_scene, with_gear, with_mesh
 from sliced_face import ADDENDUM, rigid_share_database, sliced_database
 
+from dynamics import CoastFlank, Integration, TimeLaw, simulate
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.integrators import static_equilibrium
-from dynamics.loads import TimeLaw
 from dynamics.mechanism.rotor import build_rotor
-from dynamics.meshes import CoastFlank
 from dynamics.motion.force_balance import force_balance
-from dynamics.scene import Integration
-from dynamics.simulation import simulate
 
 MU = 0.06
 

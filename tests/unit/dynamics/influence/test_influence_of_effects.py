@@ -8,18 +8,13 @@ import pytest
 from flexible_scenes import flexible_pair
 from geared_scenes import RPM, gear_pair_scene, spring_table, with_gear
 
-from dynamics.ablation import ablate
+from dynamics import FreeRotation, Housing, Outputs, RollingContact, Scene, TimeLaw, ablate, simulate
 from dynamics.errors import InputError
-from dynamics.forces import RollingContact
 from dynamics.influence import decide_effects, estimate_influences, neglected_check
 from dynamics.influence.linear_figures import linear_figures
 from dynamics.influence.operating_conditions import operating_conditions
-from dynamics.joints import FreeRotation, Housing
-from dynamics.loads import AppliedForce, TimeLaw
-from dynamics.loads.load_course import Orders
-from dynamics.scene import Outputs, Scene
+from dynamics.loads import AppliedForce, Orders
 from dynamics.shafts import BeamSection
-from dynamics.simulation import simulate
 
 QUICK = Outputs(energy_audit=False, receipt="minimal")
 SERIES = ("dynamic_transmission_error", "mesh_force", "bearing_force", "drive_torque")

@@ -7,16 +7,13 @@ import numpy as np
 import pytest
 from geared_scenes import RPM, gear_pair_scene, with_gear
 
-from dynamics.ablation import ablate
+from dynamics import Outputs, Scene, TimeLaw, ablate, forced_response
 from dynamics.acoustics import a_weighting
 from dynamics.assembly.assemble import assemble
 from dynamics.influence import decide_effects, estimate_influences, neglected_check, response_influences
 from dynamics.influence.level_change import MAX, BearingForces, level_change
 from dynamics.influence.linear_figures import linear_figures
 from dynamics.influence.operating_conditions import conditions_at
-from dynamics.linearize import forced_response
-from dynamics.loads import TimeLaw
-from dynamics.scene import Outputs, Scene
 
 LINES = {1.0: 4.0, 2.0: 9.0, 3.0: 1e-9}
 

@@ -8,7 +8,7 @@ from flexible_scenes import flexible_pair
 from geared_scenes import RPM, gear_pair_scene, square_wave_table, with_gear
 from planetary_scenes import driven_scene, published_set
 
-from dynamics.ablation import ablate
+from dynamics import Integration, Outputs, Scene, TimeLaw, ablate, simulate
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.influence import decide_effects, estimate_influences, neglected_check
@@ -16,10 +16,8 @@ from dynamics.influence.content_key import content_key
 from dynamics.linearize import partial_fractions
 from dynamics.linearize.parametric_response import parametric_response
 from dynamics.linearize.steady_vibration import excited
-from dynamics.loads import TimeLaw
-from dynamics.scene import Integration, Outputs, Scene
 from dynamics.shafts import BeamSection
-from dynamics.simulation import simulate, to_file
+from dynamics.simulation import to_file
 
 QUICK = Outputs(energy_audit=False, receipt="minimal")
 

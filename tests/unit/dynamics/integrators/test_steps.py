@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from geared_scenes import RPM, gear_pair_scene, spring_table, square_wave_table
 
+from dynamics import Integration, Outputs, TimeLaw, simulate
 from dynamics.assembly.assemble import assemble
 from dynamics.integrators import integrate, march, static_equilibrium
 from dynamics.integrators import tableaus as t
@@ -14,11 +15,8 @@ from dynamics.integrators.advance import Control, next_level
 from dynamics.integrators.method_choice import EVALUATIONS, LIMIT, choose_method
 from dynamics.integrators.start_value import Trail
 from dynamics.integrators.workspace import Count, geometric_steps
-from dynamics.loads import TimeLaw
 from dynamics.motion.observation import observe
 from dynamics.results.histories import filtered
-from dynamics.scene import Integration, Outputs
-from dynamics.simulation import simulate
 
 # Order conditions of the Runge-Kutta methods (Butcher), and the implicit method's stability at infinity.
 

@@ -8,19 +8,10 @@ from flexible_scenes import flexible_pair
 from geared_scenes import gear_pair_scene, spring_table, with_gear
 from planetary_scenes import driven_scene, published_set
 
+from dynamics import Bushing, Coupling, Inertia, Outputs, Shaft, TimeLaw, modal_analysis
 from dynamics.assembly.assemble import System, assemble
-from dynamics.bearings import Bushing
 from dynamics.errors import InputError
-from dynamics.joints import Coupling
-from dynamics.linearize import (
-    ModalAnalysis,
-    campbell,
-    critical_speeds,
-    linearize,
-    modal_analysis,
-    natural_modes,
-    whirl_modes,
-)
+from dynamics.linearize import ModalAnalysis, campbell, critical_speeds, linearize, natural_modes, whirl_modes
 from dynamics.linearize.campbell import (
     FINEST,
     INTERVALS,
@@ -33,9 +24,6 @@ from dynamics.linearize.campbell import (
 from dynamics.linearize.flank_cycles import averaged, flank_cycles, resting
 from dynamics.linearize.linear_system import LinearSystem
 from dynamics.linearize.whirl_modes import WhirlModes, whirl_sense
-from dynamics.loads import TimeLaw
-from dynamics.scene import Outputs
-from dynamics.shafts import Inertia, Shaft
 
 DISC = Inertia(4.0, 0.02, 0.0104)
 STIFFNESS, LENGTH, TEETH = 1e6, 0.2, 20

@@ -9,13 +9,9 @@ from geared_scenes import BASE_RADIUS, RPM, gear_pair_scene, spring_table, squar
 from planetary_scenes import driven_scene, published_set
 from two_stage_scenes import two_stages
 
+from dynamics import Housing, Integration, Outputs, RollingContact, TimeLaw, forced_response, simulate
 from dynamics.assembly.assemble import assemble
-from dynamics.forces import RollingContact
-from dynamics.joints import Housing
-from dynamics.linearize import forced_response
-from dynamics.loads import TimeLaw, Unbalance
-from dynamics.scene import Integration, Outputs
-from dynamics.simulation import simulate
+from dynamics.loads import Unbalance
 
 NAMES = ("input.left", "input.right", "output.left", "output.right")
 STIFF, INERT = 3e8 * np.eye(4) + 5e7 * (4.0 * np.eye(4) - 1.0), 6.75 * np.eye(12)

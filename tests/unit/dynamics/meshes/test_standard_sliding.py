@@ -7,13 +7,10 @@ import numpy as np
 import pytest
 from drawn_trains import PER_TOOTH, Train
 
-from dynamics.bearings import Bushing
+from dynamics import Bushing, LoadTorque, Outputs, TimeLaw, simulate
 from dynamics.errors import InputError
-from dynamics.loads import LoadTorque, TimeLaw
 from dynamics.meshes.standard_sliding import StandardTeeth, standard_sliding
 from dynamics.meshes.stiffness_table import PeriodicCurve, stiffness_table, straight_table
-from dynamics.settings import Outputs
-from dynamics.simulation import simulate
 
 ANGLE, MU = math.radians(20.0), 0.05
 FINE = (np.arange(4096) + 0.5) / 4096

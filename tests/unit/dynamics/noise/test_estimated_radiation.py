@@ -4,18 +4,8 @@ import numpy as np
 import pytest
 from sounding_scene import AIR, housing, radiation, response
 
-from dynamics.acoustics import (
-    ElementalRadiators,
-    monopoles_efficiency,
-    outer_hull,
-    sphere_efficiency,
-)
-from dynamics.noise import (
-    HousingRadiation,
-    estimated_radiation,
-    panel_sound,
-    radiated_sound,
-)
+from dynamics.acoustics import ElementalRadiators, monopoles_efficiency, outer_hull, sphere_efficiency
+from dynamics.noise import HousingRadiation, estimated_radiation, panel_sound, radiated_sound
 from dynamics.noise.estimated_radiation import allowed_levels
 
 

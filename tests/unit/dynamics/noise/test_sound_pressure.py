@@ -27,6 +27,7 @@ from dynamics.housings import reduced_housing
 from dynamics.noise import (
     GUESSES,
     DesignFigure,
+    Sensitivity,
     estimated_radiation,
     forced_power,
     housing_radiation,
@@ -37,14 +38,8 @@ from dynamics.noise import (
     sound_limit,
 )
 from dynamics.noise.housing_recordings import sound_paths
-from dynamics.noise.sensitivities import Sensitivity, _ranked
-from dynamics.noise.sound_band import (
-    USUAL_RANGES,
-    _peak_error,
-    _speed_step_error,
-    largest_level,
-    mean_power,
-)
+from dynamics.noise.sensitivities import _ranked
+from dynamics.noise.sound_band import USUAL_RANGES, _peak_error, _speed_step_error, largest_level, mean_power
 from dynamics.vibration import seat_forces
 
 # Sound pressure at a microphone: closed forms, its sound power, superposition, distance, delay.

@@ -8,10 +8,8 @@ import pytest
 from geared_scenes import gear_pair_scene, with_gear, with_mesh
 
 from bounds import above
+from dynamics import ImposedRotation, Integration, TimeLaw
 from dynamics.errors import InputError
-from dynamics.joints import ImposedRotation
-from dynamics.loads import TimeLaw
-from dynamics.scene import Integration
 
 SCENE = gear_pair_scene()
 

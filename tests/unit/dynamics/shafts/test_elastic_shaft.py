@@ -9,17 +9,9 @@ from scipy.linalg import eigh
 from scipy.optimize import brentq
 from scipy.special import iv, jv, kv, yv
 
+from dynamics import Inertia, Shaft, hollow_cylinder
 from dynamics.errors import InputError
-from dynamics.shafts import (
-    BeamSection,
-    Disc,
-    Inertia,
-    PointOfApplication,
-    Shaft,
-    elastic_shaft,
-    hollow_cylinder,
-    timoshenko_beam,
-)
+from dynamics.shafts import BeamSection, Disc, PointOfApplication, elastic_shaft, timoshenko_beam
 
 # Elastic coordinates of a shaft: closed forms, orthogonality to rigid motion, and the stated errors.
 

@@ -7,16 +7,9 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
+from dynamics import Shaft, hollow_cylinder
 from dynamics.errors import InputError
-from dynamics.shafts import (
-    BeamSection,
-    PointOfApplication,
-    Shaft,
-    craig_bampton,
-    elastic_shaft,
-    hollow_cylinder,
-    timoshenko_beam,
-)
+from dynamics.shafts import BeamSection, PointOfApplication, craig_bampton, elastic_shaft, timoshenko_beam
 
 STUBBY = BeamSection(0.3, 0.06, 0.02)
 STEPPED = (BeamSection(0.1, 0.04), BeamSection(0.15, 0.06, 0.02), BeamSection(0.08, 0.05))

@@ -7,16 +7,12 @@ import pytest
 from geared_scenes import RPM, gear_pair_scene, spring_table, with_gear, with_mesh
 from sliced_face import sliced_database
 
+from dynamics import CoastFlank, Outputs, RunResult, Scene, TimeLaw, simulate, simulate_to_file
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import SolveError
 from dynamics.influence import decide_effects
 from dynamics.integrators import march
 from dynamics.integrators.start_value import added_rows
-from dynamics.loads import TimeLaw
-from dynamics.meshes import CoastFlank
-from dynamics.results import RunResult
-from dynamics.scene import Outputs, Scene
-from dynamics.simulation import simulate, simulate_to_file
 from dynamics.simulation.violations import needed_effects
 from dynamics.types import Json
 

@@ -7,12 +7,9 @@ import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene, spring_table, square_wave_table, with_mesh
 
+from dynamics import CoastFlank, Outputs, RunResult, Scene, TimeLaw, simulate, simulate_to_file
 from dynamics.errors import InputError, SolveError
-from dynamics.loads import TimeLaw
-from dynamics.meshes import CoastFlank
-from dynamics.results import RunResult
-from dynamics.scene import Outputs, Scene
-from dynamics.simulation import interrupted_run, simulate, simulate_to_file
+from dynamics.simulation import interrupted_run
 from dynamics.simulation.violations import needed_effects
 from dynamics.types import Json, RunStatus
 

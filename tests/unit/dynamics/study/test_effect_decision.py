@@ -6,11 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from geared_scenes import RPM, gear_pair_scene, with_gear
 
+from dynamics import Outputs, RunResult, Scene, TimeLaw, simulate
 from dynamics.influence import decide_effects, neglected_check
-from dynamics.loads import TimeLaw
-from dynamics.results import RunResult
-from dynamics.scene import Outputs, Scene
-from dynamics.simulation import simulate
 from dynamics.study import (
     Design,
     Factor,

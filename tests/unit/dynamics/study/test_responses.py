@@ -5,11 +5,9 @@ import pytest
 from geared_scenes import gear_pair_scene
 from planetary_scenes import planetary_scene, published_set
 
+from dynamics import Outputs, RunResult, simulate
 from dynamics.errors import InputError
-from dynamics.results import RunResult
 from dynamics.results.mesh_figures import contact_shares, planet_load_sharing
-from dynamics.scene import Outputs
-from dynamics.simulation import simulate
 from dynamics.study import Response, responses_of
 
 

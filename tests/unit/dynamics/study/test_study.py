@@ -16,11 +16,8 @@ from geared_scenes import (
     with_mesh,
 )
 
+from dynamics import RunResult, Scene, TimeLaw, simulate
 from dynamics.errors import InputError, SolveError
-from dynamics.loads import TimeLaw
-from dynamics.results import RunResult
-from dynamics.scene import Scene
-from dynamics.simulation import simulate
 from dynamics.study import (
     Design,
     Levels,

@@ -14,6 +14,7 @@ from spur_gears import gear as make_gear
 
 import fe_contact.compliance.cyclic_compliance as cyclic
 import fe_contact.compliance.flank_compliance_2d as flow
+from fe_contact import FlankModification, Gear, Material, RunOut
 from fe_contact.cache_reads import COMPLIANCE_READS
 from fe_contact.compliance import (
     FlankCompliance,
@@ -26,9 +27,6 @@ from fe_contact.compliance import (
     flank_compliances_3d,
     predict_cost,
 )
-from fe_contact.geometry import FlankModification, Gear
-from fe_contact.geometry.tooth_deviations import RunOut
-from fe_contact.material import Material
 from fe_contact.mesh import ClampedBore, PlaneStrain, SectorRecipe, quadratic_mesh
 from host import lock
 

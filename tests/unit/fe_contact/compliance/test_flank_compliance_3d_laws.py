@@ -11,18 +11,15 @@ from compliance_gears import HELICAL, SPUR, WEBBED, coarse, relative, whole_gear
 import fe_contact.compliance.condensed_gear as gear_module
 import fe_contact.compliance.cyclic_compliance as flow
 import fe_contact.compliance.sector_stiffness as stiffness_module
-from fe_contact.compliance import (
-    flank_compliance_3d,
-    flank_compliances_3d,
-)
+from fe_contact import Material, RingGear
+from fe_contact.compliance import ComplianceChecks, flank_compliance_3d, flank_compliances_3d
 from fe_contact.compliance.condensed_gear import pressure_forces
 from fe_contact.compliance.factorization import factorise
-from fe_contact.compliance.flank import ComplianceChecks, refuse_broken_laws
+from fe_contact.compliance.flank import refuse_broken_laws
 from fe_contact.compliance.gear_checks import least_eigenvalue
 from fe_contact.compliance.sector_stiffness import twist
 from fe_contact.errors import InputError, SolveError
-from fe_contact.geometry import RingGear, Toothing
-from fe_contact.material import Material
+from fe_contact.geometry import Toothing
 from fe_contact.mesh import ClampedBore, SectorRecipe
 
 GEARS = pytest.mark.parametrize("gear", [SPUR, HELICAL], ids=["spur", "helical"])

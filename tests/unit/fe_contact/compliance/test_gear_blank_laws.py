@@ -9,21 +9,20 @@ import pytest
 from compliance_gears import coarse, coarse_plane, moved
 
 import fe_contact.compliance.cyclic_compliance as flow
+from fe_contact import STEEL, Gear, GearBlank
 from fe_contact.compliance import (
     FlankCompliance,
     FlankCompliance3D,
     PlaneHypothesis,
     flank_compliance,
     flank_compliance_3d,
+    unit_root_stress_3d,
 )
 from fe_contact.compliance.condensed_gear import condensed_gear, probe_loads
 from fe_contact.compliance.condensed_sector import freedoms
 from fe_contact.compliance.flank_compliance_2d import compliance_key, condensed_ring
 from fe_contact.compliance.ring_checks import uniform_pressure
-from fe_contact.compliance.unit_root_stress import unit_root_stress_3d
-from fe_contact.geometry import Gear, GearBlank
 from fe_contact.geometry.web_compliance import torsion_compliance
-from fe_contact.material import STEEL
 from fe_contact.mesh import ClampedBore, mesh_gear, quad_sector
 from model_studies.stage_clock import StageClock
 

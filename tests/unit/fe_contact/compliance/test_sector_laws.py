@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 from compliance_gears import coarse_plane
 
-from fe_contact import AnalysisOptions, GearPair, TableAxes, analyze
+from fe_contact import AnalysisOptions, Gear, GearBlank, GearPair, TableAxes, analyze
 from fe_contact.compliance import PlaneHypothesis, flank_compliance, flank_compliance_3d
 from fe_contact.compliance.deformed_section import deformed_sections
 from fe_contact.compliance.ring_checks import uniform_pressure
 from fe_contact.errors import InfeasibleGeometry, InputError
-from fe_contact.geometry import Gear, GearBlank
 
 WHOLE = Gear(teeth=21, normal_module=4e-3, face_width=24e-3, bore_diameter=50e-3)
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from compliance_gears import coarse_plane
 
-from fe_contact import Gear, GearPair
+from fe_contact import Gear, GearPair, Status
 from fe_contact.compliance import flank_compliances
 from fe_contact.contact import (
     ContactModel,
@@ -23,7 +23,6 @@ from fe_contact.contact.edge_strip import SIDE, edge_motion, edge_position
 from fe_contact.contact.newton import solve_point
 from fe_contact.contact.point_problem import PointProblem, State, point_problems, problem_at
 from fe_contact.contact.tilted_bodies import fill_yielding, move
-from fe_contact.types import Status
 
 MODULE = 3e-3
 SHAPE = {"normal_module": MODULE, "face_width": 20e-3}

@@ -8,17 +8,9 @@ import numpy as np
 import pytest
 from spur_gears import PAIR, make_gear
 
+from fe_contact import GearPair, InternalGearPair, RingGear
 from fe_contact.errors import InputError
-from fe_contact.geometry import (
-    GearPair,
-    InternalGearPair,
-    ParallelAxes,
-    RingGear,
-    corner_contact,
-    sliding_factor,
-    specific_sliding,
-)
-from fe_contact.geometry.corner_contact import Side
+from fe_contact.geometry import ParallelAxes, Side, corner_contact, sliding_factor, specific_sliding
 
 SIDES: tuple[Side, Side] = ("approach", "exit")
 sides = pytest.mark.parametrize("side", SIDES)

@@ -7,11 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fe_contact import Gear, InternalGearPair, RingGear
 from fe_contact.errors import InfeasibleGeometry
-from fe_contact.geometry import Gear, gear_pair
-from fe_contact.geometry.flank_profile import ToothProfile, tooth_profile
-from fe_contact.geometry.gear_pair import InternalGearPair
-from fe_contact.geometry.ring_gear import RingGear
+from fe_contact.geometry import ToothProfile, gear_pair, tooth_profile
 from fe_contact.geometry.tip_interference import (
     flank_angle,
     pinion_edge_path,

@@ -9,17 +9,9 @@ import pytest
 from spur_gears import GEAR, make_gear
 
 from bounds import DEPTHS, Direction, Kind
+from fe_contact import FlankGrid, FlankModification, Gear, GearPair, PitchDeviation, RingGear, ToothFlank
 from fe_contact.errors import InputError
 from fe_contact.flank.modification import FLANK_FIELDS, fields_of
-from fe_contact.geometry import (
-    FlankGrid,
-    FlankModification,
-    Gear,
-    GearPair,
-    PitchDeviation,
-    RingGear,
-    ToothFlank,
-)
 
 
 def over_profile(gear: Gear, count: int = 201) -> np.ndarray:

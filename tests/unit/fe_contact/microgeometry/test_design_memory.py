@@ -8,15 +8,10 @@ import pytest
 from analysis_requests import design_request
 from spur_gears import PAIR
 
-from fe_contact import GearPair
+from fe_contact import DesignVariable, GearPair, Limits, Optimization, Run, Search, optimize
 from fe_contact.microgeometry.evaluator import Evaluator
-from fe_contact.microgeometry.objective import Limits, WeightedMean, Worst
-from fe_contact.microgeometry.optimization import Optimization
-from fe_contact.microgeometry.optimize import optimize
-from fe_contact.microgeometry.search import Search
+from fe_contact.microgeometry.objective import WeightedMean, Worst
 from fe_contact.microgeometry.search_methods import Cancel, DifferentialEvolution, never
-from fe_contact.microgeometry.variables import DesignVariable
-from fe_contact.options import Run
 
 FREE = (
     DesignVariable("pinion.profile_crowning", 0.0, 2e-5),

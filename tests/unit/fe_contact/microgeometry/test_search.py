@@ -12,16 +12,17 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
+from fe_contact import DesignVariable, Estimate, Limits, Run, Search
 from fe_contact.microgeometry import best_design as choice
 from fe_contact.microgeometry.conclusion import outcome_and_reason
 from fe_contact.microgeometry.confirmation import HarrisMap, rising
 from fe_contact.microgeometry.counted_merit import Budget
 from fe_contact.microgeometry.design_problem import Assessed, DesignProblem
 from fe_contact.microgeometry.linear_program import LinearMerit
-from fe_contact.microgeometry.objective import Limits, Objective, WeightedMean, Worst
+from fe_contact.microgeometry.objective import Objective, WeightedMean, Worst
 from fe_contact.microgeometry.optimization import Outcome
 from fe_contact.microgeometry.optimize import _search_one, search_all
-from fe_contact.microgeometry.search import Ended, Search, SearchRun, search_from
+from fe_contact.microgeometry.search import Ended, SearchRun, search_from
 from fe_contact.microgeometry.search_methods import (
     EXPLORED,
     DifferentialEvolution,
@@ -29,9 +30,7 @@ from fe_contact.microgeometry.search_methods import (
     SequentialLinearProgramming,
     StagedLinearProgramming,
 )
-from fe_contact.microgeometry.variables import DesignVariable
-from fe_contact.options import Run
-from fe_contact.types import Estimate, FloatArray
+from fe_contact.types import FloatArray
 from model_studies.stage_clock import StageClock
 from model_studies.workers import ByExecutor, InProcess, RunCost, WorkersLost, dispatch
 

@@ -18,10 +18,9 @@ from calculix import (
 )
 from spur_gears import GEAR
 
-from fe_contact import GearPair
-from fe_contact.types import Status
+from fe_contact import GearPair, Status
+from verification.full_contact import Resolution
 from verification.full_contact.condensation.placed_mesh import placed_bodies
-from verification.full_contact.condensation.resolution import Resolution
 from verification.full_contact.condensation.sites import Range, contact_sites
 
 

@@ -7,10 +7,8 @@ import numpy as np
 import pytest
 from spur_gears import GEAR, PAIR
 
-from fe_contact import FlankModification, Gear, GearPair, InternalGearPair, RingGear
+from fe_contact import FlankModification, Gear, GearBlank, GearPair, InternalGearPair, Material, RingGear
 from fe_contact.errors import InputError, MeshError
-from fe_contact.geometry import GearBlank
-from fe_contact.material import Material
 from verification.full_contact import FullContactTable, Resolution, refusal, solve_full_contact
 from verification.full_contact.condensation import placed_mesh
 from verification.full_contact.condensation import solve as solved_position

@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 from analysis_requests import table_request
 
-from fe_contact import FlankModification, Gear, GearPair, SteDatabase, analyze
+from fe_contact import FlankModification, Gear, GearPair, Run, SteDatabase, analyze
 from fe_contact.analysis import tables
 from fe_contact.analysis.checks.table_laws import check_laws
 from fe_contact.analysis.database import compute_database
 from fe_contact.analysis.estimates import inserted_places, validation_alignments
 from fe_contact.analysis.request.request_check import check_request, checked_request
 from fe_contact.errors import DatabaseError
-from fe_contact.options import Run
 from fe_contact.ste.fields import DIMENSIONS
 
 DISTANCE = "center_distance_change"

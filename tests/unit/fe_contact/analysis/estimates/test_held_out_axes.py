@@ -6,11 +6,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fe_contact import Gear, GearPair, analyze
+from fe_contact import Gear, GearPair, Status, analyze
 from fe_contact.analysis.estimates.validation_alignments import AWAY as AWAY_BETWEEN_ALIGNMENTS
 from fe_contact.analysis.estimates.validation_axes import validation_axes
 from fe_contact.analysis.estimates.validation_loads import AWAY
-from fe_contact.types import Status
 
 TORQUES = (50.0, 100.0, 200.0)
 CHANGES = (0.0, 2e-4, 4e-4)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from analysis_requests import point_request, table_request
 
-from fe_contact import Gear, GearPair, deformed_pairs
+from fe_contact import Gear, GearPair, InternalGearPair, OperatingPoint, RingGear, Run, deformed_pairs
 from fe_contact.analysis.flanks.deformed_pair import mesh_angles
 from fe_contact.analysis.flanks.solved_operating_point import solve_operating_point
 from fe_contact.analysis.request.request_check import check_request
@@ -23,8 +23,7 @@ from fe_contact.contact import (
     plane_flank_forces,
 )
 from fe_contact.errors import InputError
-from fe_contact.geometry import InternalGearPair, RingGear, Toothing, tooth_profile
-from fe_contact.options import OperatingPoint, Run
+from fe_contact.geometry import Toothing, tooth_profile
 from model_studies.stage_clock import StageClock
 
 pytestmark = pytest.mark.usefixtures("coarse_sectors")

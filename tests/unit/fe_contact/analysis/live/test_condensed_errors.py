@@ -6,13 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fe_contact import Gear, GearPair, analyze
+from fe_contact import FlankModification, Gear, GearPair, SteDatabase, analyze
 from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.analysis.live.stored_bodies import condensed_pair
 from fe_contact.analysis.pairs.pair_contact import PairContact
-from fe_contact.geometry import FlankModification
 from fe_contact.geometry.finite_width import finite_width_excess
-from fe_contact.ste import SteDatabase
 from fe_contact.ste.curve_errors import AT_NODES, SOURCES
 from fe_contact.ste.curve_quantities import FIRST_HARMONIC, MEAN, PEAK_TO_PEAK
 from fe_contact.types import FloatArray

@@ -8,10 +8,9 @@ import pytest
 from analysis_requests import table_request
 
 from bounds import written
-from fe_contact import FlankModification, Gear, GearPair
+from fe_contact import AnalysisOptions, FlankModification, Gear, GearPair, SteDatabase, TableAxes, frontier
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.studies.closed_form_fidelity import THIN_SLICES
-from fe_contact.analysis.studies.frontier import frontier
 from fe_contact.analysis.studies.full_contact_record import (
     FACE,
     NO_RECORD,
@@ -23,8 +22,6 @@ from fe_contact.analysis.studies.full_contact_record import (
     solved_in,
 )
 from fe_contact.errors import InputError
-from fe_contact.options import AnalysisOptions, TableAxes
-from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.studies.frontier.run import RUN
 
 GEAR = Gear(teeth=20, normal_module=2e-3, face_width=8e-3, bore_diameter=20e-3)
