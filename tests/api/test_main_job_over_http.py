@@ -4,13 +4,13 @@ import copy
 import json
 import shutil
 import tomllib
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from declared_figures import check_declared, document
 from fastapi.testclient import TestClient
+from repository import EXAMPLES
 from running_service import until
 
 from dynamics.simulation import simulate
@@ -21,8 +21,6 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, validated
 from service.app import create_app
 from service.settings import Settings
-
-EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 def table(name: str) -> dict[str, Any]:

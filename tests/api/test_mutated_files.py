@@ -20,6 +20,7 @@ from fastapi.testclient import TestClient
 from housing_solid import housing, write_block
 from machine_texts import CHART, machine_text
 from reduced_housings import random_housing
+from repository import EXAMPLES
 from service_fakes import REGISTRY
 
 from host import child_environment, processes_in
@@ -27,7 +28,6 @@ from lineofaction.gearbox.schemas.toml import toml_text
 from service.app import create_app
 from service.settings import Settings
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 _NUMBER = re.compile(rb"-?\d+\.?\d*(?:[eE][-+]?\d+)?")
 FATAL = (11, 23)
 """Seeds of STEP files over which the native reader crashes."""

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from repository import EXAMPLES
 from study_service import CASE, prepared, scene_by_hash, study_service
 
 from dynamics import RunResult, TimeLaw, simulate
@@ -26,7 +27,6 @@ from service.worker import study_work
 from service.worker.order import WorkOrder
 from service.worker.process import default_registry
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 FRONTIER = default_registry()["frontier"]
 CLOSED = ["iso6336", "thin_slices"]
 OLD = "0d" * 32

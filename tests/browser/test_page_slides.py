@@ -1,15 +1,14 @@
 """A gear or bearing of the unit in the picture, moved along its shaft by keys and by the pointer."""
 
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
 from page_picture import CANVAS, different, picture, stopped
 from page_visit import opened, refused
 from playwright.sync_api import Page, expect
+from repository import EXAMPLES
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 UNIT = EXAMPLES / "two_stage" / "two_stage.rexs"
 
 

@@ -1,14 +1,13 @@
 """Four tasks of a new user in the browser alone, action by action as the documentation has them."""
 
 import re
-from pathlib import Path
 
 import pytest
 from page_visit import Visit, answered, answers, found_inaccessible, opened, to_print
 from playwright.sync_api import Locator, Page, expect
+from repository import ROOT
 from running_service import until
 
-ROOT = Path(__file__).parents[2]
 UNIT = ROOT / "examples" / "two_stage_gearbox.rexs"
 TASKS = (ROOT / "docs" / "how-to" / "in-the-browser.md").read_text(encoding="utf-8").split("\n## ")
 MAX = 15

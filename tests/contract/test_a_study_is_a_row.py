@@ -4,12 +4,11 @@ import json
 import shutil
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 import structure
+from repository import ROOT
 
-ROOT = Path(__file__).parents[2]
 ROW = """
     made_up = StudyOf(
         _case(lambda: computations.MADE_UP),

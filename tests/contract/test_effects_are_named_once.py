@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene, spring_table, with_gear, with_mesh
+from repository import ROOT
 
 from dynamics import CoastFlank, Scene, TimeLaw, simulate
 from dynamics.assembly import assemble
@@ -21,7 +22,6 @@ from fe_contact.contact import ContactModel
 from fe_contact.effects import EFFECTS as OF_CONTACT
 from fe_contact.types import Json
 
-ROOT = Path(__file__).parents[2]
 PRODUCT = ("dynamics", "fe_contact", "model_studies", "lineofaction", "service")
 EXAMPLES = (
     "lineofaction/hardcases/",

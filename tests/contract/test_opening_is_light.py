@@ -5,12 +5,12 @@ import sys
 from pathlib import Path
 
 import pytest
+from repository import ROOT
 from rexs_unit import place, two_stages
 from spur_case import spur_case
 
 from lineofaction.gearbox.rexs.files import serialized
 
-ROOT = Path(__file__).parents[2]
 COMPUTING = ("numba", "gmsh", "skfem", "scipy.optimize", "scipy.interpolate", "xarray")
 UNIT = "examples/two_stage_gearbox.rexs"
 

@@ -6,12 +6,12 @@ import re
 import runpy
 import subprocess
 import sys
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from condensed_once import find_condensed
+from repository import ROOT
 from small_table import small_table
 
 from dynamics.results import RunResult
@@ -20,7 +20,6 @@ from lineofaction.client import LineOfActionClient, OfflineWarning, ResultCache
 from lineofaction.gearbox.problems import BadInput
 
 RESTS_ON = ("docs/client.md", "docs/how-to/call-a-service.md", "examples")
-ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "client.md").read_text(encoding="utf-8")
 RECIPES = (ROOT / "docs" / "how-to" / "call-a-service.md").read_text(encoding="utf-8")
 KEY = "ab" * 32

@@ -11,12 +11,12 @@ from pathlib import Path
 
 import pytest
 from condensed_once import find_condensed
+from repository import ROOT
 from running_service import PATIENCE_S, until
 
 from service.page.example_cases import examples
 
 RESTS_ON = ("examples",)
-ROOT = Path(__file__).parents[2]
 JOB = ROOT / "examples" / "main_job.py"
 HELICAL = ROOT / "examples" / "helical_ev_23_67.toml"
 

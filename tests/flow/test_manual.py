@@ -10,9 +10,9 @@ from pathlib import Path
 import manual
 import pytest
 from condensed_once import find_condensed
+from repository import ROOT
 
 RESTS_ON = ("README.md", "docs/studies.md", "docs/tutorials", "docs/how-to", "examples")
-ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 
 

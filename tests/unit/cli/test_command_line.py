@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 import typer
 from command_line import loa, printed
+from repository import ROOT
 from small_table import small_table
 from typer.testing import CliRunner
 
@@ -21,7 +22,6 @@ from lineofaction.cli import commands
 from lineofaction.cli.verb_parameters import grouped, parameters_of
 from lineofaction.client import JobState, LineOfActionClient, OfflineWarning
 
-ROOT = Path(__file__).parents[3]
 VERBS = (
     "analyze",
     "ste",

@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 from command_line import loa
 from housing_solid import write_housed_scene
+from repository import EXAMPLES
 from spur_case import spur_case
 
 from bounds import engineering
@@ -46,7 +47,6 @@ from model_studies.stage_clock import StageClock
 
 sound_band_module = import_module("dynamics.noise.sound_band")
 steady_cost_module = import_module("dynamics.periodic.steady_cost")
-EXAMPLES = Path(__file__).parents[3] / "examples"
 SPEEDS = [100.0 * k for k in range(1, 61)]
 CHANGE: dict[str, Any] = {
     "after": tomllib.loads((EXAMPLES / "palermo_spur_20_20.toml").read_text()),

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from command_line import loa, printed
+from repository import EXAMPLES
 from scene_files import scene_file
 from spur_case import spur_case
 
@@ -22,8 +23,6 @@ from lineofaction.gearbox.project import (
     tables_in,
 )
 from lineofaction.gearbox.registry import STUDIES
-
-EXAMPLES = Path(__file__).parents[3] / "examples"
 
 
 @pytest.fixture

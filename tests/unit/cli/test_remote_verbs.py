@@ -1,11 +1,11 @@
 """The verbs of a service's jobs: what a person reads, and what a program does."""
 
 import json
-from pathlib import Path
 from typing import Any
 
 import command_line
 import pytest
+from repository import ROOT
 from small_table import small_table
 from stored_jobs import state
 from typer.testing import Result
@@ -14,7 +14,6 @@ from lineofaction.client import JobState, LineOfActionClient
 from lineofaction.client import Result as Reference
 from lineofaction.gearbox.problems import ResultNotReady
 
-ROOT = Path(__file__).parents[3]
 CASE = ROOT / "examples" / "palermo_spur_20_20.toml"
 ADDRESS = "http://127.0.0.1:9"
 KEY = "ab" * 32

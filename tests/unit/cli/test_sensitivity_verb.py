@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from command_line import loa
+from repository import ROOT
 
 from fe_contact import Sensitivity
 from fe_contact.analysis.studies.sensitivity import RippleCurve
@@ -23,7 +24,6 @@ from lineofaction.report.drawing.figure import Panel
 
 STUDY = "lineofaction.gearbox.studies.sensitivity.run"
 
-ROOT = Path(__file__).parents[3]
 EXAMPLES = sorted((ROOT / "examples").glob("sensitivity_*.toml"))
 WIDER = ("--center-distance-change-percent", "0,0.1")  # the teeth do not jam
 MEANS = Means(Path(), lambda *_: None)

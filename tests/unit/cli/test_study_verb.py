@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 from command_line import loa
 from declared_figures import check_declared
+from repository import EXAMPLES
 from scene_files import SCENE, scene_file
 from spur_case import spur_case
 
@@ -39,7 +40,6 @@ from lineofaction.gearbox.studies.study.scenes import VariedScene, places_of, wi
 from lineofaction.gearbox.subjects import scene_of, with_inline_cases
 from lineofaction.report.document import write_report
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 STUDY = """
 samples = 3
 seed = 5

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 from bad_inputs import GOOD
 from changed_scenes import assert_refused, changed
+from repository import ROOT
 from spur_case import spur_case
 
 from bounds import Kind
@@ -24,8 +25,6 @@ from lineofaction.gearbox.schemas.gear import with_figures
 from lineofaction.gearbox.schemas.scene import SceneInput
 from service.schemas.examples import CASE
 from service.worker.process import content_key
-
-ROOT = Path(__file__).parents[3]
 
 
 def case(**pinion: Any) -> Case:

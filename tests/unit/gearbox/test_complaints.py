@@ -3,11 +3,11 @@
 import json
 import math
 import tomllib
-from pathlib import Path
 from typing import Any
 
 import pytest
 from pytest import approx
+from repository import ROOT
 from typer.testing import CliRunner
 
 import lineofaction as loa
@@ -27,7 +27,6 @@ from lineofaction.report.drawing.marks import of_run
 from lineofaction.report.response.complaint import PAGE
 
 Json = dict[str, Any]
-ROOT = Path(__file__).parents[3]
 ANGLE = math.radians(20.0)
 
 

@@ -1,18 +1,17 @@
 """Ctrl-C in Python keeps what is done: the draft of a table, the run so far, finished tasks."""
 
 import signal
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from repository import EXAMPLES
 from small_table import small_table
 
 import lineofaction as loa
 from dynamics.types import RunStatus
 from lineofaction.gearbox.registry import STUDIES
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 CASE, SCENE = EXAMPLES / "palermo_spur_20_20.toml", EXAMPLES / "jeffcott_scene.toml"
 
 

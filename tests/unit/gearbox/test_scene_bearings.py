@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from changed_scenes import DROP, By, changed_scene, check_refused
+from repository import ROOT
 from small_table import small_table
 
 from dynamics.assembly.assemble import assemble
@@ -25,7 +26,6 @@ from lineofaction.gearbox.schemas import read_model, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.subjects import scene_inputs
 
-ROOT = Path(__file__).parents[3]
 EXAMPLE = tomllib.loads((ROOT / "examples" / "palermo_scene.toml").read_text())
 MATRIX = (1e8 * np.diag([1.0, 1.0, 0.5, 0.01, 0.01])).tolist()
 HOUSING = (1e9 * (np.eye(6) + 0.1)).tolist()

@@ -3,12 +3,12 @@
 import math
 import tomllib
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from changed_scenes import DROP, By, changed, changed_scene, check_refused
+from repository import ROOT
 from small_table import BASE_RADIUS, small_table
 
 from dynamics.assembly.assemble import assemble
@@ -21,7 +21,6 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 
-ROOT = Path(__file__).parents[3]
 EXAMPLE = tomllib.loads((ROOT / "examples" / "palermo_scene.toml").read_text())
 
 

@@ -3,11 +3,11 @@
 import math
 import tomllib
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import pytest
 from changed_scenes import DROP, By, assert_refused, changed, changed_scene, check_refused
+from repository import ROOT
 from small_table import small_table
 
 from dynamics import Inertia, Scene, hollow_cylinder
@@ -18,7 +18,6 @@ from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.subjects import scene_inputs
 
-ROOT = Path(__file__).parents[3]
 EXAMPLE = tomllib.loads((ROOT / "examples" / "flexible_shafts_scene.toml").read_text())
 PAPER = tomllib.loads((ROOT / "examples" / "palermo_scene.toml").read_text())
 

@@ -1,20 +1,18 @@
 """Plots by one call: figures of the report on axes, on axes of the caller, by plotly."""
 
 import sys
-from pathlib import Path
 from typing import Any, get_args, get_origin
 
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from repository import EXAMPLES
 
 import lineofaction as loa
 from bounds.plottable import Plottable
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.report.drawing.figure import HeatMap
 from lineofaction.report.plots import figures_of
-
-EXAMPLES = Path(__file__).parents[3] / "examples"
 
 
 @pytest.fixture(autouse=True)

@@ -9,8 +9,8 @@ from pathlib import Path
 import client_wheel
 import httpx2
 import pytest
+from repository import ROOT
 
-ROOT = Path(__file__).parents[3]
 WITHOUT = ("gmsh", "skfem", "numba", "scipy", "xarray", "h5py", "fastapi", "tenacity", "rich", "typer")
 USE = """
 import sys

@@ -15,6 +15,7 @@ from typing import Any
 import pytest
 import yaml
 from postgres_server import migrated, postgres
+from repository import ROOT
 from typer.main import get_command
 
 from lineofaction.cli.commands import app
@@ -22,7 +23,6 @@ from service.secret_files import is_secret
 from service.settings import Settings
 
 __all__ = ["postgres"]
-ROOT = Path(__file__).resolve().parents[3]
 MANIFESTS = ROOT / "deploy" / "kubernetes"
 FIELDS = {name.upper(): field for name, field in Settings.model_fields.items()}
 VARIABLES = {f"LOA_{name}" for name in FIELDS} | {

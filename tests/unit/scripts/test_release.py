@@ -5,8 +5,8 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from repository import ROOT
 
-ROOT = Path(__file__).resolve().parents[3]
 GIT = ("git", "-c", "user.name=a tester", "-c", "user.email=tester@example.org")
 
 

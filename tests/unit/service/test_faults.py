@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 from command_line import loa
 from pydantic import BaseModel, ValidationError
+from repository import EXAMPLES
 
 from bounds import Bound, FieldName, Quantity, SiNote, Text, above, at_least, at_most, below, exactly, from_to
 from dynamics.errors import InputError as DynamicsInputError
@@ -135,7 +136,6 @@ def test_what_the_libraries_do_not_raise_on_purpose_is_not_translated():
     assert translated(ZeroDivisionError("0")) is None
 
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 SPUR = EXAMPLES / "palermo_spur_20_20.toml"
 
 

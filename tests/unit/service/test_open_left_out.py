@@ -13,6 +13,7 @@ from click.testing import Result
 from command_line import loa
 from fastapi.testclient import TestClient
 from faulty_units import LEFT_OUT, REFUSED, TWO_STAGE
+from repository import EXAMPLES
 from rexs_reference import examples, needs_reference
 
 from lineofaction.gearbox.from_rexs.unit_answer import unit_of_rexs
@@ -111,7 +112,6 @@ def test_the_reference_files_open(file, tmp_path):
     assert facts["scene"] is not file.name.endswith(".rexsj")
 
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 HAND = LEFT_OUT["hand of a wheel"][1](TWO_STAGE)
 
 

@@ -4,12 +4,12 @@ import json
 import math
 import re
 import tomllib
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from fastapi.testclient import TestClient
+from repository import ROOT
 
 from lineofaction.gearbox.convert.case import case_json, gear_pair
 from lineofaction.gearbox.convert.checked_case import check_case
@@ -24,7 +24,6 @@ from service.page.example_cases import examples
 from service.page.files import page_file
 from service.settings import Settings
 
-ROOT = Path(__file__).parents[3]
 STATIC = ROOT / "service" / "page" / "static"
 CASES = {example.name: validated(Case, example.content) for example in examples()}
 

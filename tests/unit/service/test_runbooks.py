@@ -8,6 +8,7 @@ from pathlib import Path
 
 import h5py
 import pytest
+from repository import ROOT
 from running_service import Bench, bench
 from service_fakes import FAKE, REGISTRY
 from sqlalchemy import update
@@ -20,7 +21,6 @@ from service.store.database import writing
 from service.store.maintenance import verify_store
 from service.store.results import results
 
-ROOT = Path(__file__).resolve().parents[3]
 PAGE = (ROOT / "docs" / "how-to" / "runbooks.md").read_text("utf-8")
 SECTIONS = {part.partition("\n")[0]: part for part in PAGE.split("\n## ")[1:]}
 SOURCE = "\n".join(

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from repository import EXAMPLES
 
 from dynamics.assembly.assemble import System, assemble
 from dynamics.bearings import Bushing
@@ -265,7 +266,6 @@ def test_gravity_sags_the_rotor_and_leaves_its_frequencies():
 # Textbook benchmarks as scene files: what their sources and independent computations say.
 
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 ROTATIONAL = (1475.75, 1930.35, 2658.32, 7462.80, 11775.27)
 TRANSLATIONAL = (743.16, 1102.42, 1896.02, 2276.38, 6986.30, 9647.91)
 

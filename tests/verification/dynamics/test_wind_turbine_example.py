@@ -8,11 +8,11 @@ import tomllib
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from repository import EXAMPLES
 from small_table import small_table
 
 from dynamics import Scene, simulate
@@ -26,7 +26,6 @@ from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 Change = Callable[[dict[str, Any]], object]
 
 
