@@ -61,10 +61,6 @@ def test_submit_wait_result(client):
     assert client.fetch_file(result.key).read_text() == "x"
 
 
-def test_the_table_that_arrives_is_the_table_that_is_stored(client):
-    assert client.fetch(KEY).identical(small_table())
-
-
 def test_a_cached_table_needs_no_service(client, tmp_path):
     client.fetch(KEY)
 

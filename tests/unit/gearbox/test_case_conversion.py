@@ -10,7 +10,6 @@ from typing import Any
 import pytest
 from bad_inputs import GOOD
 from changed_scenes import assert_refused, changed
-from repository import ROOT
 from spur_case import spur_case
 
 from bounds import Kind
@@ -250,12 +249,6 @@ def test_a_change_of_center_distance_at_which_the_gears_do_not_mesh_is_refused_b
     assert faults[0].value == 8.0
     bound = faults[0].bound
     assert bound.startswith("a change at which the gears mesh") and bound.endswith("below 1")
-
-
-def test_the_example_is_the_papers_pair():
-    example = read_model(Case, ROOT / "examples" / "palermo_spur_20_20.toml")
-    assert gear_pair(example).transverse_contact_ratio == pytest.approx(1.557, abs=5e-4)
-    assert example.load.torque_n_m is not None and len(example.load.torque_n_m) == 12
 
 
 def test_pitch_deviations_arrive_in_si_and_pitches_as_they_are():

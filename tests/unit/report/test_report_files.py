@@ -63,12 +63,6 @@ DYNAMIC = {
 }
 
 
-def test_kinds_are_read_from_the_files(files):
-    table, run = (read_inputs([file]) for file in files)
-    assert table.run is run.database is None
-    assert table.database is not None and run.run is not None
-
-
 def test_a_page_and_all_images_of_both(files, tmp_path):
     written = write_report(files, tmp_path / "report.html", tmp_path / "images")
     assert written[0] == tmp_path / "report.html"

@@ -15,7 +15,6 @@ from dynamics.acoustics import (
     Air,
     ElementalRadiators,
     EquivalentRadiatedPower,
-    OrderPower,
     monopoles_efficiency,
 )
 from dynamics.assembly.assemble import assemble
@@ -79,16 +78,6 @@ def test_air_acts_from_one_motion_on_another_as_the_other_way_round():
     hertz = np.full(2, radiation().frequency[3] * 1.01)
     force = radiation().reaction(hertz, np.stack([first, second]) + 0j)
     assert second @ force[0] == pytest.approx(first @ force[1], rel=1e-9)
-
-
-def test_a_frequency_of_1_khz_is_not_weighted():
-    tone = OrderPower(np.array([[1000.0]]), np.array([[1e-6]]))
-    assert tone.weighted_level == pytest.approx(tone.level, abs=1e-9)
-
-
-def test_third_octaves_add_up_to_the_total():
-    orders = sound().orders
-    np.testing.assert_allclose(orders.third_octaves()[1].sum(axis=0), orders.power.sum(axis=0), rtol=1e-12)
 
 
 @pytest.mark.law
