@@ -6,16 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from page_visit import (
-    CASE,
-    answers,
-    computed,
-    control,
-    found_inaccessible,
-    opened,
-    tab,
-    unfold,
-)
+from page_visit import CASE, answers, computed, control, found_inaccessible, opened, tab, unfold
 from playwright.sync_api import CDPSession, Page, expect
 
 

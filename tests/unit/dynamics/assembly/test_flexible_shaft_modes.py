@@ -5,13 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from flexible_scenes import (
-    STEEL,
-    bending_stiffness,
-    flexible_pair,
-    section_motion,
-    shear_stiffness,
-)
+from flexible_scenes import STEEL, bending_stiffness, flexible_pair, section_motion, shear_stiffness
 from geared_scenes import gear_pair_scene, spring_table, with_gear
 from scipy.linalg import eigh
 

@@ -5,14 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene
-from rotors_on_bearings import (
-    KINDS,
-    ON,
-    PRELOAD,
-    SEATS,
-    pair_of,
-    rotor,
-)
+from rotors_on_bearings import KINDS, ON, PRELOAD, SEATS, pair_of, rotor
 
 from dynamics import Bushing, Integration, simulate
 from dynamics.assembly.assemble import assemble

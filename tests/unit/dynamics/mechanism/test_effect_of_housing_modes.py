@@ -4,16 +4,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from housed_scenes import (
-    BLOCK,
-    GROUND,
-    OFF,
-    ON,
-    block,
-    housed,
-    pair,
-    rows,
-)
+from housed_scenes import BLOCK, GROUND, OFF, ON, block, housed, pair, rows
 
 from dynamics import Outputs, RollingContact
 from dynamics.assembly.assemble import assemble

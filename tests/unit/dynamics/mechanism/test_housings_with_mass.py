@@ -6,20 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene, spring_table, square_wave_table, with_bushings
-from housed_scenes import (
-    BLOCK,
-    GROUND,
-    MASS,
-    NAMES,
-    OFF,
-    ON,
-    STIFFNESS,
-    block,
-    housed,
-    matrices,
-    pair,
-    rows,
-)
+from housed_scenes import BLOCK, GROUND, MASS, NAMES, OFF, ON, STIFFNESS, block, housed, matrices, pair, rows
 
 from dynamics import Housing, Integration, Outputs, RollingContact, forced_response, simulate, steady_states
 from dynamics.assembly.assemble import assemble

@@ -11,12 +11,7 @@ from sounding_housings import part_of_scene, rigid_housing
 from sounding_scene import ON, SPEEDS, housing, oscillating, radiation, response, sound
 from surface_motions import normal_displacement
 
-from dynamics.acoustics import (
-    Air,
-    ElementalRadiators,
-    EquivalentRadiatedPower,
-    monopoles_efficiency,
-)
+from dynamics.acoustics import Air, ElementalRadiators, EquivalentRadiatedPower, monopoles_efficiency
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.linearize import forced_response

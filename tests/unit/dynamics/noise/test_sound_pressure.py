@@ -10,15 +10,7 @@ from hulls import box, sphere
 from reduced_housings import PAIR, bare_housing
 from sounding_housings import rigid_housing, smooth_motion, with_surface
 from sounding_scene import response
-from varied_housing import (
-    FINE,
-    MESH,
-    blind_levels,
-    covered,
-    meshed,
-    sound_model,
-    undamped_elsewhere,
-)
+from varied_housing import FINE, MESH, blind_levels, covered, meshed, sound_model, undamped_elsewhere
 
 from dynamics.acoustics import Air, ElementalRadiators, Hull, Range, outer_hull
 from dynamics.acoustics.air import directions

@@ -14,12 +14,7 @@ from fe_contact.errors import InputError
 from fe_contact.microgeometry.order_limit import Causes, ModeledPairs, OrderLimit, as_spread
 from fe_contact.microgeometry.sweep import Sweep, sweep
 from fe_contact.microgeometry.sweep_request import SweepAxis, SweepRequest
-from fe_contact.microgeometry.tolerance_study import (
-    Sampling,
-    ToleranceRequest,
-    estimated_quantile,
-    scatter,
-)
+from fe_contact.microgeometry.tolerance_study import Sampling, ToleranceRequest, estimated_quantile, scatter
 from fe_contact.microgeometry.tolerances import Tolerances
 from fe_contact.microgeometry.variables import modified
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run
