@@ -40,6 +40,7 @@ from fe_contact.options import AnalysisOptions, OperatingPoint
 
 NAN = math.nan
 SHIFT = "profile_shift_coefficient"
+LONG, CROWNING = FlankModification(tip_relief=1e-6, tip_relief_length=9e-3), "wheel.profile_crowning"
 ZEROS = ((0.0, 0.0), (0.0, 0.0))
 PLANE: dict[str, Any] = {"level": "draft", "model": "plane_strain"}
 RELIEF, LENGTH, SLOPE = "pinion.tip_relief", "pinion.tip_relief_length", "pinion.profile_slope"
@@ -56,20 +57,8 @@ def relieved(**fields: Any) -> object:
     return make_gear(modification=FlankModification(**fields))
 
 
-def relieved_ring(**fields: Any) -> object:
-    return make_ring(modification=FlankModification(**fields))
-
-
 def on_grid(roll: Any, face: Any) -> object:
     return relieved(flank_grid=FlankGrid(roll, face, ((1e-6, 0.0), (0.0, 0.0))))
-
-
-def pitches(count: int) -> object:
-    return make_gear(pitch_deviation=PitchDeviation((1e-6,) * count))
-
-
-def shaft(**fields: Any) -> object:
-    return Shaft(**({"length": 0.2, "diameter": 0.04, "position": 0.06, "bearing_stiffness": 4e8} | fields))
 
 
 def recipe(**fields: Any) -> object:
@@ -102,10 +91,6 @@ def samples(tolerances: Tolerances | None = None, effects: Any = None, **samplin
     return scatter(PAIR, [100.0], tolerances or Tolerances(0.0, {SLOPE: 1e-5}), Sampling(**sampling), options)
 
 
-def scattered(points: int) -> object:
-    return Scatter(1e-6, {SLOPE: 1e-6, "wheel.profile_crowning": 1e-6}, GaussHermite(points)).nodes()
-
-
 Row = tuple[Callable[..., object], Any, str]
 ROWS: list[Row] = [
     (make_ring, {"cutter_teeth": 60}, "cutter_teeth"),
@@ -131,7 +116,7 @@ ROWS: list[Row] = [
         {"triangular_tip_relief": 1e-6, "triangular_tip_relief_length": 1e-3},
         "modification.triangular_tip_relief",
     ),
-    (relieved_ring, {"tip_relief": 1e-6, "tip_relief_length": 9e-3}, "modification.tip_relief_length"),
+    (make_ring, {"modification": LONG}, "modification.tip_relief_length"),
     (on_grid, [(4.0, 19.0), (-1e-3, 1e-3)], "modification.flank_grid.roll_length"),
     (on_grid, [(4e-3, 19e-3), (20e-3, 45e-3)], "modification.flank_grid.face_position"),
     (FlankGrid, [(5e-3, 4e-3), (0.0, 1e-3), ZEROS], "roll_length"),
@@ -145,9 +130,9 @@ ROWS: list[Row] = [
     (PitchDeviation, [(0.0, NAN)], "pitch_deviation[1]"),
     (PitchDeviation, [(0.0, 5.0)], "pitch_deviation[1]"),
     (PitchDeviation, [("5",)], "pitch_deviation[0]"),
-    *[(pitches, [count], "pitch_deviation") for count in (1, 19, 21)],
+    *[(make_gear, {"pitch_deviation": PitchDeviation((1e-6,) * n)}, "pitch_deviation") for n in (1, 19, 21)],
     (BoreSeat, {"key": Key(1e-3)}, "tangential_foundation"),
-    (shaft, {"position": 0.41}, "position"),
+    (Shaft, [0.2, 0.04, 0.41, 4e8], "position"),
     (recipe, {"flank_size": 0.0}, "flank_size"),
     (recipe, {"tip_size": -1e-5}, "tip_size"),
     (recipe, {"tip_size": 1.0}, "tip_size"),
@@ -186,7 +171,7 @@ ROWS: list[Row] = [
     (Scatter, [0.0, {"pinion.depth": 1e-6}], "scatter.modification.pinion.depth"),
     (Scatter, [0.0, {SLOPE: 0.0}], f"scatter.modification.{SLOPE}"),
     (GaussHermite, [0], "scatter.rule.points"),
-    (scattered, [33], "scatter.rule.points"),
+    (Scatter(1e-6, {SLOPE: 1e-6, CROWNING: 1e-6}, GaussHermite(33)).nodes, [], "scatter.rule.points"),
     (SobolSample, [11], "scatter.rule.log2_size"),
     (DesignLoads.of, [[], 0.0], "torques"),
     (DesignLoads.of, [[100.0, NAN], 0.0], "torques[1]"),
