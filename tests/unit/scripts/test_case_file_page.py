@@ -1,14 +1,12 @@
 """The lists of fields on the page of case files are those of the declarations."""
 
-from pathlib import Path
-
 import case_file_page
+from repository import ROOT
 
 from dynamics.housings import Material
 from fe_contact.flank.modification import FlankModification
 from lineofaction.gearbox.schemas.declared import figures
 
-ROOT = Path(__file__).parents[3]
 PAGE = (ROOT / "docs" / "case-file.md").read_text("utf-8")
 
 

@@ -1,12 +1,9 @@
 """The tables of verbs, routes and processes on their pages are those of the program."""
 
-from pathlib import Path
-
 import pytest
 import service_pages
 from described_api import DESCRIPTION
-
-ROOT = Path(__file__).parents[3]
+from repository import ROOT
 
 
 @pytest.mark.parametrize(("name", "tables"), [("cli", ["verbs"]), ("service", ["routes", "processes"])])

@@ -48,7 +48,7 @@ def test_every_path_is_documented():
 
 def test_every_verb_and_exit_code_is_documented():
     text = page("cli.md")
-    verbs = [verb.name or verb.callback.__name__ for verb in loa.registered_commands]  # type: ignore[union-attr]
+    verbs = [verb.name or verb.callback.__name__ for verb in loa.registered_commands]
     studies = page("studies.md")
     for name in (*verbs, *STUDIES):
         assert f"`loa {name}" in (studies if name in STUDIES else text), name
