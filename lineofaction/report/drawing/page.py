@@ -238,10 +238,10 @@ def _figure(figure: Figure, image: bytes, *, still: bool, half: bool) -> str:
     if not still:
         data = f'<script type="application/json" id="{figure.key}-data">{_embedded(figure)}</script>\n'
     encoded = base64.b64encode(image).decode("ascii")
-    width = ' class="half"' * half
+    width = " data-half" * half
     return (
-        f'<figure id="{figure.key}"{width}>\n<h3>{escape(figure.title)}</h3>\n{"" if still else plot}'
-        f'<img class="{image_class}" alt="{alternative}" src="data:image/png;base64,{encoded}">\n'
+        f'<figure id="{figure.key}">\n<h3>{escape(figure.title)}</h3>\n{"" if still else plot}'
+        f'<img class="{image_class}"{width} alt="{alternative}" src="data:image/png;base64,{encoded}">\n'
         f"<figcaption><strong>{escape(figure.alternative)}</strong> {escape(figure.caption)}</figcaption>\n"
         f"{_player(figure)}{numbers}{data}</figure>"
     )

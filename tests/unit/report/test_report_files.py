@@ -78,7 +78,7 @@ def test_a_page_and_all_images_of_both(files, tmp_path):
 def test_one_file_alone(files, tmp_path, index, shown, missing):
     (path,) = write_report(files[index], tmp_path / "report.html")
     page = path.read_text(encoding="utf-8")
-    assert all(f'<figure id="{key}"' in page for key in shown)
+    assert all(f'<figure id="{key}">' in page for key in shown)
     assert not any(f'<figure id="{key}">' in page for key in missing)
 
 
