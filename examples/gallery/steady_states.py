@@ -2,7 +2,7 @@
 Do rising and falling speed respond alike?
 ==========================================
 
-Periodic steady states about a resonance. Here both agree: the teeth stay in contact. Where teeth part, they jump.
+Periodic steady states about a resonance. Here both agree: teeth stay in contact. Where they part, speeds jump.
 ``loa.steady("scene.toml", speed_rpm=[2400, 2500])`` finds them.
 """
 

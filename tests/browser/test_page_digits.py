@@ -1,9 +1,6 @@
 """Numbers of the page end with the second digit of their error, as those of terminal and document do."""
 
-from __future__ import annotations
-
 import pytest
-from playwright.sync_api import Page
 
 from bounds.error_digits import with_error
 
@@ -21,11 +18,11 @@ PAIRS = [(9.7861, 0.0347), (9.7861, 0.0996), (1.31, 0.0125), (-3.0, 2.0), (0.001
 
 
 @pytest.mark.law
-def test_page_and_terminal_write_one_number_alike(scripts: Page) -> None:
+def test_page_and_terminal_write_one_number_alike(scripts):
     assert scripts.evaluate(WRITTEN, PAIRS) == [with_error(*pair, "µm") for pair in PAIRS]
 
 
-def test_a_change_below_what_answers_resolve_is_none(scripts: Page) -> None:
+def test_a_change_below_what_answers_resolve_is_none(scripts):
     pairs = [(1.0 + 2e-14, 1.0), (1.0001, 1.0), (1.002, 1.0), (0.8, 1.0)]
     assert scripts.evaluate(CHANGES, pairs) == ["no change", "no change", "+0.2 %", "−20 %"]
     pairs = [(0.8, 1.0, 4.94), (0.8, 1.0, 30.0)]

@@ -1,9 +1,6 @@
 """Notebooks run as written, each in less than a minute of CPU time, and show what is stored in them."""
 
-from __future__ import annotations
-
 import json
-from pathlib import Path
 
 import notebooks
 import pytest
@@ -16,7 +13,7 @@ SUBJECTS = 6
 """Published pair, helical pair, unit, tolerances, study over Dask, measured gear."""
 
 
-def test_every_notebook_has_outputs_without_counts_of_runs() -> None:
+def test_every_notebook_has_outputs_without_counts_of_runs():
     assert len(notebooks.notebooks()) >= SUBJECTS
     for file in notebooks.notebooks():
         cells = json.loads(file.read_text("utf-8"))["cells"]
@@ -25,7 +22,7 @@ def test_every_notebook_has_outputs_without_counts_of_runs() -> None:
         assert all(cell["execution_count"] is None for cell in code), file.name
 
 
-def test_a_line_that_is_not_printed_today_is_stale() -> None:
+def test_a_line_that_is_not_printed_today_is_stale():
     stored = {"outputs": [notebooks.printed_output("ripple 1.00 µm\nmean 3.0 µm\n  made        9 CPU s\n")]}
     today = [notebooks.printed_output("ripple 1.01 µm\nmean 3.3 µm\n")]
     assert notebooks.stale_lines(stored, today) == ["mean 3.0 µm"]
@@ -33,7 +30,7 @@ def test_a_line_that_is_not_printed_today_is_stale() -> None:
 
 @pytest.mark.nightly
 @pytest.mark.parametrize("file", notebooks.notebooks(), ids=lambda file: file.stem)
-def test_a_notebook_shows_within_a_minute_what_is_stored(file: Path) -> None:
+def test_a_notebook_shows_within_a_minute_what_is_stored(file):
     before = cpu_seconds()
     cells = list(notebooks.executed(file))
     assert cpu_seconds() - before < LIMIT_S
