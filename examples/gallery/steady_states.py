@@ -2,7 +2,7 @@
 Do rising and falling speed respond alike?
 ==========================================
 
-Periodic steady states about a resonance. Here both agree: teeth stay in contact. Where they part, speeds jump.
+Periodic steady states about a resonance. Both agree: teeth stay in contact. Where they part, curves jump.
 ``loa.steady("scene.toml", speed_rpm=[2400, 2500])`` finds them.
 """
 
