@@ -32,7 +32,7 @@ QUESTIONS = {
     "warnings": "plausibility",
     "open rexs file": "tutorials/from-rexs-to-dba",
     "polymer": "case-file",
-    "jupyter": "tutorials/index",
+    "jupyter": "notebooks",
     "pandas": "how-to/table-in-python",
 }
 """The page that answers, by what a newcomer types."""

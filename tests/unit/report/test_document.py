@@ -200,7 +200,7 @@ def test_a_page_and_its_images_draw_a_column_of_panels_once(monkeypatch, tmp_pat
     column, row = figure(drawing(0.3), curve()), replace(figure(curve(), curve()), key="row")
     calls: list[tuple[str, int]] = []
 
-    def counted(drawn, across=1):
+    def counted(drawn, across=1, *, half=False):
         calls.append((drawn.key, across))
         return png(drawn, across)
 
