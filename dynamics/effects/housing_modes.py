@@ -25,7 +25,7 @@ class HousingModes(RotorEffect):
     """The amplitudes of all modes of a housing, as freedoms in addition to those of the shafts in it."""
 
     name = "housing_modes"
-    at_rest = False
+    in_statics = False
     compulsory = True
     adds = (HOUSING_AMPLITUDES,)
     cost = "a freedom per row of the housing's matrices, a force element per bearing in it, implicit steps"

@@ -16,7 +16,7 @@ class MeshTemperature(MeshEffect):
     """Another operating point of the table, and another backlash."""
 
     name = "mesh_temperature"
-    at_rest = True
+    in_statics = True
     cost = "none"
 
     def prepared(self, scene: Scene) -> Scene:

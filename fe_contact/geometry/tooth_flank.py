@@ -31,18 +31,20 @@ _SLOPE = "Slope deviation {} over the {}; > 0: half of it in excess at {}, half 
 _FORM = "Form deviation {} over the {}, the height of its shape; > 0: in excess in the middle"
 _GRID = replace(
     SURFACE,
-    description="Surface of this tooth, removed from it alone, besides the amounts and the modifications",
-    later=True,
+    description="Surface removed from this tooth alone, in addition to its deviations and the modifications",
+    omit_default=True,
 )
 
 
 def _deviation(text: str, example: float) -> Declared:
-    return Declared(Kind.LENGTH, "m", between(-_LARGEST, _LARGEST), text, example, written="µm", later=True)
+    return Declared(
+        Kind.LENGTH, "m", between(-_LARGEST, _LARGEST), text, example, written="µm", omit_default=True
+    )
 
 
 def _waves(along: str) -> Declared:
     text = f"Waves of the form deviation over the {along}, a crest in its middle; 0: a parabola"
-    return Declared(Kind.COUNT, "", integers(0, 50), text, 0, later=True)
+    return Declared(Kind.COUNT, "", integers(0, 50), text, 0, omit_default=True)
 
 
 @described

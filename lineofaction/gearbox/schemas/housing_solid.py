@@ -39,7 +39,7 @@ def _figures_of(value: object, *, later: bool) -> object:
     if not isinstance(value, str) or value not in MATERIALS:
         return value
     material = MATERIALS[value]
-    declared = [figure for figure in figures(Material) if later or not figure.what.later]
+    declared = [figure for figure in figures(Material) if later or not figure.what.omit_default]
     return {figure.field: figure.boundary_value(getattr(material, figure.name)) for figure in declared}
 
 

@@ -14,8 +14,8 @@ from lineofaction.hardcases.contact.contact_case import (
     NOMINAL_TORQUE,
     contact_case,
     even_positions,
-    mean_off,
-    off,
+    max_relative,
+    mean_relative,
     range_off,
 )
 from lineofaction.hardcases.contact.laws import soundness
@@ -40,7 +40,7 @@ def _undercut_pinion() -> Sequence[Measured]:
     position = even_positions(240)
     curves = [case.ste(position)[:, 0] for case in cases]
     problem, solution = cases[-1].solve(position)
-    errors = [mean_off(curve, curves[-1]) for curve in curves]
+    errors = [mean_relative(curve, curves[-1]) for curve in curves]
     ranges = [range_off(curve, curves[-1]) for curve in curves]
     # without corner contact, since the contact ratio knows none
     alone = cases[0].with_model(corner_contact=False).solve(even_positions(2000), cases[0].plan.load)[1]
@@ -91,7 +91,7 @@ def _twenty_to_two_hundred() -> Sequence[Measured]:
         *soundness(cornered, solution),
         Measured(
             "STE with the wheel driving, relative difference",
-            off(driving.deflection, driven.deflection),
+            max_relative(driving.deflection, driven.deflection),
             maximum=CYCLIC,
         ),
         Measured("positions compared", problem.candidates.position.size, minimum=50.0),
