@@ -18,15 +18,7 @@ from dynamics.kernels.compiled import inner
 from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine
 from dynamics.meshes.grid_energy import grid_energy
-from dynamics.meshes.grid_lookup import (
-    Cell,
-    GridForce,
-    find_cell,
-    grid_force,
-    hermite,
-    hermite_slope,
-    sample,
-)
+from dynamics.meshes.grid_lookup import Cell, GridForce, find_cell, grid_force, hermite, hermite_slope, sample
 from dynamics.meshes.grid_tables import GridTables
 from dynamics.meshes.mesh_table import MeshTable
 from dynamics.meshes.sliding_friction import Lever, Sliding, scaled, sliding_force

@@ -21,12 +21,7 @@ from dynamics.motion.observation import observe
 from dynamics.motion.sampled_states import States
 from dynamics.results.order_fit import order_amplitudes, orders_seen, unwrapped
 from dynamics.scene import Integration
-from dynamics.simulation.documents import (
-    ERROR_CHECK_FACTOR,
-    finer,
-    requested_error,
-    with_longest_step,
-)
+from dynamics.simulation.documents import ERROR_CHECK_FACTOR, finer, requested_error, with_longest_step
 from dynamics.types import FloatArray, IntArray, Json, StaticStatus
 from host import cpu_seconds
 

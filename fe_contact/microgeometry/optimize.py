@@ -14,11 +14,7 @@ from fe_contact.microgeometry.counted_merit import Cancelled
 from fe_contact.microgeometry.design_problem import SearchProblem
 from fe_contact.microgeometry.design_study import DesignStudy, design_study
 from fe_contact.microgeometry.drawing_grid import best_on_grid
-from fe_contact.microgeometry.optimization import (
-    Optimization,
-    OptimizationRequest,
-    Perturbation,
-)
+from fe_contact.microgeometry.optimization import Optimization, OptimizationRequest, Perturbation
 from fe_contact.microgeometry.search import Ended, Search, SearchRun, search_from
 from fe_contact.microgeometry.search_methods import Cancel, never
 from fe_contact.options import Run

@@ -17,9 +17,7 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.options import LEVELS, MEDIUM, MESHES, AnalysisOptions
 from fe_contact.planning.cost_model import effort, predict_run
 from fe_contact.planning.discretization import FINER_SLICES, FaceDiscretization
-from fe_contact.planning.expected_curves import (
-    ExpectedCurves,
-)
+from fe_contact.planning.expected_curves import ExpectedCurves
 from fe_contact.planning.expected_error import ExpectedError, expected_error, percent
 from fe_contact.planning.model_error import is_relieved_helical
 from fe_contact.planning.plan import make_plan

@@ -15,16 +15,7 @@ from dynamics.periodic.steady_states import BRANCH, DOWN, UP
 from lineofaction.gearbox.studies.steady.run import KINDS, RUN, status_name
 from lineofaction.gearbox.units import RPM
 from lineofaction.report.drawing import palette
-from lineofaction.report.drawing.figure import (
-    Axis,
-    Figure,
-    FloatArray,
-    Line,
-    Panel,
-    Reference,
-    Table,
-    number,
-)
+from lineofaction.report.drawing.figure import Axis, Figure, FloatArray, Line, Panel, Reference, Table, number
 from lineofaction.report.drawing.page import Headline
 from lineofaction.report.presentation import dynamics_presentation
 

@@ -6,22 +6,13 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from dynamics.study import (
-    Design,
-    Factor,
-    Levels,
-    Listed,
-    Normal,
-    Uniform,
-)
+from dynamics.study import Design, Factor, Levels, Listed, Normal, Uniform
 from fe_contact.microgeometry.tolerances import PROCESS_SPREAD, iso1328_tolerances
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.study import FactorInput, Inputs
-from lineofaction.gearbox.studies.study.scenes import (
-    Location,
-)
+from lineofaction.gearbox.studies.study.scenes import Location
 from lineofaction.gearbox.units import UM
 
 
