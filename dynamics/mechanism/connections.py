@@ -123,7 +123,8 @@ def condense_housing(
 
     the exact stiffness, and the exact damping at frequencies at which damping is small against stiffness.
     """
-    loss, follow = housing.matrices()[1], seat_compliance(housing, stiffness) @ stiffness
+    _, loss = housing.matrices()
+    follow = seat_compliance(housing, stiffness) @ stiffness
     left = np.eye(stiffness.shape[0]) - follow
     series = stiffness @ left
     amplitudes = follow[list(housing.columns)]
@@ -140,8 +141,8 @@ def seat_compliance(housing: Housing, stiffness: FloatArray) -> FloatArray:
     `stiffness` (5 s, 5 s) is K_b of the bearings alone. Under the shaft's motion d the seats move by this
     times K_b d - preload.
     """
-    followed = list(housing.columns)
-    both = stiffness[np.ix_(followed, followed)] + housing.matrices()[0]
+    followed, (of_housing, _) = list(housing.columns), housing.matrices()
+    both = stiffness[np.ix_(followed, followed)] + of_housing
     scale = 1.0 / np.sqrt(np.maximum(np.diag(both), 1e-300))
     inverse = np.linalg.pinv(scale[:, None] * both * scale, hermitian=True)
     compliance = np.zeros_like(stiffness)

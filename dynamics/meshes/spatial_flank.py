@@ -67,17 +67,17 @@ class SpatialFlankLaws(NamedTuple):
             return np.array(figures[name], dtype=dtype).reshape(len(tables), *width)
 
         return cls(
-            GridTables.packed(tables),
-            column("damping"),
-            column("reach"),
-            column("row", 3, dtype=np.int64),
-            column("fixed", 2),
-            column("follows", 2, dtype=np.int64),
-            column("per_face"),
-            column("mid_face"),
-            column("friction"),
-            column("radius"),
-            column("running", dtype=np.bool_),
+            grid=GridTables.packed(tables),
+            damping=column("damping"),
+            reach=column("reach"),
+            row=column("row", 3, dtype=np.int64),
+            fixed=column("fixed", 2),
+            follows=column("follows", 2, dtype=np.int64),
+            per_face=column("per_face"),
+            mid_face=column("mid_face"),
+            friction=column("friction"),
+            radius=column("radius"),
+            running=column("running", dtype=np.bool_),
         )
 
     def as_running(self) -> SpatialFlankLaws:

@@ -327,16 +327,16 @@ def periodic_problem(
             "loads", 0.0, "present, or a nominal force given", "They set the size of the motion."
         )
     return PeriodicProblem(
-        system,
-        period,
-        PeriodGrid.of(system, period, 1.0 / max(rate * period.duration(slowest), minimum)),
-        rate,
-        minimum,
-        repeat,
-        time,
-        np.concatenate([rest, np.zeros(rest.size)]),
-        size,
-        NEWTON_SHARE * max(force, stiff * size),
+        system=system,
+        period=period,
+        grid=PeriodGrid.of(system, period, 1.0 / max(rate * period.duration(slowest), minimum)),
+        rate=rate,
+        minimum=minimum,
+        repeat=repeat,
+        time=time,
+        rest=np.concatenate([rest, np.zeros(rest.size)]),
+        size=size,
+        force_tolerance=NEWTON_SHARE * max(force, stiff * size),
     )
 
 

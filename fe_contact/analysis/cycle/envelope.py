@@ -204,17 +204,17 @@ class Envelope:
         without = LeastTangents.of(tangent, gaps, drawn)
         none = np.empty((0, *minimum.ste.shape[1:]))
         return cls(
-            contact,
-            keep,
-            gaps,
-            tangent.value.mean(axis=0),
-            np.empty(0, dtype=np.int64),
-            none,
-            np.empty((0, *minimum.sums.shape[1:])),
-            {name: values[None] for name, values in keep(state).items()},
-            minimum,
-            drawn,
-            without,
+            contact=contact,
+            keep=keep,
+            gaps=gaps,
+            nominal=tangent.value.mean(axis=0),
+            pitches=np.empty(0, dtype=np.int64),
+            exact=none,
+            exact_sums=np.empty((0, *minimum.sums.shape[1:])),
+            arrays={name: values[None] for name, values in keep(state).items()},
+            minimum=minimum,
+            drawn=drawn,
+            without=without,
         ).about(drawn)
 
     @classmethod

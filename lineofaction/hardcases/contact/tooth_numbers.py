@@ -43,7 +43,7 @@ def _undercut_pinion() -> Sequence[Measured]:
     errors = [mean_relative(curve, curves[-1]) for curve in curves]
     ranges = [range_off(curve, curves[-1]) for curve in curves]
     # without corner contact, since the contact ratio knows none
-    alone = cases[0].with_model(corner_contact=False).solve(even_positions(2000), cases[0].plan.load)[1]
+    _, alone = cases[0].with_model(corner_contact=False).solve(even_positions(2000), cases[0].plan.load)
     pairs = float((alone.force[:, 0] > 0.0).sum(axis=1).mean())
     return (
         *soundness(problem, solution),
@@ -85,7 +85,7 @@ def _twenty_to_two_hundred() -> Sequence[Measured]:
     back = contact_case(GearPair(wheel, pinion), [200.0]).with_model(corner_contact=False)
     problem, driven = there.solve(position)
     # position x by the pinion is -x by the wheel
-    driving = back.solve((1.0 - position) % 1.0, there.plan.load)[1]
+    _, driving = back.solve((1.0 - position) % 1.0, there.plan.load)
     cornered, solution = contact_case(GearPair(pinion, wheel), [20.0]).solve(position, there.plan.load)
     return (
         *soundness(cornered, solution),
