@@ -72,7 +72,7 @@ class Label:
         return cls(row.title, tuple(row.tags.split()))  # a tag holds no blanks
 
     def columns(self) -> dict[str, str]:
-        """Return the columns of the job table: the title, the title for searches, and one tag a line.
+        """Return the columns of the job table: the title, the title for searches, and one tag per line.
 
         Every tag stands between two line feeds, so that a search for a tag finds whole tags only.
         """
