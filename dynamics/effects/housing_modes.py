@@ -36,12 +36,12 @@ class HousingModes(RotorEffect):
         All shafts in a housing have its verdict. A shaft in two housings has the effect if one of them calls
         for it. The effect changes no static motion.
         """
-        none = Verdict(False, False, "no bearing of it sits in a housing with mass", 0.0)
+        unhoused = Verdict(False, False, "no bearing of it sits in a housing with mass", 0.0)
         return [
             max(
                 (_verdict(rotor, housing) for housing in _housings_of(rotor.mechanism, rotor.index)),
                 key=lambda verdict: verdict.on,
-                default=none,
+                default=unhoused,
             )
             for rotor in rotors
         ]

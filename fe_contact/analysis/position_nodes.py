@@ -122,19 +122,19 @@ def _probed(
     nodes: FloatArray, values: FloatArray, solve: Callable[[FloatArray], FloatArray], chosen: BoolArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return STE (W, c, L) in the middles of the c chosen intervals, and the largest errors (c, L) there."""
-    where = nodes[chosen, None] + Axis(nodes, 1.0).spacing[chosen, None] * PROBES
-    solved = solve(where.ravel())
+    position = nodes[chosen, None] + Axis(nodes, 1.0).spacing[chosen, None] * PROBES
+    solved = solve(position.ravel())
     nominal = solved[solved.shape[0] // 2]
-    deviation = np.abs(_interpolated(nodes, values, where.ravel()) - nominal).reshape(*where.shape, -1)
-    by_interval = solved.reshape(solved.shape[0], *where.shape, -1)
+    deviation = np.abs(_interpolated(nodes, values, position.ravel()) - nominal).reshape(*position.shape, -1)
+    by_interval = solved.reshape(solved.shape[0], *position.shape, -1)
     return by_interval[:, :, PROBES.size // 2], deviation.max(axis=1)
 
 
-def _interpolated(nodes: FloatArray, values: FloatArray, where: FloatArray) -> FloatArray:
+def _interpolated(nodes: FloatArray, values: FloatArray, position: FloatArray) -> FloatArray:
     """Interpolate the middle one of W base pitches at `where` (Q,) in [0, 1], (Q, L); all pitches repeat."""
     pitches = np.arange(values.shape[0]) - values.shape[0] // 2
     knots = (pitches[:, None] + nodes).ravel()
-    return interpolate(Axis(knots, float(pitches.size)), values.reshape(knots.size, -1), where)
+    return interpolate(Axis(knots, float(pitches.size)), values.reshape(knots.size, -1), position)
 
 
 def table_nodes(points: OperatingPoints, plan: Plan, report: Report = unreported) -> PositionNodes:

@@ -130,12 +130,12 @@ def coordinates(gear: Tooth, roll_length: FloatArray, face_position: FloatArray)
 def tooth_shapes(gear: Tooth, roll_length: FloatArray, face_position: FloatArray) -> dict[str, FloatArray]:
     """Return the excess by 1 m of each slope, and of each form without waves, by field of `ToothFlank`."""
     u, v = np.broadcast_arrays(*coordinates(gear, roll_length, face_position))
-    none = np.zeros(u.shape)
+    zeros = np.zeros(u.shape)
     return {
         "profile_slope": 0.5 * u,
-        "profile_form": _form(none + 1.0, none, u),
+        "profile_form": _form(zeros + 1.0, zeros, u),
         "helix_slope": 0.5 * v,
-        "helix_form": _form(none + 1.0, none, v),
+        "helix_form": _form(zeros + 1.0, zeros, v),
     }
 
 

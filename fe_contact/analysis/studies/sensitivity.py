@@ -43,10 +43,10 @@ class RippleCurve:
     @property
     def change_error(self) -> FloatArray:
         """Error of the relative change (N,): both errors as independent ones; 0 without deviation."""
-        none = self.deviation == 0.0
-        nominal, error = float(self.peak_to_peak[none][0]), float(self.error[none][0])
+        undeviated = self.deviation == 0.0
+        nominal, error = float(self.peak_to_peak[undeviated][0]), float(self.error[undeviated][0])
         both = np.hypot(self.error, error * (1.0 + self.relative_change)) / nominal
-        return np.where(none, 0.0, both)
+        return np.where(undeviated, 0.0, both)
 
 
 @brief
