@@ -81,12 +81,12 @@ def _twenty_to_two_hundred() -> Sequence[Measured]:
     pinion = Gear(teeth=20, bore_diameter=20e-3, **common)  # type: ignore[arg-type]
     wheel = Gear(teeth=200, bore_diameter=0.2, **common)  # type: ignore[arg-type]
     position = np.linspace(0.0, 0.98, 50)
-    there = contact_case(GearPair(pinion, wheel), [20.0]).with_model(corner_contact=False)
+    forward = contact_case(GearPair(pinion, wheel), [20.0]).with_model(corner_contact=False)
     back = contact_case(GearPair(wheel, pinion), [200.0]).with_model(corner_contact=False)
-    problem, driven = there.solve(position)
+    problem, driven = forward.solve(position)
     # position x by the pinion is -x by the wheel
-    _, driving = back.solve((1.0 - position) % 1.0, there.plan.load)
-    cornered, solution = contact_case(GearPair(pinion, wheel), [20.0]).solve(position, there.plan.load)
+    _, driving = back.solve((1.0 - position) % 1.0, forward.plan.load)
+    cornered, solution = contact_case(GearPair(pinion, wheel), [20.0]).solve(position, forward.plan.load)
     return (
         *soundness(cornered, solution),
         Measured(
