@@ -1,8 +1,6 @@
 """A service with keys: nothing without one, nothing about one in what it says."""
 
-from collections.abc import Iterator
 from contextlib import ExitStack, closing
-from pathlib import Path
 from typing import Any
 
 import httpx2
@@ -10,7 +8,6 @@ import pytest
 import structlog.contextvars
 import structlog.testing
 from fastapi.testclient import TestClient
-from httpx2 import Response
 from running_service import until
 from served_app import served
 from service_fakes import EXECUTION, REGISTRY, bearing
@@ -24,17 +21,17 @@ from service.settings import Settings
 
 
 @pytest.fixture
-def settings(tmp_path: Path) -> Settings:
+def settings(tmp_path):
     return Settings(data_directory=tmp_path / "data")
 
 
 @pytest.fixture
-def secret(settings: Settings) -> str:
+def secret(settings):
     return KeyFile(settings.key_file).add("bench", requests_per_minute=50)
 
 
 @pytest.fixture
-def http(settings: Settings, secret: str) -> Iterator[TestClient]:
+def http(settings, secret):
     with TestClient(create_app(settings, REGISTRY), raise_server_exceptions=False) as found:
         yield found
 
@@ -42,7 +39,7 @@ def http(settings: Settings, secret: str) -> Iterator[TestClient]:
 def test_every_path_but_health_readiness_and_the_page_asks_for_a_key(http):
     paths = {
         (method, path.replace("{", "").replace("}", ""))
-        for path, methods in http.app.openapi()["paths"].items()  # type: ignore[attr-defined]
+        for path, methods in http.app.openapi()["paths"].items()
         for method in methods
     }
     paths |= {("get", f"/{name}") for name in ("openapi.json", "nowhere", "health/", "pages", "page")}
@@ -109,7 +106,7 @@ def test_the_log_names_the_key_and_never_holds_it(settings, secret):
 
 
 def test_the_client_takes_its_key_from_its_caller_or_the_environment(http, secret, tmp_path, monkeypatch):
-    def client(key: str | None) -> LineOfActionClient:
+    def client(key):
         return LineOfActionClient("http://testserver", cache_dir=tmp_path, transport=http._transport, key=key)
 
     with client(None) as without, pytest.raises(Unauthorised, match="Authorization"):
@@ -125,7 +122,7 @@ def test_a_key_has_as_many_unfinished_jobs_as_it_may_and_leaves_room_for_others(
     file = KeyFile(settings.key_file)
     few, many = bearing(file.add("few", unfinished_jobs=2)), bearing(file.add("many"))
 
-    def enter(number: float, who: dict[str, str]) -> Response:
+    def enter(number, who):
         wish = {"mode": "hang", "number": number}
         return http.post(EXECUTION, json={"inputs": {"wish": wish}}, headers=who)
 
@@ -161,7 +158,7 @@ def test_what_is_held_is_counted_by_name_and_given_back():
 
 
 @pytest.fixture
-def at(settings: Settings) -> Iterator[str]:
+def at(settings):
     """The address of a service behind a socket that works on nothing."""
     KeyFile(settings.key_file).add("first")
     with served(create_app(settings, REGISTRY, works=False)) as port:
@@ -175,7 +172,7 @@ def test_a_key_holds_as_many_streams_as_it_may_and_leaves_others_theirs(at, sett
     with httpx2.Client(base_url=at, timeout=60.0) as http, ExitStack() as held:
         events = http.post(EXECUTION, json=body, headers=few).headers["location"] + "/events"
 
-        def listen(who: dict[str, str]) -> ExitStack:
+        def listen(who):
             stream = ExitStack()
             answer = stream.enter_context(http.stream("GET", events, headers=who))
             lines = stream.enter_context(closing(answer.iter_lines()))

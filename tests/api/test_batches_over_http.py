@@ -1,8 +1,6 @@
 """Batches: one request, many jobs, one job for all of them; all are entered or none."""
 
 import json
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -18,14 +16,14 @@ ENDED = ("successful", "failed", "dismissed")
 
 
 @pytest.fixture
-def http(tmp_path: Path) -> Iterator[TestClient]:
+def http(tmp_path):
     settings = Settings(data_directory=tmp_path, workers=2, queue_limit=6)
     with TestClient(create_app(settings, REGISTRY)) as found:
         yield found
 
 
 @pytest.fixture
-def idle(tmp_path: Path) -> TestClient:
+def idle(tmp_path):
     """An app whose scheduler does not run: jobs stay as they are put."""
     return TestClient(create_app(Settings(data_directory=tmp_path, queue_limit=6), REGISTRY))
 
@@ -86,7 +84,7 @@ def test_each_job_of_a_batch_is_set_apart_from_the_one_before_it(http):
 def test_jobs_are_differences_from_what_they_share(http):
     batch = submitted(http, {}, {"number": 2.0}, {"text": None}, text="shared", number=1.0).json()["jobID"]
     assert ended(http, batch)["status"] == "successful"
-    submissions = http.app.state.context.submissions  # type: ignore[attr-defined]
+    submissions = http.app.state.context.submissions
     wishes = [json.loads(job.inputs)["wish"] for job in submissions.children(batch)]
     assert [(wish["text"], wish["number"]) for wish in wishes] == [
         ("shared", 1.0),
@@ -117,7 +115,7 @@ def test_equal_jobs_and_those_of_others_share_their_computation(http, tmp_path):
     alone = http.post(EXECUTION, json={"inputs": {"wish": {"text": "x"}}}).json()
     batch = submitted(http, {"text": "x"}, {"text": "x"}, {"text": "y"}).json()["jobID"]
     assert ended(http, batch)["status"] == "successful"
-    submissions = http.app.state.context.submissions  # type: ignore[attr-defined]
+    submissions = http.app.state.context.submissions
     jobs = submissions.children(batch)
     assert jobs[0].computation == jobs[1].computation == submissions.find(alone["jobID"]).computation
     assert len({job.id for job in jobs}) == 3
@@ -211,7 +209,7 @@ def test_dismissal_of_a_batch_is_that_of_its_jobs(http):
     assert [result["status"] for result in results] == ["successful", "dismissed", "dismissed"]
     assert http.get(alone.headers["location"]).json()["status"] in ("accepted", "running")
     http.delete(alone.headers["location"])
-    counts = http.app.state.context.submissions.counts  # type: ignore[attr-defined]
+    counts = http.app.state.context.submissions.counts
     until(lambda: not {"accepted", "running"} & set(counts()))
 
 

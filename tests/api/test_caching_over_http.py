@@ -3,7 +3,6 @@
 import shutil
 import socket
 import subprocess
-from collections.abc import Iterator
 from pathlib import Path
 
 import httpx2
@@ -23,7 +22,7 @@ PUBLIC = ("/health", "/ready")  # requested without a key, and as old as the ans
 
 
 @pytest.fixture(scope="module")
-def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[TestClient, dict[str, str]]]:
+def service(tmp_path_factory):
     """A caller of a service that has keys and a result of every kind, and the header with a key."""
     directory = tmp_path_factory.mktemp("kept")
     secret = KeyFile(directory / "keys.json").add("bench")
@@ -54,7 +53,7 @@ def kept_for_its_caller_alone(answer: Response) -> bool:
 
 def paths(client: TestClient) -> list[str]:
     """Return every GET path of the description, of results that are and of some that are not."""
-    described = client.app.openapi()["paths"]  # type: ignore[attr-defined]
+    described = client.app.openapi()["paths"]
     named = [path for path, methods in described.items() if "get" in methods and path not in PUBLIC]
     held = [path.replace("{key}", KEY) for path in named if "{key}" in path and "figures" not in path]
     missing = [path.replace("{key}", ABSENT).replace("{process_id}", "analyze") for path in named]
@@ -88,7 +87,7 @@ def test_with_keys_a_known_version_is_confirmed_to_who_may_have_it(service):
 
 def test_an_event_stream_is_kept_by_nobody(service):
     client, bearer = service
-    job = client.app.state.context.submissions.submit("analyze", KEY, {}, stored=True)  # type: ignore[attr-defined]
+    job = client.app.state.context.submissions.submit("analyze", KEY, {}, stored=True)
     answer = client.get(f"/v1/jobs/{job.id}/events", headers=bearer)
     assert answer.status_code == 200 and "no-store" in directives(answer)
 
@@ -139,7 +138,7 @@ http {{
 
 
 @pytest.fixture
-def cached(tmp_path: Path) -> Iterator[httpx2.Client]:
+def cached(tmp_path):
     """A caller behind a cache, which keeps what RFC 9111 allows it; the service has a result and no keys."""
     if NGINX is None:
         pytest.skip("nginx is not installed")

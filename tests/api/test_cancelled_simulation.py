@@ -1,7 +1,6 @@
 """A long simulation as a job: progress, memory that does not grow, and an end when it is cancelled."""
 
 import os
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -24,17 +23,17 @@ SAMPLE_BYTES = 8 * 2 * 5  # displacements and rates of five freedoms
 
 
 @pytest.fixture(scope="module", autouse=True)
-def warm_once() -> None:
+def warm_once():
     """Have a warm process of its own: the worker is found by its parent."""
 
 
 @pytest.fixture
-def data(tmp_path: Path) -> Path:
+def data(tmp_path):
     return tmp_path / "data"
 
 
 @pytest.fixture
-def client(tmp_path: Path, data: Path) -> Iterator[LineOfActionClient]:
+def client(tmp_path, data):
     app = create_app(Settings(data_directory=data))
     scene_file(tmp_path)
     with (

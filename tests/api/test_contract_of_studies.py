@@ -12,7 +12,7 @@ import signal
 import struct
 import tomllib
 import uuid
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from contextlib import contextmanager
 from html import escape, unescape
 from pathlib import Path
@@ -27,11 +27,9 @@ from running_service import until
 from small_inputs import small_inputs
 from study_rows import ROWS, StudyRow
 from study_runs import StudyRuns, unmeasured, without_file
-from study_service import Served
 from typer.main import get_command
 from typer.testing import CliRunner
 
-from fe_contact.ste import SteDatabase
 from lineofaction.cli.commands import app
 from lineofaction.gearbox import workbench
 from lineofaction.gearbox.registry import STUDIES, figures_model
@@ -65,14 +63,12 @@ def check_effects_shown(ledger: Mapping[str, Any], printed: str, report: str) ->
 
 
 @pytest.fixture(scope="module")
-def table() -> SteDatabase:
+def table():
     return workbench.analyze(small_inputs("analyze")["case"])
 
 
 @pytest.fixture(scope="module", params=ROWS, ids=str)
-def runs(
-    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, served: Served
-) -> Iterator[StudyRuns]:
+def runs(request, tmp_path_factory, served):
     row: StudyRow = request.param
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(surface_view, "ACROSS", 90)  # pictures of surfaces are coarse
@@ -124,7 +120,7 @@ def test_a_job_has_the_figures_of_python(runs):
 
 
 def test_measured_times_are_there(runs):
-    def times(value: Any) -> Iterator[float]:
+    def times(value):
         inner = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
         for entry in inner:
             yield from times(entry)
@@ -304,8 +300,8 @@ def test_an_interrupted_verb_says_so_and_leaves_no_file(runs, monkeypatch):
     seen: list[str] = []
 
     @contextmanager
-    def interrupting(_stages: object) -> Iterator[Callable[[str, float], None]]:
-        def report(stage: str, _fraction: float) -> None:
+    def interrupting(_stages):
+        def report(stage, _fraction):
             seen.append(stage)
             if stage in own and seen.count(stage) == 1:
                 signal.raise_signal(signal.SIGINT)
@@ -428,7 +424,7 @@ def test_a_dismissed_job_has_no_result(runs):
     gone = http.get(f"{place}/results")
     assert (gone.status_code, gone.headers["content-type"]) == (410, "application/problem+json")
     assert gone.json()["type"].endswith("job-dismissed")
-    counts = http.app.state.context.submissions.counts  # type: ignore[attr-defined]
+    counts = http.app.state.context.submissions.counts
     until(lambda: not {"accepted", "running"} & set(counts()))
     assert http.get(place).json()["status"] == "dismissed"
 

@@ -104,7 +104,7 @@ class Two:
 
 
 @pytest.fixture(scope="module")
-def two() -> Any:
+def two():
     """The service with keys of two projects, and one key of each that is refused."""
     rights = {
         "owner": {"project": "axle"},
@@ -114,7 +114,7 @@ def two() -> Any:
         "revoked": {"project": "axle"},
     }
     rights |= {f"no {s}": {"project": "axle", "scopes": [o for o in Scope if o != s]} for s in Scope}
-    keys = {who: _keys.add(who.replace(" ", "-"), **of) for who, of in rights.items()}  # type: ignore[arg-type]
+    keys = {who: _keys.add(who.replace(" ", "-"), **of) for who, of in rights.items()}
     _keys.remove("revoked")
     _let_expire("expired")
     with TestClient(APP, raise_server_exceptions=False) as http:
@@ -255,7 +255,7 @@ def test_a_job_of_others_in_the_project_is_theirs_to_dismiss_or_the_operators(tw
     }
     body = {"inputs": {"wish": {"mode": "hang"}}}
 
-    def enter(who: str) -> str:
+    def enter(who):
         return str(two.http.post(EXECUTION, json=body, headers=headers[who]).headers["location"])
 
     theirs, own = enter("owner"), enter("no operate")

@@ -2,8 +2,6 @@
 
 import base64
 import hashlib
-from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from fastapi.testclient import TestClient
@@ -20,7 +18,7 @@ NETCDF = {"Accept": "application/x-netcdf"}
 
 
 @pytest.fixture
-def client(tmp_path: Path) -> Iterator[TestClient]:
+def client(tmp_path):
     app = create_app(Settings(data_directory=tmp_path))
     file = tmp_path / "table.nc"
     small_table().to_netcdf(file)
@@ -61,7 +59,7 @@ def test_metadata_is_the_default_and_in_boundary_units(client):
 
 
 def test_a_damaged_table_is_refused_not_served(client):
-    store = client.app.state.context.store  # type: ignore[attr-defined]
+    store = client.app.state.context.store
     path = store.verified(KEY, "database").path
     path.write_bytes(path.read_bytes()[:-1] + b"?")
     answer = client.get(f"/v1/results/{KEY}", headers=NETCDF)

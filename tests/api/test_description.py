@@ -11,7 +11,6 @@ from typing import Any
 
 import pytest
 from described_api import DESCRIPTION
-from fastapi.dependencies.models import Dependant
 from fastapi.routing import APIRoute
 
 from lineofaction.gearbox import problems
@@ -194,7 +193,7 @@ def test_answers_are_typed_but_for_what_others_define():
 def test_no_operation_needs_a_thread_for_what_it_depends_on():
     """A dependency that is no coroutine costs one, for which the loop waits beside busy threads."""
 
-    def calls(dependant: Dependant) -> Iterator[object]:
+    def calls(dependant):
         for dependency in dependant.dependencies:
             yield dependency.call
             yield from calls(dependency)

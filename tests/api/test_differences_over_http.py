@@ -1,7 +1,5 @@
 """Differences of jobs from those before them: of the same caller and process, on each database."""
 
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -20,7 +18,7 @@ Json = dict[str, Any]
 
 
 @pytest.fixture
-def client(tmp_path: Path, database_url: str | None) -> Iterator[TestClient]:
+def client(tmp_path, database_url):
     """A client of an app whose scheduler does not run, on each database."""
     app = create_app(Settings(data_directory=tmp_path, database_url=database_url))
     yield TestClient(app)
@@ -32,7 +30,7 @@ def entered(client: TestClient, process: str = "analyze", relief: float = 0.0, *
     body = {"inputs": {"case": CASE | {"pair": CASE["pair"] | {"pinion": pinion}}}}
     answer = client.post(f"/v1/processes/{process}/execution", json=body, headers=headers)
     assert answer.status_code == 201, answer.text
-    return answer.json()  # type: ignore[no-any-return]
+    return answer.json()
 
 
 def relieved(before: float, value: float) -> list[Json]:
@@ -63,7 +61,7 @@ def test_the_first_job_is_compared_with_the_defaults(client):
 
 def test_differences_outlast_the_job_before(client):
     first, second = entered(client), entered(client, relief=20.0)
-    with writing(client.app.state.context.engine) as connection:  # type: ignore[attr-defined]
+    with writing(client.app.state.context.engine) as connection:
         connection.execute(delete(jobs).where(jobs.c.id == first["jobID"]))
     assert client.get(f"/v1/jobs/{second['jobID']}").json()["differences"] == second["differences"]
 

@@ -66,7 +66,7 @@ def test_a_browser_that_has_the_final_event_is_told_to_connect_no_more(client):
 def test_a_service_that_stops_ends_its_streams(client):
     location = execute(client, mode="hang")
     until(lambda: client.get(location).json()["stage_progress"] > 0)
-    stop = client.app.state.context.stop_waiting  # type: ignore[attr-defined]
+    stop = client.app.state.context.stop_waiting
     sent = _apart(_listen_and_leave(client.app, f"{location}/events", b"never", after=stop))
     assert documents(sent.decode())[-1]["status"] in ("accepted", "running")
     client.delete(location)
@@ -78,7 +78,7 @@ def test_an_unknown_job_has_no_stream(client):
 
 
 def test_streams_are_bounded_and_given_back(client):
-    streams = client.app.state.context.streams  # type: ignore[attr-defined]
+    streams = client.app.state.context.streams
     location = execute(client, text="table")
     streams.maximum = 1
     assert client.get(f"{location}/events").status_code == 200
@@ -92,7 +92,7 @@ def test_streams_are_bounded_and_given_back(client):
 
 def test_a_caller_who_leaves_frees_the_stream_while_the_job_goes_on(client):
     location = execute(client, mode="hang")
-    streams = client.app.state.context.streams  # type: ignore[attr-defined]
+    streams = client.app.state.context.streams
     sent = _apart(_listen_and_leave(client.app, f"{location}/events"))
     assert documents(sent.decode())[0]["status"] in ("accepted", "running")
     assert streams._open == 0
@@ -136,13 +136,13 @@ async def _listen_and_leave(
     }
     asked = iter([{"type": "http.request", "body": b"", "more_body": False}])
 
-    async def receive() -> dict[str, Any]:
+    async def receive():
         for message in asked:
             return message
         await enough.wait()
         return {"type": "http.disconnect"}
 
-    async def send(message: dict[str, Any]) -> None:
+    async def send(message):
         heard.append(message.get("body", b""))
         if len(heard) == 2:
             asyncio.get_running_loop().run_in_executor(None, after)

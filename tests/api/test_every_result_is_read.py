@@ -9,7 +9,7 @@ with all their images.
 import copy
 import json
 import pickle
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
 from io import BytesIO
@@ -39,7 +39,6 @@ from lineofaction.gearbox.problems import ServiceError
 from lineofaction.gearbox.registry import study_of
 from lineofaction.gearbox.result_files import stamp
 from lineofaction.report.document import read_stored
-from lineofaction.report.drawing.figure import Figure
 from lineofaction.report.presentation import presentation_of
 from service.app import create_app
 from service.settings import Settings
@@ -80,7 +79,6 @@ def _verb(*arguments: object) -> None:
 
 def figures_as_json(reading: Reading) -> None:
     answer = _got(reading, "")
-    assert answer is not None
     check_declared(reading.result.kind, answer.json())
 
 
@@ -233,14 +231,14 @@ def make(home: Path, process: str, inputs: Json) -> list[StoredResult]:
 
 
 @pytest.fixture(scope="module")
-def home(tmp_path_factory: pytest.TempPathFactory, condensed_bodies: Path) -> Path:
+def home(tmp_path_factory, condensed_bodies):
     folder = tmp_path_factory.mktemp("read")
     find_condensed(condensed_bodies, folder)
     return folder
 
 
 @pytest.fixture(scope="module")
-def http(home: Path) -> Iterator[TestClient]:
+def http(home):
     with TestClient(create_app(Settings(data_directory=home)), raise_server_exceptions=False) as client:
         yield client
 
@@ -272,7 +270,7 @@ def read(home: Path, http: TestClient, process: str, count: int, folder: Path) -
 @pytest.mark.drawn
 @pytest.mark.parametrize("process", PROCESSES)
 def test_a_few_of_every_kind_are_read(home, http, process, tmp_path, monkeypatch):
-    def undrawn(_figure: Figure, across: int = 1) -> bytes:
+    def undrawn(_figure, across=1):
         content = BytesIO()
         Image.new("RGB", (across, 1)).save(content, "PNG")
         return content.getvalue()

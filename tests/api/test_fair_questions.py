@@ -31,7 +31,7 @@ def flooded(address: str, key: dict[str, str], pool: QuestionPool) -> Iterator[C
     """Ask on many connections what is never answered; give the statuses of what is."""
     statuses, ended = Counter[int](), threading.Event()
 
-    def ask(number: int) -> None:
+    def ask(number):
         body = {"inputs": {"case": CASE, "time_budget_s": 1.0}, "caller": f"slider-{number}"}
         with httpx2.Client(base_url=address, timeout=PATIENCE_S, headers=key) as http:
             while not ended.is_set():

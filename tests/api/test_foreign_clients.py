@@ -9,7 +9,6 @@ import importlib
 import json
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -40,13 +39,13 @@ CONFIG = {
 
 
 @pytest.fixture(scope="module")
-def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+def service(tmp_path_factory):
     with written_service(tmp_path_factory.mktemp("foreign")) as running:
         yield running
 
 
 @pytest.fixture(scope="module")
-def generated(service: Service, tmp_path_factory: pytest.TempPathFactory) -> Iterator[ModuleType]:
+def generated(service, tmp_path_factory):
     """The client that is generated from the description; a warning of the generator is an error."""
     if not GENERATOR.exists():
         pytest.skip("no openapi-python-client on this machine: scripts/test installs it")
@@ -125,7 +124,7 @@ def test_owslib_runs_a_process(service, process):
 
 
 @pytest.fixture(scope="module")
-def working(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+def working(tmp_path_factory):
     with running_service(tmp_path_factory.mktemp("working"), default_registry()) as running:
         yield running
 

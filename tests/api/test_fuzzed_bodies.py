@@ -8,7 +8,7 @@ import copy
 import json
 import random
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -54,7 +54,7 @@ class Target:
 
 
 @pytest.fixture
-def target(tmp_path: Path) -> Target:
+def target(tmp_path):
     """An app whose scheduler does not run."""
     app = create_app(Settings(data_directory=tmp_path, queue_limit=100_000))
     file = tmp_path / "table.nc"
@@ -64,7 +64,7 @@ def target(tmp_path: Path) -> Target:
 
 
 @pytest.fixture
-def whole(tmp_path: Path) -> Iterator[Target]:
+def whole(tmp_path):
     """One whose plans and live questions are answered."""
     found = whole_service(tmp_path)
     yield Target(TestClient(found.app, raise_server_exceptions=False, headers=found.headers), found.key)

@@ -4,7 +4,6 @@ import http.client
 import socket
 import threading
 import time
-from collections.abc import Iterator
 
 import pytest
 import uvicorn
@@ -24,7 +23,7 @@ WHOLE = b"GET /health HTTP/1.1\r\nHost: localhost\r\n\r\n"
 
 
 @pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[uvicorn.Server]:
+def server(tmp_path_factory):
     with socket.create_server(("127.0.0.1", 0)) as listener:
         app = create_app(
             Settings(data_directory=tmp_path_factory.mktemp("drip"), body_limit=100_000), REGISTRY
@@ -39,7 +38,7 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[uvicorn.Server]
 
 
 @pytest.fixture
-def port(server: uvicorn.Server) -> int:
+def port(server):
     """Where it listens, once it has noticed that the connections of other tests are closed."""
     until(lambda: not server.server_state.connections)
     return int(server.servers[0].sockets[0].getsockname()[1])
@@ -89,7 +88,7 @@ def test_a_body_that_does_not_come_is_not_waited_for(port, monkeypatch):
 
 
 def test_a_body_in_pieces_is_read_up_to_the_limit(port):
-    def chunk(content: bytes) -> bytes:
+    def chunk(content):
         return b"%x\r\n%s\r\n" % (len(content), content)
 
     head = POST + b"Transfer-Encoding: chunked\r\nConnection: close\r\n\r\n"

@@ -6,7 +6,6 @@ import re
 import tempfile
 import time
 import tracemalloc
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -29,7 +28,7 @@ QUERY = f"/v1/databases/{KEY}/query"
 
 
 @pytest.fixture(scope="module")
-def http() -> Iterator[TestClient]:
+def http():
     """A caller of a service without keys that holds a table."""
     with tempfile.TemporaryDirectory(prefix="loa-hostile-") as directory:
         app = create_app(Settings(data_directory=Path(directory)))

@@ -2,7 +2,6 @@
 
 import copy
 import json
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +27,7 @@ Served = tuple[LineOfActionClient, TestClient, Path]
 
 
 @pytest.fixture(scope="module")
-def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+def served(tmp_path_factory):
     """A client of a running service that holds the table, the bare HTTP one, a folder with the STEP file."""
     folder = tmp_path_factory.mktemp("scene")
     write_block(folder / "block.step")
@@ -66,7 +65,6 @@ def test_modes_on_a_solid_are_those_of_the_command_line(served, monkeypatch):
     kept = sorted((folder / "data" / "housings").glob("*.nc"))
     assert [each.name[:4] for each in kept] == ["hous", "mesh"]
     cost = ReducedHousing.from_netcdf(kept[0]).cost
-    assert cost is not None
     own = found.metadata["reduction_cost"]["case"]
     assert (own["seconds"], own["predicted_seconds"]) == (cost.seconds, cost.predicted_seconds)
 

@@ -4,9 +4,7 @@ import base64
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
 from itertools import permutations
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -36,7 +34,7 @@ gmsh.write(sys.argv[1])
 
 
 @pytest.fixture(scope="module")
-def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
+def served(tmp_path_factory):
     found = whole_service(tmp_path_factory.mktemp("service"))
     yield found
     found.app.state.context.reader.stop()
@@ -44,12 +42,12 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
 
 
 @pytest.fixture(scope="module")
-def client(served: Any) -> TestClient:
+def client(served):
     return TestClient(served.app, headers=served.headers)
 
 
 @pytest.fixture(scope="module")
-def block(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def block(tmp_path_factory):
     return write_block(tmp_path_factory.mktemp("step") / "block.step")
 
 

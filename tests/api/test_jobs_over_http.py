@@ -1,7 +1,6 @@
 """What the API refuses: a full queue, bodies too long or unusable, paths and methods, in one error shape."""
 
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -15,7 +14,7 @@ from service.settings import Settings
 
 
 @pytest.fixture
-def client(tmp_path: Path) -> Iterator[TestClient]:
+def client(tmp_path):
     app = create_app(Settings(data_directory=tmp_path, queue_limit=2, body_limit=5000), REGISTRY)
     with TestClient(app, raise_server_exceptions=False) as found:
         yield found
@@ -108,9 +107,9 @@ def test_every_refusal_is_a_problem(client, method, path, status, kind):
 
 
 def test_an_unknown_exception_becomes_a_reference(client, monkeypatch):
-    context = client.app.state.context  # type: ignore[attr-defined]
+    context = client.app.state.context
 
-    def explode(_identifier: str) -> None:
+    def explode(_identifier):
         raise RuntimeError(SECRET)
 
     monkeypatch.setattr(context.submissions, "find", explode)

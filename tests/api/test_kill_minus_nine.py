@@ -9,7 +9,6 @@ import random
 import sys
 import time
 from collections import Counter
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -31,7 +30,7 @@ FIGURES = Path(__file__).parents[2] / "out"
 
 
 @pytest.fixture
-def service(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[KilledService]:
+def service(request, tmp_path):
     """On a SQLite file, with the workers of Dask beside it or not, or on PostgreSQL over a relay.
 
     A Dask worker and its scheduler are killed, too; PostgreSQL has connections ended by its administrator,
@@ -82,7 +81,7 @@ def test_nothing_is_lost_when_parts_are_killed_at_random_moments(service, tmp_pa
         ends = service.settled()
         assert {end["status"] for end in ends.values()} == {"successful"}, ends
         for text in {*service.jobs.values()}:
-            until(lambda text=text: text in service.witness.served)  # type: ignore[misc]
+            until(lambda text=text: text in service.witness.served)
         revived = service.server.revived
         assert service.stop() == 0
         until(lambda: service.marked() == [])
@@ -134,7 +133,7 @@ def test_kills_of_the_server_cost_a_job_no_attempt(tmp_path):
         service.measure("undisturbed")
         service.submit("struck")
         for number in range(kills):
-            until(lambda number=number: service.revive() or starts(tmp_path) > 1 + number)  # type: ignore[misc]
+            until(lambda number=number: service.revive() or starts(tmp_path) > 1 + number)
             service.kill()
         ends = service.settled().values()
     assert starts(tmp_path) == 1 + kills + 1
@@ -150,7 +149,7 @@ BATCH_SEED = 20261122
 def ended(service: KilledService, batch: str) -> dict[str, Any]:
     found: dict[str, Any] = {}
 
-    def over() -> bool:
+    def over():
         service.revive()
         found.update(service.request("GET", f"/v1/jobs/{batch}").json())
         return found["status"] in ("successful", "failed", "dismissed")

@@ -1,7 +1,5 @@
 """Titles and tags of jobs: kept, shown everywhere, searched, changed; on each database."""
 
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -17,7 +15,7 @@ from service.settings import Settings
 
 
 @pytest.fixture
-def client(tmp_path: Path, database_url: str | None) -> Iterator[TestClient]:
+def client(tmp_path, database_url):
     """A client of an app whose scheduler does not run, on each database."""
     app = create_app(Settings(data_directory=tmp_path, database_url=database_url), REGISTRY)
     yield TestClient(app)

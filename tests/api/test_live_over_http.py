@@ -2,7 +2,6 @@
 
 import html
 import json
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -10,8 +9,7 @@ import pytest
 from fastapi.testclient import TestClient
 from running_service import PATIENCE_S, REFERENCES, until
 
-from fe_contact.analysis.flanks.flank_results import flank_results
-from fe_contact.options import AnalysisOptions, OperatingPoint
+from fe_contact import AnalysisOptions, OperatingPoint, flank_results
 from lineofaction.client import LineOfActionClient
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.problems import ServiceError
@@ -38,7 +36,7 @@ def case(**pinion: Any) -> dict[str, Any]:
 
 
 @pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+def client(tmp_path_factory):
     with TestClient(create_app(Settings(data_directory=tmp_path_factory.mktemp("service")))) as found:
         yield found
 
@@ -53,16 +51,16 @@ def analyzed(client: TestClient, asked: dict[str, Any]) -> str:
 
 
 @pytest.fixture(scope="module")
-def key(client: TestClient) -> str:
+def key(client):
     return analyzed(client, case())
 
 
 @pytest.mark.law
 def test_a_live_curve_is_that_of_an_analysis_of_its_own(client, key):
     live = client.post(f"/v1/databases/{key}/ste", json={"torque_n_m": [0.5, 1.0], "pinion": RELIEF}).json()
-    store = client.app.state.context.store  # type: ignore[attr-defined]
+    store = client.app.state.context.store
     other = analyzed(client, case(**RELIEF))
-    table = client.app.state.context.databases.get(store, other).database  # type: ignore[attr-defined]
+    table = client.app.state.context.databases.get(store, other).database
     for curve in live["curves"]:
         whole = table.curve(torque=curve["torque_n_m"])
         assert curve["ste_um"] == pytest.approx((1e6 * whole.ste).tolist(), rel=1e-12, abs=0.0)
@@ -74,7 +72,7 @@ def test_figures_that_were_drawn_once_need_no_live_worker(client, key, monkeypat
     where = f"/v1/results/{key}/figures"
     drawn = client.get(where)
     assert [section["title"] for section in drawn.json()["sections"]]
-    monkeypatch.setattr(type(client.app.state.context.live), "ask", None)  # type: ignore[attr-defined]
+    monkeypatch.setattr(type(client.app.state.context.live), "ask", None)
     again = client.get(where)
     assert again.content == drawn.content
     assert again.headers["ETag"] == drawn.headers["ETag"]
@@ -234,7 +232,7 @@ def test_a_live_center_distance_is_that_of_an_analysis_of_its_own(client, key):
     question = {"torque_n_m": [1.0], "center_distance_change_mm": 0.05, "pinion": RELIEF}
     (curve,) = client.post(f"/v1/databases/{key}/ste", json=question).json()["curves"]
     asked = case(**RELIEF) | {"errors": {"center_distance_change_mm": [0.05]}}
-    context = client.app.state.context  # type: ignore[attr-defined]
+    context = client.app.state.context
     table = context.databases.get(context.store, analyzed(client, asked)).database
     whole = table.curve(torque=1.0, center_distance_change=0.05e-3)
     assert curve["center_distance_change_mm"] == 0.05
@@ -242,7 +240,7 @@ def test_a_live_center_distance_is_that_of_an_analysis_of_its_own(client, key):
 
 
 def test_derivatives_are_the_changes_of_the_curve_in_the_units_of_the_question(client, key):
-    def curve(relief: float, torque: float, **more: Any) -> dict[str, Any]:
+    def curve(relief, torque, **more):
         question = {"torque_n_m": [torque], "pinion": RELIEF | {"tip_relief_um": relief}, **more}
         found = client.post(f"/v1/databases/{key}/ste", json=question).json()
         assert ("derivatives_cpu_seconds" in found["cost"]) == bool(more)
@@ -288,7 +286,7 @@ def test_a_table_that_is_unknown_or_removed_is_not_found(client, key):
     question = {"torque_n_m": [1.0]}
     unknown = client.post(f"/v1/databases/{'0' * 64}/ste", json=question)
     assert unknown.status_code == 404 and "Submit its case" in unknown.json()["detail"]
-    context = client.app.state.context  # type: ignore[attr-defined]
+    context = client.app.state.context
     inputs = {"key": key, "file": "/removed", "cache": "/none", "question": question}
     assert client.post(f"/v1/databases/{key}/ste", json=question).status_code == 200
     known = context.live.ask(LiveOrder(STE, inputs)).result(timeout=PATIENCE_S)
@@ -303,7 +301,7 @@ def test_a_table_computed_elsewhere_is_condensed_here_when_asked_to(client, key,
     """Another service with the same database and results, and a cache of its own."""
     question = {"torque_n_m": [0.5, 1.0], "pinion": RELIEF}
     known = client.post(f"/v1/databases/{key}/ste", json=question).json()
-    folder = client.app.state.context.settings.data_directory  # type: ignore[attr-defined]
+    folder = client.app.state.context.settings.data_directory
     settings = Settings(
         data_directory=tmp_path,
         database_url=f"sqlite:///{folder / 'service.sqlite3'}",

@@ -4,14 +4,13 @@ import copy
 import json
 import shutil
 import tomllib
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from declared_figures import check_declared, document
 from fastapi.testclient import TestClient
+from repository import EXAMPLES
 from running_service import until
 
 from dynamics.simulation import simulate
@@ -23,15 +22,13 @@ from lineofaction.gearbox.schemas import Case, validated
 from service.app import create_app
 from service.settings import Settings
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
-
 
 def table(name: str) -> dict[str, Any]:
     return tomllib.loads((EXAMPLES / name).read_text(encoding="utf-8"))
 
 
 @pytest.fixture(scope="module")
-def case() -> dict[str, Any]:
+def case():
     found = table("palermo_spur_20_20.toml")
     found["load"] = {"torque_n_m": [50, 100, 200]}
     found["accuracy"] = {"level": "draft", "positions": 16}
@@ -39,7 +36,7 @@ def case() -> dict[str, Any]:
 
 
 @pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LineOfActionClient]:
+def client(tmp_path_factory):
     """A client of a running service with its real processes."""
     directory = tmp_path_factory.mktemp("service")
     with TestClient(create_app(Settings(data_directory=directory / "data"))) as service:
@@ -64,7 +61,7 @@ def scene(case: dict[str, Any]) -> dict[str, Any]:
 def test_the_service_gives_what_python_gives(client, case):
     job, seen = client.analyze.submit(case), []
 
-    def ended() -> bool:
+    def ended():
         seen.append(client.status(job.id))
         return seen[-1].status == "successful"
 

@@ -1,7 +1,6 @@
 """Measured housings over HTTP: the responses go along with the scene, a confined process reads them."""
 
 import json
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +9,7 @@ import pytest
 from command_line import printed
 from measured_housings import universal_file
 from measured_scenes import mass_lines, measured_scene
-from study_service import KEY, Served, study_service
+from study_service import KEY, study_service
 
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.file_content import FileContentInput
@@ -20,7 +19,7 @@ SPEEDS = {"speed_rpm": [900.0, 1500.0], "orders": 4}
 
 
 @pytest.fixture(scope="module")
-def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Served, Path]]:
+def served(tmp_path_factory):
     folder = tmp_path_factory.mktemp("measured")
     with study_service(folder) as service:
         yield service, measured_scene(folder)

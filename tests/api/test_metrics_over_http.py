@@ -117,7 +117,7 @@ def test_event_streams_are_no_requests_that_take_long(client):
     location = client.post(EXECUTION, json={"inputs": {"wish": {"mode": "hang"}}}).headers["location"]
     route = "/v1/jobs/{job_id}/events"
 
-    def streams() -> float:
+    def streams():
         open_streams = families(client)["loa_event_streams"]
         return sum(sample.value for sample in open_streams.samples if sample.labels == {"route": route})
 

@@ -1,6 +1,5 @@
 """Motions of a unit over HTTP: modes of a stored analysis along its shafts, of such results alone."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -36,7 +35,7 @@ class Stored:
 
 
 @pytest.fixture(scope="module")
-def stored(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Stored]:
+def stored(tmp_path_factory):
     folder = tmp_path_factory.mktemp("service")
     modes = modal_analysis(assemble(flexible_pair()), [0.0, 100.0])
     without = {"axis_shaft": np.empty(0, dtype=np.int64), "axis_position": np.empty(0)}
@@ -134,7 +133,7 @@ def test_what_is_no_motion_is_refused(stored, key, number, status, words):
 
 
 def test_a_damaged_file_is_refused(stored):
-    file = Path(stored.http.app.state.context.store.verified(OLDER).path)  # type: ignore[attr-defined]
+    file = Path(stored.http.app.state.context.store.verified(OLDER).path)
     file.write_bytes(file.read_bytes()[:500])
     answer = stored.get(OLDER, number=0)
     assert answer.json()["detail"]

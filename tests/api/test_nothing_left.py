@@ -185,7 +185,7 @@ class Place:
         assert answer.status_code == 422
 
     def reader_killed(self, number: int) -> None:
-        future = self.http.app.state.context.reader.ask(_order(number))  # type: ignore[attr-defined]
+        future = self.http.app.state.context.reader.ask(_order(number))
         readers: list[int] = []
         until(lambda: bool(readers.extend(processes_in(self.drafts[1])) or readers) or future.done())
         for pid in readers:
@@ -233,7 +233,7 @@ def _order(number: int) -> Any:
 
 
 @pytest.fixture(scope="module")
-def place(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Place]:
+def place(tmp_path_factory):
     folder = tmp_path_factory.mktemp("drafts")
     (folder / "temporary").mkdir()
     write_block(folder / "block.step")

@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from pathlib import Path
 from typing import Any
 
 import jwt
@@ -104,7 +103,7 @@ class LocalIssuer:
 @contextmanager
 def local_issuer() -> Iterator[LocalIssuer]:
     class Handler(BaseHTTPRequestHandler):
-        def do_GET(self) -> None:
+        def do_GET(self):
             issuer.asked.append(self.path)
             document = issuer.document(self.path) if issuer.answers else None
             content = json.dumps(document).encode()
@@ -113,7 +112,7 @@ def local_issuer() -> Iterator[LocalIssuer]:
             self.end_headers()
             self.wfile.write(content)
 
-        def log_message(self, *_arguments: object) -> None:
+        def log_message(self, *_arguments):
             """Log nothing."""
 
     server = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
@@ -137,7 +136,7 @@ def _base64(content: bytes) -> str:
 
 
 @pytest.fixture
-def issuer(monkeypatch: pytest.MonkeyPatch) -> Iterator[LocalIssuer]:
+def issuer(monkeypatch):
     with local_issuer() as found:
         monkeypatch.setenv("LOA_OIDC_ISSUER", found.url)
         monkeypatch.setenv("LOA_OIDC_AUDIENCE", AUDIENCE)
@@ -156,14 +155,14 @@ class Clock:
 
 
 @pytest.fixture
-def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+def clock(monkeypatch):
     found = Clock()
     monkeypatch.setattr(issuer_module.Issuer.__init__, "__defaults__", (None, found))
     return found
 
 
 @pytest.fixture
-def http(issuer: LocalIssuer, clock: Clock, tmp_path: Path) -> Iterator[TestClient]:
+def http(issuer, clock, tmp_path):
     settings = Settings(data_directory=tmp_path / "data")
     with TestClient(create_app(settings, REGISTRY, works=False), raise_server_exceptions=False) as found:
         yield found

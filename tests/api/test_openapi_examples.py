@@ -109,7 +109,7 @@ def test_every_array_says_what_its_items_are():
 
 
 @pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+def client(tmp_path_factory):
     """A client of the app with a table, and what is taken for a run: nothing is computed here."""
     file = tmp_path_factory.mktemp("table") / "table.nc"
     small_table().to_netcdf(file)

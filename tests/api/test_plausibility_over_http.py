@@ -3,16 +3,13 @@
 import io
 import json
 import tomllib
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import h5netcdf
 import pytest
-from fastapi.testclient import TestClient
 from study_service import empty_service
 
-from lineofaction.client import LineOfActionClient
 from lineofaction.gearbox.schemas.plan import InputWarning
 
 GEAR = {"teeth": 20, "face_width_mm": 25.0, "bore_diameter_mm": 40.0}
@@ -26,7 +23,7 @@ ROTOR = tomllib.loads((Path(__file__).parents[2] / "examples" / "jeffcott_scene.
 
 
 @pytest.fixture(scope="module")
-def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[LineOfActionClient, TestClient]]:
+def served(tmp_path_factory):
     """A client of a running service with its real processes, and the bare HTTP one."""
     with empty_service(tmp_path_factory.mktemp("service") / "data") as found:
         yield found

@@ -1,7 +1,6 @@
 """Whatever is wrong with a request, to whichever route: one error shape, its status documented."""
 
 import tempfile
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -40,7 +39,7 @@ DRAFTS, OF_FIELDS = "/v1/drafts/", ("unknown field", "deep")
 
 
 @pytest.fixture(scope="module")
-def client() -> Iterator[TestClient]:
+def client():
     yield TestClient(_app, raise_server_exceptions=False)
 
 
@@ -105,7 +104,7 @@ def test_a_method_that_is_none_is_a_problem_and_says_which_are(client, path):
 def test_results_that_never_change_say_so_to_caches(client):
     file = Path(_directory.name) / "file.nc"
     file.write_bytes(b"table")
-    context = client.app.state.context  # type: ignore[attr-defined]
+    context = client.app.state.context
     context.store.put("1" * 64, "database", file)
     accept = {"Accept": "application/x-netcdf"}
     answer = client.get(f"/v1/results/{'1' * 64}", headers=accept)

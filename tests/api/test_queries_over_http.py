@@ -3,7 +3,6 @@
 import hashlib
 import json
 import struct
-from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -14,7 +13,6 @@ from fastapi.testclient import TestClient
 from httpx2 import Response
 from sliced_face import sliced_database
 
-from fe_contact.ste import SteDatabase
 from lineofaction.client import LineOfActionClient
 from lineofaction.gearbox.schemas.query import LIMITS, MAX_POINTS
 from service.app import create_app
@@ -27,12 +25,12 @@ COUNT = 400
 
 
 @pytest.fixture(scope="module")
-def table() -> SteDatabase:
+def table():
     return sliced_database((-2e-5, 0.0, 1e-5), (-1e-4, 0.0, 1e-4), positions=6)
 
 
 @pytest.fixture(scope="module")
-def stated(table: SteDatabase) -> SteDatabase:
+def stated(table):
     """The table with errors at its nodes and between them."""
     draw = np.random.default_rng(11)
     nodes = table.static_transmission_error.shape
@@ -44,7 +42,7 @@ def stated(table: SteDatabase) -> SteDatabase:
 
 
 @pytest.fixture(scope="module")
-def client(stated: SteDatabase, tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+def client(stated, tmp_path_factory):
     directory = tmp_path_factory.mktemp("data")
     app = create_app(Settings(data_directory=directory))
     stated.to_netcdf(directory / "table.nc")

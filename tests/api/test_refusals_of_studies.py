@@ -39,7 +39,7 @@ FEWER_TEETH: Json = CHANGE["after"] | {
 
 def factor(index: int, **changes: Any) -> Json:
     """Return the study with another factor; what is None is left out."""
-    factors = [dict(each) for each in GRID["factors"]]  # type: ignore[attr-defined]
+    factors = [dict(each) for each in GRID["factors"]]
     own = factors[index] | changes
     factors[index] = {name: value for name, value in own.items() if value is not None}
     return GRID | {"factors": factors}

@@ -1,7 +1,6 @@
 """Axes of a table that do not rise are refused by name, value, bound: in Python, by the verb, over HTTP."""
 
 import json
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -43,7 +42,7 @@ def case(place: tuple[str, str], values: list[float]) -> dict[str, Any]:
 
 
 @pytest.fixture(scope="module")
-def http(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+def http(tmp_path_factory):
     with TestClient(create_app(Settings(data_directory=tmp_path_factory.mktemp("data")))) as found:
         yield found
 
@@ -53,7 +52,7 @@ def test_the_library_refuses_them(name, values):
     gear = Gear(20, 4e-3, 25e-3, 40e-3)
     loads = {} if name in ("torques", "normal_forces") else {"torques": [100.0]}
     with pytest.raises(InputError) as caught:
-        analyze(GearPair(gear, gear, 80e-3), **(loads | {name: values}))  # type: ignore[arg-type]
+        analyze(GearPair(gear, gear, 80e-3), **(loads | {name: values}))
     assert name in str(caught.value) and str(values) in str(caught.value)
     assert BOUND in str(caught.value)
 

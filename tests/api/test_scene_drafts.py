@@ -1,8 +1,5 @@
 """A scene as it is edited: its text and its faults are answers, and what its schema says of names."""
 
-from pathlib import Path
-from typing import Any
-
 import pytest
 from fastapi.testclient import TestClient
 from whole_service import whole_service
@@ -12,7 +9,7 @@ from service.schemas.examples import SCENE
 
 
 @pytest.fixture
-def client(tmp_path: Path) -> Any:
+def client(tmp_path):
     found = whole_service(tmp_path)
     yield TestClient(found.app, headers=found.headers)
     found.app.state.context.live.stop()

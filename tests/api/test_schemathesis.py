@@ -14,7 +14,6 @@ import os
 import re
 import tempfile
 from collections import Counter
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -121,13 +120,13 @@ def as_long_as(examples: int) -> settings:
 
 
 @pytest.fixture(scope="module", autouse=True)
-def _ended() -> Iterator[None]:
+def _ended():
     yield
     service.app.state.context.stop_waiting()  # warm processes of readers and workers, too
 
 
 @pytest.fixture(autouse=True)
-def _counted() -> Iterator[None]:
+def _counted():
     """Keep the counts so far."""
     yield
     if BODIES:
@@ -161,7 +160,7 @@ def kind_of(fault: dict[str, Any]) -> str:
 def test_a_request_is_answered_as_documented(operation):
     @as_long_as(max(EACH * 4 // 5, FEW))
     @given(operation.as_strategy(hooks=right))
-    def check_answer(case: schemathesis.Case) -> None:
+    def check_answer(case):
         if case.headers:  # drawn twice, it would be the name of another request
             case.headers.pop("Idempotency-Key", None)
         check_described(case)
@@ -175,7 +174,7 @@ def test_a_request_is_answered_as_documented(operation):
 def test_a_body_that_breaks_its_schema_is_answered_as_documented(operation):
     @as_long_as(max(-(-EACH // 5), FEW // 5))
     @given(operation.as_strategy(generation_mode=GenerationMode.NEGATIVE))
-    def check_answer(case: schemathesis.Case) -> None:
+    def check_answer(case):
         check_described(case)
 
     check_answer()
@@ -209,7 +208,7 @@ def test_a_body_drawn_from_the_description_alone_is_answered_as_documented(opera
 
     @as_long_as(max(EACH // 5, FEW // 5))
     @given(operation.as_strategy())
-    def check_answer(case: schemathesis.Case) -> None:
+    def check_answer(case):
         check_described(case)
 
     check_answer()

@@ -33,7 +33,6 @@ def serving(folder: Path, **settings: str) -> Iterator[tuple[subprocess.Popen[st
     serve = ("-m", "lineofaction.cli", "serve", "--port", 0, "--processes", NUMBER)
     with (folder / "log").open("w") as log:
         process = python(*serve, "--data-directory", folder / "data", settings=settings, stderr=log)
-    assert process.stdout is not None
     address = process.stdout.readline().rpartition(" ")[2].strip()
     assert address, (folder / "log").read_text()
     try:
@@ -46,7 +45,7 @@ def serving(folder: Path, **settings: str) -> Iterator[tuple[subprocess.Popen[st
 
 
 @pytest.fixture
-def server(tmp_path: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
+def server(tmp_path):
     with serving(tmp_path) as found:
         yield found
 
@@ -108,7 +107,6 @@ def test_a_killed_process_is_replaced_and_loses_only_what_it_answers(server):
     assert all(caller.broken <= 2 for caller in callers)  # a request for each process that was killed
     figures = get(address, "/metrics").decode()
     counted = re.search(r'loa_requests_total\{[^}]*route="/v1/jobs",status="200"} ([\d.]+)', figures)
-    assert counted is not None
     answered = sum(len(caller.answers) for caller in callers)
     # A process counts an answer after it is sent: killed in between, it leaves one that is not counted.
     uncounted = len(victims[:2])
@@ -161,7 +159,7 @@ def test_processes_that_die_at_once_are_not_started_again_and_again(monkeypatch)
     clock, started = [0.0], list[float]()
     dead = SimpleNamespace(is_alive=lambda: False, pid=1, exitcode=1)
 
-    def start(_self: ServingProcesses) -> Any:
+    def start(_self):
         started.append(clock[0])
         return dead
 

@@ -1,7 +1,6 @@
 """Sounds of stored runs over HTTP: those of `loa listen`, on one full scale, of runs alone."""
 
 import importlib.util
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -35,7 +34,7 @@ class Stored:
 
 
 @pytest.fixture(scope="module")
-def stored(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Stored]:
+def stored(tmp_path_factory):
     spec = importlib.util.spec_from_file_location("closed_forms", CLOSED_FORMS)
     assert spec and spec.loader
     forms = importlib.util.module_from_spec(spec)

@@ -6,7 +6,7 @@ import json
 import socket
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, closing
 from dataclasses import dataclass
@@ -42,13 +42,12 @@ class Process:
 
 
 @pytest.fixture(scope="module")
-def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Process]:
+def service(tmp_path_factory):
     """A service that has loaded what it needs to read bodies."""
     directory = tmp_path_factory.mktemp("stall")
     settings, log = {"LOA_DATA_DIRECTORY": str(directory / "data")}, directory / "log"
     serve = ("-m", "lineofaction.cli", "serve", "--port", 0)
     with log.open("wb") as stream, python(*serve, settings=settings, stderr=stream) as process:
-        assert process.stdout is not None
         address = process.stdout.readline().rpartition(" ")[2].strip()
         try:
             answer = httpx2.post(f"{address}/v1/cases/from-toml", json={"toml": ""}, timeout=PATIENCE_S)
@@ -137,7 +136,7 @@ def log_lines(service: Process) -> list[dict[str, Any]]:
 def test_four_bodies_that_cost_much_hold_nobody_up(service, kind):
     path, body = ATTACKS[kind]()
 
-    def post(_: int) -> httpx2.Response:
+    def post(_):
         headers = {"Content-Type": "application/json"}
         return httpx2.post(f"{service.address}{path}", content=body, headers=headers, timeout=PATIENCE_S)
 

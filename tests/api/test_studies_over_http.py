@@ -4,23 +4,20 @@ import hashlib
 import importlib
 import math
 import tomllib
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from study_service import CASE, Served, prepared, scene_by_hash, study_service
+from repository import EXAMPLES
+from study_service import CASE, prepared, scene_by_hash, study_service
 
-from dynamics.loads import TimeLaw
-from dynamics.results import RunResult
-from dynamics.simulation import simulate
+from dynamics import RunResult, TimeLaw, simulate
 from dynamics.study import Response, responses_of
+from fe_contact import SteDatabase
 from fe_contact.analysis.studies.frontier import FIDELITIES
 from fe_contact.errors import SolveError
-from fe_contact.ste import SteDatabase
-from lineofaction.client import LineOfActionClient
 from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.result_figures import figures_of
 from lineofaction.gearbox.stages import PacedFraction
@@ -30,7 +27,6 @@ from service.worker import study_work
 from service.worker.order import WorkOrder
 from service.worker.process import default_registry
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 FRONTIER = default_registry()["frontier"]
 CLOSED = ["iso6336", "thin_slices"]
 OLD = "0d" * 32
@@ -46,13 +42,13 @@ STUDY = {
 
 
 @pytest.fixture(scope="module")
-def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+def served(tmp_path_factory):
     with study_service(tmp_path_factory.mktemp("service")) as found:
         yield found
 
 
 @pytest.fixture(scope="module")
-def client(served: Served) -> LineOfActionClient:
+def client(served):
     return served.client
 
 
@@ -91,10 +87,10 @@ def test_a_rung_that_fails_is_named_and_the_others_survive(tmp_path, monkeypatch
 
         name, title, family, element_size = "corrected", "fails", "auto", 1.0
 
-        def refusal(self, _checked: object) -> None:
+        def refusal(self, _checked):
             return None
 
-        def run(self, *_: object) -> SteDatabase:
+        def run(self, *_):
             raise failure
 
     rungs = [rung for rung in FIDELITIES if rung.name in CLOSED]

@@ -79,7 +79,7 @@ def trace_receiver() -> Iterator[TraceReceiver]:
     received = TraceReceiver()
 
     class Handler(BaseHTTPRequestHandler):
-        def do_POST(self) -> None:
+        def do_POST(self):
             assert self.path == "/v1/traces"
             received.take(self.rfile.read(int(self.headers["Content-Length"])))
             answer = ExportTraceServiceResponse().SerializeToString()
@@ -89,7 +89,7 @@ def trace_receiver() -> Iterator[TraceReceiver]:
             self.end_headers()
             self.wfile.write(answer)
 
-        def log_message(self, *_: object) -> None:
+        def log_message(self, *_):
             """Say nothing."""
 
     with ThreadingHTTPServer(("127.0.0.1", 0), Handler) as server:
@@ -108,7 +108,7 @@ TRACEPARENT = f"00-{TRACE}-{PARENT}-01"
 
 
 @pytest.fixture
-def receiver(monkeypatch: pytest.MonkeyPatch) -> Iterator[TraceReceiver]:
+def receiver(monkeypatch):
     with trace_receiver() as found:
         monkeypatch.setenv("OTEL_EXPORTER_OTLP_ENDPOINT", found.address)
         monkeypatch.setenv("OTEL_BSP_SCHEDULE_DELAY", "100")
@@ -119,7 +119,7 @@ def receiver(monkeypatch: pytest.MonkeyPatch) -> Iterator[TraceReceiver]:
 
 
 @pytest.fixture
-def log(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+def log(tmp_path, monkeypatch):
     file = tmp_path / "service.log"
     with file.open("w", buffering=1) as stream:
         monkeypatch.setattr("sys.stderr", stream)
@@ -281,8 +281,7 @@ def test_a_request_is_followed_to_its_worker_and_what_that_took(log, tmp_path):
             answers[mode] = client.post(EXECUTION, json=body)
             until(
                 lambda where=answers[mode].headers["location"]: (
-                    client.get(where).json()["status"]  # type: ignore[misc]
-                    == "successful"
+                    client.get(where).json()["status"] == "successful"
                 )
             )
         shared = client.post(EXECUTION, json={"inputs": {"wish": {"mode": "hog"}}})

@@ -10,7 +10,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -112,7 +111,7 @@ def receiver() -> Iterator[Receiver]:
 
 
 @pytest.fixture(autouse=True)
-def quickly(monkeypatch: pytest.MonkeyPatch) -> None:
+def quickly(monkeypatch):
     monkeypatch.setattr(calls, "FIRST_PAUSE_S", 0.05)
     monkeypatch.setattr(calls, "MAX_ATTEMPTS", 3)
     monkeypatch.setattr(deliverer, "LOOK_S", 0.1)
@@ -120,13 +119,13 @@ def quickly(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
-def listener() -> Iterator[Receiver]:
+def listener():
     with receiver() as found:
         yield found
 
 
 @pytest.fixture
-def http(tmp_path: Path, listener: Receiver) -> Iterator[TestClient]:
+def http(tmp_path, listener):
     """A running app that may call the receiver by its address, and by a name."""
     origins = f"{listener.origin}, http://localhost:{listener.server_port}"
     settings = Settings(data_directory=tmp_path, webhook_origins=origins, webhook_secret=SECRET)
@@ -146,7 +145,7 @@ def settled(http: TestClient, location: str) -> dict[str, tuple[str, int, str]]:
     """Wait until no call about a job waits; return state, attempts and message by event."""
     found: dict[str, tuple[str, int, str]] = {}
 
-    def over() -> bool:
+    def over():
         entries = http.get(location).json()["webhooks"]
         found.update({e["event"]: (e["state"], e["attempts"], e["message"]) for e in entries})
         return all(state != "waiting" for state, _, _ in found.values())

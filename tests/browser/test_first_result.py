@@ -1,7 +1,6 @@
 """The result that came with the program is the answer of a service that computes it."""
 
 import json
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +13,7 @@ STATIC = Path(__file__).parents[2] / "service" / "page" / "static"
 
 
 @pytest.fixture(scope="module")
-def address(tmp_path_factory: pytest.TempPathFactory, condensed_bodies: Path) -> Iterator[str]:
+def address(tmp_path_factory, condensed_bodies):
     """A service of its own: in that of the pages nobody has analyzed the first example."""
     home = tmp_path_factory.mktemp("first")
     find_condensed(condensed_bodies, home / "lineofaction")

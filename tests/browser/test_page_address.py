@@ -165,7 +165,7 @@ def test_a_study_whose_answer_is_lost_is_asked_again(visit, address, analyzed):
     computed(address, "scatter", case=CASE, tolerance_class=8, samples=50)
     lost: list[Route] = []
 
-    def lose(route: Route) -> None:
+    def lose(route):
         """Let the service have the request once and nobody have its answer."""
         lost.append(route)
         route.fetch()
@@ -324,7 +324,7 @@ def test_openings_file_no_job(browser, address):
 def test_the_same_design_analyzed_again_is_the_same_job(visit):
     page = visit.page
 
-    def job() -> str:
+    def job():
         with page.expect_response("**/v1/processes/analyze/execution") as answer:
             page.locator("#analyze").press("Enter")
         expect(page.locator("#analyze")).to_be_enabled()

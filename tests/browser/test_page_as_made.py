@@ -3,12 +3,10 @@
 import copy
 import json
 import re
-from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from page_visit import CASE, Visit, answered, choose_case, control, opened, tab
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
 SHEET = "tooth,flank,trace,deviation_um\n" + "".join(
     f"{tooth},right,pitch,{3 * (-1) ** tooth}\n" for tooth in range(1, 21)
@@ -16,7 +14,7 @@ SHEET = "tooth,flank,trace,deviation_um\n" + "".join(
 
 
 @pytest.fixture
-def page(browser: Browser, address: str, tmp_path: Path) -> Iterator[Page]:
+def page(browser, address, tmp_path):
     visit: Visit = opened(browser, address)
     choose_case(visit.page, tmp_path)
     tab(visit.page, "Teeth as made")

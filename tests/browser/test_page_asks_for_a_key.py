@@ -1,8 +1,5 @@
 """A service with access keys: its page asks once and goes on, its description is tried with the key."""
 
-from collections.abc import Iterator
-from pathlib import Path
-
 import page_visit
 import pytest
 from axe_playwright_python.sync_playwright import Axe
@@ -12,7 +9,7 @@ from service.access.key_file import KeyFile
 
 
 @pytest.fixture
-def served(tmp_path: Path) -> Iterator[tuple[str, str]]:
+def served(tmp_path):
     file = tmp_path / "keys.json"
     secret = KeyFile(file).add("reader")
     with page_visit.served(tmp_path, LOA_KEYS_FILE=str(file)) as address:

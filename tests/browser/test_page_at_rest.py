@@ -4,7 +4,7 @@ import re
 from typing import Any
 
 import pytest
-from page_visit import Visit, moved, tab
+from page_visit import moved, tab
 from playwright.sync_api import expect
 from running_service import until
 
@@ -26,7 +26,7 @@ SINGLE = """async ([key, torque]) => {
 
 
 @pytest.fixture
-def asked(visit: Visit) -> list[dict[str, Any]]:
+def asked(visit):
     """Return the live questions of the page from now on."""
     found: list[dict[str, Any]] = []
     visit.page.on(
@@ -61,7 +61,7 @@ def test_the_torque_of_the_slider_stands_under_its_thumb(visit):
         assert track is not None
         there = track["x"] + 8.0 + part * (track["width"] - 16.0)
 
-        def off(there: float = there) -> float:
+        def off(there=there):
             box = mark.bounding_box()
             return 1e3 if box is None else abs(box["x"] + 0.5 * box["width"] - there)
 

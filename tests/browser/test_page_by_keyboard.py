@@ -1,10 +1,8 @@
 """The page without a mouse, zoomed, and with less motion."""
 
-from collections.abc import Iterator
-
 import pytest
-from page_visit import Visit, answers, control, shown, tab
-from playwright.sync_api import Browser, Page, expect
+from page_visit import answers, control, shown, tab
+from playwright.sync_api import Page, expect
 from running_service import until
 
 FOCUS = """() => {
@@ -18,7 +16,7 @@ FOCUS = """() => {
 
 
 @pytest.fixture(scope="module")
-def visit(browser: Browser, address: str, analyzed: str) -> Iterator[Visit]:
+def visit(browser, address, analyzed):
     seen = shown(browser, address, analyzed)
     seen.page.emulate_media(reduced_motion="reduce")  # a page that still glides is nowhere yet
     yield seen
@@ -40,7 +38,7 @@ def test_the_first_stop_skips_to_the_design(browser, address):
     page.wait_for_selector("html[data-ready=yes]")
     page.keyboard.press("Tab")
     assert page.evaluate("document.activeElement.className") == "skip"
-    assert page.locator(".skip").bounding_box()["x"] >= 0  # type: ignore[index]
+    assert page.locator(".skip").bounding_box()["x"] >= 0
     page.keyboard.press("Enter")
     assert page.evaluate("document.activeElement.id") == "rail"
     page.keyboard.press("Tab")
@@ -122,7 +120,6 @@ def test_zoomed_in_nothing_is_cut_off_or_covered(visit, width):
     page.set_viewport_size({"width": width, "height": 450})
     until(lambda: page.evaluate("document.documentElement.scrollWidth") <= width)  # plots follow in a moment
     thing, panels = (page.locator(name).bounding_box() for name in ("#thing", "#panels"))
-    assert thing is not None and panels is not None
     assert thing["y"] + thing["height"] <= panels["y"], "one column"
     page.locator("#stage").focus()
     for stop in stops(page, 6):

@@ -9,7 +9,6 @@ import pytest
 from page_visit import (
     CASE,
     OVER_FACE,
-    Visit,
     answers,
     computed,
     control,
@@ -20,7 +19,7 @@ from page_visit import (
     tab,
     unfold,
 )
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 from running_service import until
 
 IN_THE_PLANE = "20/20, module 1 mm, up to 1 N m"
@@ -29,7 +28,7 @@ ORDINATE = ", error less its mean, µm"
 
 
 @pytest.fixture(scope="module")
-def other(address: str) -> str:
+def other(address):
     """Hash of another pair's table, in three dimensions."""
     return computed(address, case=OVER_FACE)
 
@@ -141,7 +140,7 @@ PLOTS = ("live_pressure", "live_face_load")
 
 
 @pytest.fixture(scope="module")
-def over_face(browser: Browser, address: str) -> Visit:
+def over_face(browser, address):
     return shown(browser, address, computed(address, case=OVER_FACE))
 
 

@@ -3,7 +3,6 @@
 import math
 import re
 import tomllib
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +11,6 @@ import pytest
 from page_visit import (
     CASE,
     GEAR,
-    Visit,
     control,
     found_inaccessible,
     moved,
@@ -22,7 +20,7 @@ from page_visit import (
     shown,
     tab,
 )
-from playwright.sync_api import Browser, Page, Route, expect
+from playwright.sync_api import Page, Route, expect
 from running_service import until
 
 from lineofaction.gearbox.convert.complaint import complaint_of_case
@@ -52,7 +50,7 @@ UNIT = Path(__file__).parents[2] / "examples" / "two_stage_gearbox.rexs"
 
 
 @pytest.fixture
-def visit(browser: Browser, address: str) -> Iterator[Visit]:
+def visit(browser, address):
     seen = opened(browser, address)
     yield seen
     seen.page.close()
@@ -312,7 +310,7 @@ def in_rest(page: Page, count: int) -> list[str]:
     """Return the levels of the complaint once they have their bands."""
     rows: list[str] = []
 
-    def stated() -> bool:
+    def stated():
         rows[:] = page.evaluate(ROWS)
         return len(rows) == count and not any("…" in row for row in rows)
 
@@ -322,10 +320,10 @@ def in_rest(page: Page, count: int) -> list[str]:
 
 @pytest.mark.law
 def test_levels_have_the_band_of_their_error_and_changes_that_of_both(visit):
-    def curve(amplitude: float, error: float) -> dict[str, Any]:
+    def curve(amplitude, error):
         return {"harmonics_um": [9.0, amplitude], "harmonics_error_um": [9.0, error]}
 
-    def stated(*curves: dict[str, Any]) -> list[list[list[str]]]:
+    def stated(*curves):
         named = [{"name": name, "curve": each} for name, each in zip("AB", curves, strict=True)]
         heard = {"harmonic": 2, "torque": 80.0, "curves": named}
         figures: list[list[list[str]]] = visit.page.evaluate(STATED, heard)
@@ -386,7 +384,7 @@ def beside_at_rest(page: Page) -> list[list[str]]:
     """Return the rows of the complaint of both variants once they have their bands."""
     rows: list[list[str]] = []
 
-    def stated() -> bool:
+    def stated():
         rows[:] = page.evaluate(BESIDE)
         return "complaint" in str(rows) and "…" not in str(rows)
 
@@ -415,7 +413,7 @@ MESHES = (
 
 @pytest.mark.law
 def test_meshes_of_a_unit_are_heard_by_the_teeth_on_the_way(visit):
-    def mesh(name: str, driver: str, driven: str, teeth: tuple[int, int]) -> dict[str, Any]:
+    def mesh(name, driver, driven, teeth):
         pair = {gear: {"teeth": count} for gear, count in zip(("pinion", "wheel"), teeth, strict=True)}
         return {"name": name, "driver": driver, "driven": driven, "case": {"pair": pair}}
 
@@ -442,7 +440,7 @@ def test_a_complaint_that_is_typed_while_a_unit_opens_is_kept(visit):
     """What was typed before belongs to the design that is left."""
     page, waiting = visit.page, list[Route]()
 
-    def hold(route: Route) -> None:
+    def hold(route):
         waiting.append(route)
 
     page.locator("#bar-torque_n_m").fill("77")

@@ -1,10 +1,8 @@
 """A pair typed digit by digit, with slips: its faults stand at their fields and are no errors of the page."""
 
-from collections.abc import Iterator
-
 import pytest
 from page_visit import Visit, answered, control, opened, shown
-from playwright.sync_api import Browser, Response, expect
+from playwright.sync_api import expect
 
 SLIPS = {
     "pair-normal_module_mm": "1.8",
@@ -34,11 +32,11 @@ TUTORIAL = {
 
 
 @pytest.fixture
-def refused(browser: Browser, address: str) -> Iterator[tuple[Visit, list[str]]]:
+def refused(browser, address):
     """Open the page; gives what it does and what the service refuses it."""
     seen, answers = opened(browser, address), []
 
-    def note(response: Response) -> None:
+    def note(response):
         if response.status >= 400:
             answers.append(f"{response.status} {response.url}")
 

@@ -54,7 +54,7 @@ def test_an_address_that_loads_says_so(browser, address, analyzed):
     page = shown(browser, address, analyzed).page
     waiting: list[Route] = []
 
-    def hold(route: Route) -> None:
+    def hold(route):
         waiting.append(route)
 
     page.evaluate("() => { location.hash = 'rail'; }")

@@ -1,13 +1,12 @@
 """A design was edited only where somebody edited it: what the service completes is no edit."""
 
 import tomllib
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
 from page_visit import opened
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Page
+from repository import EXAMPLES
 
 from lineofaction.gearbox.convert.case import case_json
 from lineofaction.gearbox.inspection.as_made import Inspected, drawn_case, measured_case
@@ -15,7 +14,6 @@ from lineofaction.gearbox.inspection.measured_gear import inspected
 from lineofaction.gearbox.inspection.sheet import sheet_text
 from lineofaction.gearbox.schemas import Case, validated
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 EDITED = """async ([typed, completed]) => {
   const [{ leaves, at, put }, { Field }, { differences }] = await Promise.all(
     ["schema", "field", "comparison"].map((name) => import(`/page/${name}.js`)));
@@ -41,7 +39,7 @@ CASES = cases()
 
 
 @pytest.fixture(scope="module")
-def page(browser: Browser, address: str) -> Iterator[Page]:
+def page(browser, address):
     page = opened(browser, address).page
     yield page
     page.close()

@@ -6,17 +6,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from page_visit import (
-    CASE,
-    answers,
-    computed,
-    control,
-    found_inaccessible,
-    opened,
-    tab,
-    unfold,
-)
-from playwright.sync_api import CDPSession, Page, Route, expect
+from page_visit import CASE, answers, computed, control, found_inaccessible, opened, tab, unfold
+from playwright.sync_api import CDPSession, Page, expect
 
 
 @pytest.mark.law
@@ -54,7 +45,7 @@ def test_no_figure_of_a_result_stands_under_the_title_of_another(browser, addres
     expect(figures).to_contain_text("peak to peak")
     before = figures.locator("dd").first.inner_text()
 
-    def hold(route: Route) -> None:
+    def hold(route):
         assert route.request.method == "POST"
 
     page.route("**/ste", hold)
@@ -152,7 +143,7 @@ GROWTH = 300_000  # bytes a result: code that the browser compiles meanwhile; a 
 
 
 @pytest.fixture(scope="module")
-def other(address: str) -> str:
+def other(address):
     return computed(address, case=CASE | {"load": {"torque_n_m": [0.4, 0.8]}})
 
 

@@ -2,14 +2,13 @@
 
 import base64
 import re
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import pytest
 from page_picture import CANVAS, stopped
 from page_visit import Visit, opened, shown
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 from running_service import until
 
 from lineofaction.gearbox.convert.outline import outline_json
@@ -42,7 +41,7 @@ PAINTED = """async ({ outline, name, position, pressure, size, top, view }) => {
 
 
 @pytest.fixture(scope="module")
-def outline() -> dict[str, Any]:
+def outline():
     """A helical pair as the service outlines it."""
     gear = {"teeth": 20, "face_width_mm": 8.0, "bore_diameter_mm": 10.0}
     gears = {"pinion": gear, "wheel": gear | {"teeth": 24}}
@@ -52,7 +51,7 @@ def outline() -> dict[str, Any]:
 
 
 @pytest.fixture(scope="module")
-def page(drawing_browser: Browser, address: str) -> Iterator[Page]:
+def page(drawing_browser, address):
     seen = opened(drawing_browser, address)
     yield seen.page
     seen.page.close()
@@ -163,7 +162,7 @@ SHARED = """async (curve) => (await import("/page/live_figures.js")).sharingFigu
 def test_the_share_of_a_pair_goes_on_with_its_place_over_two_pitches(page):
     """A pair is a base pitch further with each number and with each pitch of the position."""
 
-    def share(place: np.ndarray) -> np.ndarray:
+    def share(place):
         return np.clip((0.8 - np.abs(place)) / 0.6, 0.0, 1.0)
 
     position, pair = np.arange(0.0, 1.0, 0.125), np.array([-1, 0])

@@ -3,15 +3,13 @@
 import json
 import math
 import re
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
 from page_visit import CASE, Visit, found_inaccessible, opened, served, tab
-from playwright.sync_api import Browser, expect
+from playwright.sync_api import expect
 
 from bounds.error_digits import error_text, to_error
-from fe_contact.ste import SteDatabase
 from lineofaction.client import LineOfActionClient
 
 OWN = CASE | {"accuracy": {k: v for k, v in CASE["accuracy"].items() if k != "receipt"}}
@@ -22,7 +20,7 @@ LONGER = OWN | {"pair": CASE["pair"] | {"pinion": RELIEVED}}
 
 
 @pytest.fixture(scope="module")
-def gallery(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, SteDatabase]]:
+def gallery(tmp_path_factory):
     """Give the address of a service with three designs, the first one computed twice, and its table."""
     home = tmp_path_factory.mktemp("gallery")
     with served(home) as address, LineOfActionClient(address) as client:
@@ -32,7 +30,7 @@ def gallery(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, Ste
 
 
 @pytest.fixture
-def seen(browser: Browser, gallery: tuple[str, SteDatabase]) -> Iterator[Visit]:
+def seen(browser, gallery):
     found = opened(browser, gallery[0])
     tab(found.page, "Jobs")
     expect(found.page.locator("#jobs-rows li")).to_have_count(3)
@@ -53,7 +51,6 @@ def test_a_card_has_the_ripple_and_the_figures_of_its_table(seen, gallery):
     expect(card).to_contain_text(f"{level} dB re 1 µm")
     expect(card).to_contain_text(re.compile(r"CPU time[\d.]+ s"))
     drawn = card.locator("polyline").get_attribute("points")
-    assert drawn is not None
     heights = [float(point.partition(",")[2]) for point in drawn.split()]
     assert len(heights) == 49
     assert heights[:25] == pytest.approx(heights[24:], abs=0.2), "a pitch is as the next one"

@@ -2,14 +2,13 @@
 
 import base64
 import re
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import pytest
 from page_picture import CANVAS, different, picture, pixels, stopped, vertices
-from page_visit import PATIENCE, Visit, opened, opened_scene, shown, tab
-from playwright.sync_api import Browser, Page, expect
+from page_visit import PATIENCE, opened, opened_scene, shown, tab
+from playwright.sync_api import Page, expect
 
 ROUTE = "**/v1/drafts/housing-surface"
 BARE = """async ({ scene, surface }) => {
@@ -21,7 +20,7 @@ SHAFT: dict[str, Any] = {"name": "a", "origin_mm": [0.0, 0.0, 0.0], "length_mm":
 
 
 @pytest.fixture(scope="module")
-def visit(drawing_browser: Browser, address: str) -> Iterator[Visit]:
+def visit(drawing_browser, address):
     seen = opened(drawing_browser, address)
     yield seen
     seen.page.close()

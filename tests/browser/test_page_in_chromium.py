@@ -10,7 +10,6 @@ from page_visit import (
     CASE,
     GEAR,
     PATIENCE,
-    Visit,
     answered,
     answers,
     choose_case,
@@ -21,7 +20,7 @@ from page_visit import (
     tab,
     unfold,
 )
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 from running_service import until
 
 from bounds import DEPTHS, Direction, Kind
@@ -51,7 +50,7 @@ def tab_to(page: Page, target: str, maximum: int = 120) -> None:
 
 
 @pytest.fixture(scope="module")
-def visit(browser: Browser, address: str, tmp_path_factory: pytest.TempPathFactory) -> Visit:
+def visit(browser, address, tmp_path_factory):
     """Walk the main path with the keyboard alone, but for the dialog that opens a file."""
     seen = opened(browser, address, "light", 1400)
     page = seen.page
@@ -207,7 +206,7 @@ def test_both_gears_are_drawn_and_roll(visit):
 )
 def test_the_page_is_accessible(browser, address, visit, scheme, width):
     page = visit.page
-    page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
+    page.emulate_media(color_scheme=scheme)
     page.set_viewport_size({"width": width, "height": 900})
     unfold(page)
     assert not (told := found_inaccessible(page)), json.dumps(told, indent=1)

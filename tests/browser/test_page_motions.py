@@ -2,14 +2,13 @@
 
 import base64
 import re
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import pytest
 from page_picture import CANVAS, different, has_room, picture, stopped, vertices
-from page_visit import PATIENCE, Visit, opened, opened_scene, shown, tab
-from playwright.sync_api import Browser, Page, expect
+from page_visit import PATIENCE, opened, opened_scene, shown, tab
+from playwright.sync_api import Page, expect
 
 from lineofaction.gearbox.convert.outline import outline_json
 from lineofaction.gearbox.schemas import Case
@@ -45,7 +44,7 @@ AT_REST = "subject.move(null)"
 
 
 @pytest.fixture(scope="module")
-def outline() -> dict[str, Any]:
+def outline():
     """A helical pair as the service outlines it."""
     gear = {"teeth": 20, "face_width_mm": 8.0, "bore_diameter_mm": 10.0}
     pair = {
@@ -60,7 +59,7 @@ def outline() -> dict[str, Any]:
 
 
 @pytest.fixture(scope="module")
-def visit(drawing_browser: Browser, address: str) -> Iterator[Visit]:
+def visit(drawing_browser, address):
     seen = opened(drawing_browser, address)
     yield seen
     seen.page.close()
@@ -179,7 +178,7 @@ def test_shafts_gears_and_housing_move_as_the_result_says(visit, outline, oscill
     calls, (first, second) = drawn[0], motion["shafts"]
     places = {"pinion": (first, 30.0), "wheel": (second, 30.0)}
 
-    def expected(phase: float) -> np.ndarray:
+    def expected(phase):
         shafts = [moved(first, calls[0], phase), moved(second, calls[1], phase)]
         gears = [moved(*places[name][:1], calls[k], phase, 30.0) for name, k in GEAR_CALLS]
         return np.vstack([*shafts, np.zeros_like(calls[2]), *gears])

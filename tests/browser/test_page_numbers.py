@@ -32,7 +32,7 @@ def rests(page: Page) -> None:
     """Wait until every answer is there with its error, and the page asks for no more."""
     quiet = 0
 
-    def settled() -> bool:
+    def settled():
         nonlocal quiet
         page.wait_for_timeout(120)
         before = page.locator("#live-figures").get_attribute("data-answers")
@@ -129,7 +129,7 @@ def test_a_pair_in_the_plane_has_one_number_of_each_subject(browser, address, an
 
 
 @pytest.fixture(scope="module")
-def on_polymer(address: str) -> str:
+def on_polymer(address):
     polymer = {"youngs_modulus_gpa": 2.8, "poissons_ratio": 0.35}  # POM
     pair = CASE["pair"] | {"wheel": GEAR | {"material": polymer}}
     return computed(address, case=CASE | {"pair": pair})
@@ -145,7 +145,7 @@ def test_a_wheel_of_polymer_has_one_number_of_each_subject(browser, address, on_
 
 
 @pytest.fixture(scope="module")
-def over_face(address: str) -> str:
+def over_face(address):
     return computed(address, case=OVER_FACE)
 
 

@@ -2,7 +2,6 @@
 
 import re
 import tomllib
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +11,7 @@ from faulty_units import LEFT_OUT, TWO_STAGE
 from housing_solid import STIFFNESS, housed_scene, write_block
 from page_picture import CANVAS, different, picture, stopped
 from page_visit import PATIENCE, Visit, found_inaccessible, opened, other_browser, refused, shown, tab
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 from running_service import until
 
 from lineofaction.gearbox.registry import STUDIES
@@ -23,7 +22,7 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "planetary_scene.toml"
 
 
 @pytest.fixture(scope="module")
-def visit(browser: Browser, address: str, analyzed: str) -> Iterator[Visit]:
+def visit(browser, address, analyzed):
     seen = shown(browser, address, analyzed)
     tab(seen.page, "Sound")
     tab(seen.page, "TOML")
@@ -174,7 +173,7 @@ def test_the_card_of_a_gear_unit_begins_with_what_is_left_out(visit):
     page = visit.page
     _, edit, _ = LEFT_OUT["hand of a wheel"]
     file = {"name": "hand.rexs", "mimeType": "application/xml", "buffer": edit(TWO_STAGE).encode()}
-    page.locator("#import-file").set_input_files(file)  # type: ignore[arg-type]
+    page.locator("#import-file").set_input_files(file)
     first = page.locator("#unit > :first-child")
     expect(first).to_contain_text('Left out of the scene: cylindrical_stage 22 "second stage" (line 326)')
     expect(page.locator("#unit > [role=alert]")).to_have_count(6)

@@ -1,17 +1,16 @@
 """A scene in its tables: a cell and the TOML follow each other, faults stand at cells, rows are copied."""
 
 import tomllib
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from page_visit import Visit, found_inaccessible, refused, shown, tab
-from playwright.sync_api import Browser, Locator, Page, expect
+from page_visit import found_inaccessible, refused, shown, tab
+from playwright.sync_api import Locator, Page, expect
 from running_service import until
 
 
 @pytest.fixture
-def visit(browser: Browser, address: str, analyzed: str) -> Iterator[Visit]:
+def visit(browser, address, analyzed):
     seen = shown(browser, address, analyzed)
     tab(seen.page, "Sound")
     seen.page.get_by_role("button", name="Write the scene of the pair").press("Enter")

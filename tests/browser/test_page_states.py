@@ -1,14 +1,13 @@
 """One address for what is on screen: six kinds of state, reloaded, gone back to, sent, and in mid-job."""
 
 import re
-from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import pytest
 from page_visit import PATIENCE, answered, control, moved, other_browser, typed
-from playwright.sync_api import Browser, BrowserContext, Page, Route, expect
+from playwright.sync_api import BrowserContext, Page, Route, expect
 from running_service import until
 
 UNIT = Path(__file__).parents[2] / "examples" / "two_stage_gearbox.rexs"
@@ -103,7 +102,7 @@ def run_job(page: Page, key: str) -> None:
 
 
 @pytest.fixture(scope="module")
-def watched(browser: Browser, address: str) -> Iterator[tuple[Page, Jobs]]:
+def watched(browser, address):
     jobs = Jobs()
     with other_browser(browser, f"{address}/#rail") as page:
         jobs.watch(page.context)

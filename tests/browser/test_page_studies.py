@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from page_visit import PATIENCE, Visit, control, found_inaccessible, shown, unfold
-from playwright.sync_api import Browser, Locator, Page, expect
+from playwright.sync_api import Locator, Page, expect
 from running_service import until
 
 from lineofaction.gearbox.registry import STUDIES as REGISTERED
@@ -51,7 +51,7 @@ EACH = [pytest.param(name, marks=[pytest.mark.nightly] * (name not in FEW)) for 
 
 
 @pytest.fixture(scope="module")
-def visit(browser: Browser, address: str, analyzed: str) -> Visit:
+def visit(browser, address, analyzed):
     return shown(browser, address, analyzed)
 
 
@@ -168,7 +168,7 @@ def test_the_page_with_studies_is_accessible(visit, names, scheme, width):
     page = visit.page
     for name in names:
         ran(visit, name)
-    page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
+    page.emulate_media(color_scheme=scheme)
     page.set_viewport_size({"width": width, "height": 900})
     unfold(page)
     assert not (told := found_inaccessible(page)), json.dumps(told, indent=1)

@@ -1,15 +1,13 @@
 """Four tasks of a new user in the browser alone, action by action as the documentation has them."""
 
 import re
-from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from page_visit import Visit, answered, answers, found_inaccessible, opened, to_print
-from playwright.sync_api import Browser, Locator, Page, expect
+from playwright.sync_api import Locator, Page, expect
+from repository import ROOT
 from running_service import until
 
-ROOT = Path(__file__).parents[2]
 UNIT = ROOT / "examples" / "two_stage_gearbox.rexs"
 TASKS = (ROOT / "docs" / "how-to" / "in-the-browser.md").read_text(encoding="utf-8").split("\n## ")
 MAX = 15
@@ -56,7 +54,7 @@ class Hand:
 
 
 @pytest.fixture
-def seen(browser: Browser, address: str) -> Iterator[Visit]:
+def seen(browser, address):
     visit = opened(browser, f"{address}/#")
     yield visit
     assert visit.complaints == []

@@ -2,12 +2,11 @@
 
 import re
 import tomllib
-from collections.abc import Iterator
 from contextlib import suppress
 
 import pytest
-from page_visit import Visit, control, found_inaccessible, opened, refused
-from playwright.sync_api import Browser, Error, Page, Route, expect
+from page_visit import control, found_inaccessible, opened, refused
+from playwright.sync_api import Error, Page, Route, expect
 from running_service import until
 
 PAIR = {
@@ -40,7 +39,7 @@ GIVEN_UP = """async () => {
 
 
 @pytest.fixture
-def visit(browser: Browser, address: str) -> Iterator[Visit]:
+def visit(browser, address):
     seen = opened(browser, address)
     yield seen
     seen.page.close()
@@ -136,7 +135,7 @@ def test_an_edit_gives_up_the_plan_that_the_edit_before_asked_for(visit):
     """The service refuses a question (409) when a later one takes its place: nobody is to hear of it."""
     page, waiting = visit.page, []
 
-    def as_a_busy_service(route: Route) -> None:
+    def as_a_busy_service(route):
         if not waiting:
             waiting.append(route)
             return
@@ -234,7 +233,7 @@ def test_jobs_wait_for_a_file_that_is_read_and_are_given_up_with_it(visit):
 def test_a_backlash_of_rounding_is_none(visit):
     page = visit.page
 
-    def rounded(route: Route) -> None:
+    def rounded(route):
         answer = route.fetch().json()
         answer["figures"]["circumferential_backlash_um"] = 7e-4
         route.fulfill(json=answer)

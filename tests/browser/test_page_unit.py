@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from page_numbers import printed
 from page_visit import opened
-from playwright.sync_api import Page, Route, expect
+from playwright.sync_api import Page, expect
 from running_service import until
 
 SESSIONS = int(os.environ.get("LOA_PAGE_SESSIONS", "2"))
@@ -33,11 +33,11 @@ def deflect_at_no_cost(page: Page) -> list[dict[str, Any]]:
     """Answer deflections without computing any; returns the inputs that are sent."""
     sent: list[dict[str, Any]] = []
 
-    def enter(route: Route) -> None:
+    def enter(route):
         sent.append(route.request.post_data_json["inputs"])
         route.fulfill(status=201, json=STATUS)
 
-    def inputs(route: Route) -> None:
+    def inputs(route):
         route.fulfill(json={"processID": "deflect", "inputs": sent[0]})
 
     reference = {"deflection": {"href": f"/v1/results/{KEY}", "type": "application/x-netcdf", "hash": KEY}}

@@ -16,7 +16,7 @@ RELIEVED = GEAR | {"tip_relief_um": 8.0, "tip_relief_length_mm": 0.4}
 
 
 @pytest.fixture(scope="module")
-def relieved(address: str) -> str:
+def relieved(address):
     """Hash of the table of the small pair with tip relief."""
     return computed(address, case=CASE | {"pair": CASE["pair"] | {"pinion": RELIEVED}})
 

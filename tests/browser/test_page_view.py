@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 from page_picture import CANVAS, different, frames, has_room, picture, pixels, rest, stopped
-from page_visit import PATIENCE, Visit, control, found_inaccessible, moved, opened_scene, shown, tab
-from playwright.sync_api import Browser, Page, expect
+from page_visit import PATIENCE, control, found_inaccessible, moved, opened_scene, shown, tab
+from playwright.sync_api import Page, expect
 from running_service import until
 
 UNIT = Path(__file__).parents[2] / "examples" / "two_stage" / "two_stage.rexs"
@@ -25,7 +25,7 @@ MADE = """() => {
 
 
 @pytest.fixture(scope="module")
-def view(drawing_browser: Browser, address: str, analyzed: str) -> Visit:
+def view(drawing_browser, address, analyzed):
     seen = shown(drawing_browser, address, analyzed)
     seen.page.locator(CANVAS).scroll_into_view_if_needed()
     expect(seen.page.locator(f"{CANVAS}[data-pressed]:not([data-pressed='0'])")).to_have_count(1)
@@ -166,7 +166,6 @@ def test_pressure_follows_a_slider(view):
 def test_a_tooth_that_is_clicked_says_its_place_and_its_load(view):
     page = view.page
     box = page.locator(CANVAS).bounding_box()
-    assert box is not None
     said = page.locator("#view [role=status]")
     texts = []
     for part in np.linspace(0.3, 0.8, 12):
@@ -193,7 +192,6 @@ def test_a_unit_turns_when_its_file_opens_and_a_mesh_that_is_clicked_opens_its_p
     assert np.any((marked[..., 0] > 1.5 * marked[..., 2]) & (marked[..., 0] > 120)), "marked in orange"
     assert found_inaccessible(page, "#unit") == {}
     box = page.locator(CANVAS).bounding_box()
-    assert box is not None
     for part in np.linspace(0.3, 0.7, 12):
         page.mouse.click(box["x"] + part * box["width"], box["y"] + 0.5 * box["height"])
         if "click a mesh" not in said.inner_text():

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 import pytest
 from page_visit import opened, tab, to_print
-from playwright.sync_api import Browser
 from printed_pages import Printed, plain
 from small_inputs import small_inputs
 
@@ -91,12 +90,7 @@ class Report:
         "table",
     ],
 )
-def report(
-    request: pytest.FixtureRequest,
-    browser: Browser,
-    closed_forms: ModuleType,
-    tmp_path_factory: pytest.TempPathFactory,
-) -> Report:
+def report(request, browser, closed_forms, tmp_path_factory):
     del browser  # skips where there is none
     folder, name = tmp_path_factory.mktemp("printed"), request.param
     if name == "pair":

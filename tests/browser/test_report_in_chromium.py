@@ -2,12 +2,10 @@
 
 import re
 from dataclasses import dataclass, field
-from pathlib import Path
-from types import ModuleType
 
 import pytest
 from page_visit import PATIENCE
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.report.document import write_report
@@ -55,7 +53,7 @@ class Visit:
 
 
 @pytest.fixture(scope="module")
-def report(closed_forms: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def report(closed_forms, tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
     closed_forms.closed_form().to_netcdf(folder / "ste.nc")
     closed_forms.run_up().to_netcdf(folder / "run.nc")
@@ -65,7 +63,7 @@ def report(closed_forms: ModuleType, tmp_path_factory: pytest.TempPathFactory) -
 
 
 @pytest.fixture(scope="module")
-def visit(browser: Browser, report: Path) -> Visit:
+def visit(browser, report):
     seen = Visit(browser.new_page(viewport={"width": 1280, "height": 900}))
     seen.page.on("console", lambda message: seen.console.append(f"{message.type}: {message.text}"))
     seen.page.on("pageerror", lambda error: seen.console.append(f"error: {error}"))
@@ -199,7 +197,7 @@ def test_print_shows_pictures_with_one_title_and_what_was_opened(visit):
 
 
 @pytest.fixture(scope="module")
-def printed(browser: Browser, report: Path, tmp_path_factory: pytest.TempPathFactory) -> bytes:
+def printed(browser, report, tmp_path_factory):
     del browser  # skips where there is none
     folder = tmp_path_factory.mktemp("printed")
     files = [report.with_name(name) for name in ("ste.nc", "flanks.nc", "run.nc")]

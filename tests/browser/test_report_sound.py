@@ -4,11 +4,10 @@ import base64
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from types import ModuleType
 from urllib.parse import parse_qs, urlsplit
 
 import pytest
-from page_visit import PATIENCE, Visit, found_inaccessible, opened
+from page_visit import PATIENCE, found_inaccessible, opened
 from playwright.sync_api import Browser, Locator, Page, Route, expect
 from running_service import until
 
@@ -21,7 +20,7 @@ DURATION, TOP = 2.0, 900.0  # s, rpm of the run-up from standstill
 
 
 @pytest.fixture(scope="module")
-def folder(closed_forms: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def folder(closed_forms, tmp_path_factory):
     made = tmp_path_factory.mktemp("sound")
     run = closed_forms.run_up(duration=DURATION, top_rpm=TOP)
     run.to_netcdf(made / "loud.nc")
@@ -30,13 +29,13 @@ def folder(closed_forms: ModuleType, tmp_path_factory: pytest.TempPathFactory) -
 
 
 @pytest.fixture(scope="module")
-def order_map(browser: Browser, folder: Path) -> Iterator[Locator]:
+def order_map(browser, folder):
     write_report(folder / "loud.nc", folder / "report.html")
     yield from figure(browser, folder / "report.html", "#order_map")
 
 
 @pytest.fixture(scope="module")
-def levels(browser: Browser, folder: Path) -> Iterator[Locator]:
+def levels(browser, folder):
     write_page(compare([folder / "loud.nc", folder / "quiet.nc"], RunView()), folder / "comparison.html")
     yield from figure(browser, folder / "comparison.html", "#levels")
 
@@ -69,7 +68,6 @@ def times(of: Locator) -> list[float]:
 def clicked(of: Locator, part: float) -> float:
     """Click on a plot at a part of its width, between its curves; return the speed there by its axis."""
     box = of.locator(".nsewdrag").first.bounding_box()
-    assert box is not None
     of.page.mouse.click(box["x"] + part * box["width"], box["y"] + 0.6 * box["height"])
     low, high = of.locator(".plot").evaluate("node => node.layout.xaxis.range")
     return float(low + part * (high - low))
@@ -88,8 +86,6 @@ def test_the_cursor_is_at_the_speed_of_the_sound(order_map):
     expect(order_map.locator("output")).to_have_text("540.0 rpm")  # TOP 1.2 / DURATION
     low, high = order_map.locator(".plot").evaluate("node => node.layout.xaxis.range")
     area, cursor = (order_map.locator(name).first.bounding_box() for name in (".nsewdrag", ".cursor"))
-    assert area is not None
-    assert cursor is not None
     expected = area["x"] + (540.0 - low) / (high - low) * area["width"]
     assert cursor["x"] + 1.0 == pytest.approx(expected, abs=1.5)
     assert cursor["height"] == pytest.approx(area["height"], abs=1.0)
@@ -177,7 +173,7 @@ class Runs:
 
 
 @pytest.fixture(scope="module")
-def runs(closed_forms: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Runs:
+def runs(closed_forms, tmp_path_factory):
     folder: Path = tmp_path_factory.mktemp("runs")
     run = closed_forms.run_up()
     run.to_netcdf(folder / "loud.nc")
@@ -186,7 +182,7 @@ def runs(closed_forms: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> 
 
 
 @pytest.fixture
-def heard(browser: Browser, address: str, runs: Runs) -> Iterator[Visit]:
+def heard(browser, address, runs):
     found = opened(browser, address)
     found.page.route("**/v1/results/*/figures*", runs.answer)
     found.page.route("**/v1/results/*/sound*", runs.answer)

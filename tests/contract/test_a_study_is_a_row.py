@@ -4,12 +4,11 @@ import json
 import shutil
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 import structure
+from repository import ROOT
 
-ROOT = Path(__file__).parents[2]
 ROW = """
     made_up = StudyOf(
         _case(lambda: computations.MADE_UP),
@@ -88,7 +87,7 @@ print(json.dumps({
 
 
 @pytest.fixture(scope="module")
-def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def tree(tmp_path_factory):
     """Return a tree with a study more."""
     folder = tmp_path_factory.mktemp("tree")
     for name in {house.partition(".")[0] for house in structure.HOUSES} - {"lineofaction"}:

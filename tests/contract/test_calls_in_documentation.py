@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from repository import ROOT
 
 import lineofaction as loa
 from fe_contact import analyze
 from fe_contact.keywords import TableKeywords
 
-ROOT = Path(__file__).parents[2]
 PAGES = sorted(
     page
     for page in (ROOT / "README.md", *(ROOT / "docs").rglob("*.md"))

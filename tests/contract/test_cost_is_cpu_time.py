@@ -12,9 +12,7 @@ import structure
 from geared_scenes import gear_pair_scene
 
 from bounds.types import Json
-from dynamics.results import RunResult
-from dynamics.scene import Integration, Scene
-from dynamics.simulation import simulate, simulate_to_file
+from dynamics import Integration, RunResult, Scene, simulate, simulate_to_file
 from dynamics.types import RunStatus
 from model_studies.stage_clock import StageClock
 

@@ -10,21 +10,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene, spring_table, with_gear, with_mesh
+from repository import ROOT
 
+from dynamics import CoastFlank, Scene, TimeLaw, simulate
 from dynamics.assembly import assemble
 from dynamics.effects import EFFECTS as OF_DYNAMICS
 from dynamics.influence import decide_effects, estimate_influences
-from dynamics.loads import TimeLaw
-from dynamics.meshes import CoastFlank
-from dynamics.scene import Scene
-from dynamics.simulation import simulate
 from fe_contact import FlankModification, Gear, GearPair, PitchDeviation, Shaft, SteDatabase, analyze
 from fe_contact.analysis.request import request
 from fe_contact.contact import ContactModel
 from fe_contact.effects import EFFECTS as OF_CONTACT
 from fe_contact.types import Json
 
-ROOT = Path(__file__).parents[2]
 PRODUCT = ("dynamics", "fe_contact", "model_studies", "lineofaction", "service")
 EXAMPLES = (
     "lineofaction/hardcases/",
@@ -161,7 +158,7 @@ SCENES: dict[str, tuple[GearPair, Json]] = {
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 

@@ -290,7 +290,6 @@ def test_http_says_the_same(name, client):
 
 def test_a_table_in_a_list_is_told_both_ends_and_what_the_field_is():
     fault = refusal(changed(TABLES["flexible"], {"shafts[0].sections[1].length_mm": -1.0}))
-    assert fault is not None
     assert (fault.bound, fault.suggestion) == (
         "above 0 and at most 1e+06",
         "Length, in mm. For example 80.0.",

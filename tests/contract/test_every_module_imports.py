@@ -2,11 +2,10 @@
 
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
+from repository import ROOT
 
-ROOT = Path(__file__).parents[2]
 BLOCKED = f"""
 import importlib, pkgutil, sys, types
 sys.path.insert(0, {str(ROOT)!r})

@@ -3,12 +3,11 @@
 import json
 import re
 import tomllib
-from pathlib import Path
 
 import pytest
 import yaml
+from repository import ROOT
 
-ROOT = Path(__file__).parents[2]
 GITHUB = ROOT / ".github"
 TEXTS = sorted([*GITHUB.rglob("*.md"), ROOT / "CONTRIBUTING.md", ROOT / "README.md"])
 

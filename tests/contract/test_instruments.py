@@ -10,8 +10,8 @@ import instruments
 import links
 import pytest
 import structure
+from repository import ROOT
 
-ROOT = Path(__file__).parents[2]
 NAMES = sorted(instruments.instruments())
 WORK = f"""
 import importlib, pkgutil, sys

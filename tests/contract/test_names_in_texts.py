@@ -11,11 +11,11 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from repository import ROOT
 
 from lineofaction.cli.commands import FAMILIES
 from lineofaction.cli.verbs import Later
 
-ROOT = Path(__file__).parents[2]
 PACKAGES = (
     "bounds",
     "dynamics",

@@ -7,8 +7,8 @@ from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
+from repository import ROOT
 
-ROOT = Path(__file__).parents[2]
 MAX, MAX_EXPORTED = 10, 8
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 

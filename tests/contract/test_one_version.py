@@ -3,15 +3,14 @@
 import re
 import tomllib
 from importlib.metadata import version
-from pathlib import Path
 
 import pytest
 from packaging.version import Version
+from repository import ROOT
 
 from service.schemas.answer_examples import ANSWERS
 from service.version import solver_version
 
-ROOT = Path(__file__).resolve().parents[2]
 PROJECT: str = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["version"]
 
 

@@ -5,12 +5,12 @@ import sys
 from pathlib import Path
 
 import pytest
+from repository import ROOT
 from rexs_unit import place, two_stages
 from spur_case import spur_case
 
 from lineofaction.gearbox.rexs.files import serialized
 
-ROOT = Path(__file__).parents[2]
 COMPUTING = ("numba", "gmsh", "skfem", "scipy.optimize", "scipy.interpolate", "xarray")
 UNIT = "examples/two_stage_gearbox.rexs"
 
@@ -26,13 +26,13 @@ def test_catalog_bearings_on_a_rigid_casing_are_opened_without(name, loaded_with
 
 
 @pytest.fixture(scope="module")
-def loaded(tmp_path_factory: pytest.TempPathFactory) -> set[str]:
+def loaded(tmp_path_factory):
     """Return what is loaded for the example, whose bearings have stiffnesses."""
     return modules_after(UNIT, tmp_path_factory.mktemp("unit"))
 
 
 @pytest.fixture(scope="module")
-def loaded_with_lines(tmp_path_factory: pytest.TempPathFactory) -> set[str]:
+def loaded_with_lines(tmp_path_factory):
     folder = tmp_path_factory.mktemp("lines")
     line = {"bearing_type": "radial_grooved_ball_bearing", "radial_static_load_rating": 11.6}
     line |= {"inner_diameter": 25.0, "outer_diameter": 62.0, "u_coordinate_on_shaft_inner_side": 15.0}

@@ -10,7 +10,6 @@ import sys
 from collections.abc import Callable
 from dataclasses import replace
 from types import FrameType
-from typing import Any
 
 import pytest
 import structure
@@ -43,7 +42,7 @@ def returns(work: Callable[[], object]) -> set[Return]:
     found: set[Return] = set()
     stack: list[tuple[str, FrameType]] = []
 
-    def note(frame: FrameType, event: str, _argument: object) -> None:
+    def note(frame, event, _argument):
         if event == "call":
             package = _package(frame)
             if package is None:
@@ -78,7 +77,7 @@ def test_from_a_bearing_force_to_decibels():
     scene = replace(gear_pair_scene(square_wave_table(), effects=ON), housings=(part,))
     model = SoundModel(scene, {part.name: housing()}, {part.name: radiation()})
 
-    def heard() -> None:
+    def heard():
         scene_sound(force, [surface], Radiation(boundary_elements=False))
         sound_band(model, SPEEDS, 2, {"housing_damping": USUAL_RANGES["housing_damping"]}, cases=1)
 
@@ -106,7 +105,7 @@ def test_from_a_relief_to_its_curves(tmp_path):
     echoed = json.loads(json.dumps(case_json(case)))
     replace(table, metadata=replace(table.metadata, case=echoed)).to_netcdf(file)
 
-    def asked(relief: float) -> dict[str, Any]:
+    def asked(relief):
         pinion = {"tip_relief_um": relief, "tip_relief_length_mm": 0.3}
         question = {"torque_n_m": [2.0], "pinion": pinion}
         return live_ste({"file": str(file), "cache": str(tmp_path), "key": "table", "question": question})

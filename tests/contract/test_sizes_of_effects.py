@@ -13,15 +13,13 @@ from command_line import loa
 from geared_scenes import RPM, gear_pair_scene, with_gear
 
 from bounds import engineering
-from dynamics.ablation import ablate as ablate_scene
+from dynamics import Outputs, Scene, TimeLaw, simulate
+from dynamics import ablate as ablate_scene
 from dynamics.acoustics import a_weighting
 from dynamics.influence.level_change import LevelChange
-from dynamics.loads import TimeLaw
-from dynamics.scene import Outputs, Scene
-from dynamics.simulation import simulate
+from fe_contact import SteDatabase
 from fe_contact.analysis.studies import ablation
 from fe_contact.analysis.studies.ablation import Figures
-from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.scene_effects import scene_table
 from lineofaction.gearbox.schemas import Case
@@ -87,7 +85,7 @@ CASES: dict[str, tuple[Json, list[float], Json]] = {
 
 
 @pytest.fixture(scope="module", autouse=True)
-def _one_cache(tmp_path_factory: pytest.TempPathFactory) -> Any:
+def _one_cache(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
         yield

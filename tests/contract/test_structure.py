@@ -8,11 +8,10 @@ from pathlib import Path
 import line_growth
 import pytest
 import structure
+from repository import ROOT
 
 import host
 from lineofaction.gearbox import schemas
-
-ROOT = Path(__file__).parents[2]
 
 LONGEST = 600
 WRITTEN = (".js", ".css", ".html")

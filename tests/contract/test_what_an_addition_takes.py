@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 import structure
+from repository import ROOT
 
-ROOT = Path(__file__).parents[2]
 COPIED = ("dynamics", "lineofaction")
 EFFECT = '''"""An effect of rotors that is made up: it is on wherever a rotor has gears."""
 

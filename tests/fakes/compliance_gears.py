@@ -31,7 +31,7 @@ def coarse(gear: Toothing, **fields: object) -> SectorRecipe:
         land_elements=1,
         merge_rows=(-1,),
     )
-    return replace(recipe, **fields)  # type: ignore[arg-type]
+    return replace(recipe, **fields)
 
 
 def coarse_plane(gear: Toothing, **fields: Any) -> MeshRecipe:

@@ -66,7 +66,7 @@ class DaskProcesses:
         """Call a function in all workers; return its answers by their addresses."""
         from distributed import Client  # noqa: PLC0415 (an extra)
 
-        with Client(self.address, set_as_default=False) as client:  # type: ignore[no-untyped-call]
+        with Client(self.address, set_as_default=False) as client:
             found: dict[str, Any] = client.run(function)
         return found
 
@@ -78,13 +78,13 @@ class DaskProcesses:
         """Return the names of the tasks that are kept for a server."""
         from distributed import Client  # noqa: PLC0415 (an extra)
 
-        with Client(self.address, set_as_default=False) as client:  # type: ignore[no-untyped-call]
+        with Client(self.address, set_as_default=False) as client:
             return list(map(str, client.list_datasets()))
 
     def await_workers(self, number: int) -> None:
         from distributed import Client  # noqa: PLC0415 (an extra)
 
-        with Client(self.address, set_as_default=False) as client:  # type: ignore[no-untyped-call]
+        with Client(self.address, set_as_default=False) as client:
             client.wait_for_workers(number, timeout=PATIENCE_S)
 
     def kill_worker(self) -> None:
@@ -100,7 +100,6 @@ class DaskProcesses:
         self.start_workers(number)
 
     def end_scheduler(self) -> None:
-        assert self.scheduler is not None
         self.scheduler.kill()
         self.scheduler.wait()
 

@@ -50,5 +50,4 @@ def draw(names: Iterable[str], turn: int) -> set[str]:
 def turn() -> int:
     """Return a number that the next version has one more of."""
     version = re.search(r'^version = "(.+)"', _PROJECT.read_text(encoding="utf-8"), re.MULTILINE)
-    assert version is not None
     return sum(map(int, re.findall(r"\d+", version[1])))

@@ -36,5 +36,4 @@ def migrated_once() -> Iterator[None]:
 def _content(connection: Connection) -> list[str]:
     """Return the statements that make the tables and rows of a SQLite database."""
     driver = connection.connection.driver_connection
-    assert driver is not None
     return [line for line in driver.iterdump() if line not in ("BEGIN TRANSACTION;", "COMMIT;")]

@@ -176,7 +176,6 @@ def _of_the_report(numbers: Iterable[Printed], rows: Iterable[tuple[str, str]]) 
     for name, text in rows:
         match = STATED.fullmatch(name)
         for number in known if match else ():
-            assert match is not None
             what = match["what"].replace("-", " ").removesuffix(" STE")
             if number.what != what or not number.subject.endswith(f"; at {match['torque']}"):
                 continue

@@ -11,10 +11,7 @@ from dataclasses import replace
 
 from geared_scenes import spring_table
 
-from dynamics.joints import FreeRotation, ImposedRotation
-from dynamics.loads import LoadTorque, TimeLaw
-from dynamics.scene import PlanetarySet, Scene
-from dynamics.shafts import Inertia
+from dynamics import FreeRotation, ImposedRotation, Inertia, LoadTorque, PlanetarySet, Scene, TimeLaw
 
 PRESSURE_ANGLE = math.radians(24.6)
 MESH_STIFFNESS = 5e8

@@ -50,14 +50,14 @@ class Printed:
     def __init__(self, content: bytes) -> None:
         self.size = len(content)
         reader = PdfReader(BytesIO(content))
-        self._numbers = {page.indirect_reference.idnum: n for n, page in enumerate(reader.pages)}  # type: ignore[union-attr]
+        self._numbers = {page.indirect_reference.idnum: n for n, page in enumerate(reader.pages)}
         self._texts: dict[Place, str] = {}
         self.corners: defaultdict[int, list[NDArray[np.float64]]] = defaultdict(list)
         """By page: two opposite corners of each picture, and where each piece of text begins."""
         self.attachments = {name: files[0] for name, files in reader.attachments.items()}
         self.pages = [self._read(number, page) for number, page in enumerate(reader.pages)]
         self.pictures = [len(page.images) for page in reader.pages]
-        root = reader.trailer["/Root"]["/StructTreeRoot"]  # type: ignore[index]
+        root = reader.trailer["/Root"]["/StructTreeRoot"]
         self.document = self._element(root, None)
 
     def words(self, element: Element) -> str:

@@ -107,7 +107,7 @@ def scene_by_hash(directory: Path, duration: float) -> SceneInput:
 
 
 def prepared(process: Process, **inputs: Any) -> dict[str, Any]:
-    return process.prepare(process.inputs.model_validate_json(json.dumps(inputs)), None)  # type: ignore[arg-type]
+    return process.prepare(process.inputs.model_validate_json(json.dumps(inputs)), None)
 
 
 def without(names: tuple[str, ...], value: Any) -> Any:

@@ -128,7 +128,7 @@ def _changed(name: str, rested_on: str) -> bool:
 
 def _shared(item: pytest.Item, costs: dict[str, float]) -> float:
     """Return what the dear ones of the fixtures cost that a test shares with others of its file."""
-    names = item.fixturenames  # type: ignore[attr-defined]
+    names = item.fixturenames
     file = item.nodeid.partition("::")[0]
     return sum(cost for name in names if (cost := costs.get(f"{file}::{name}", 0.0)) > LONG)
 

@@ -6,13 +6,12 @@ import re
 import runpy
 import subprocess
 import sys
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from condensed_once import find_condensed
+from repository import ROOT
 from small_table import small_table
 
 from dynamics.results import RunResult
@@ -21,16 +20,13 @@ from lineofaction.client import LineOfActionClient, OfflineWarning, ResultCache
 from lineofaction.gearbox.problems import BadInput
 
 RESTS_ON = ("docs/client.md", "docs/how-to/call-a-service.md", "examples")
-ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "client.md").read_text(encoding="utf-8")
 RECIPES = (ROOT / "docs" / "how-to" / "call-a-service.md").read_text(encoding="utf-8")
 KEY = "ab" * 32
 
 
 @pytest.fixture(scope="module")
-def service(
-    tmp_path_factory: pytest.TempPathFactory, condensed_bodies: Path
-) -> Iterator[tuple[subprocess.Popen[str], str]]:
+def service(tmp_path_factory, condensed_bodies):
     folder = tmp_path_factory.mktemp("service")
     find_condensed(condensed_bodies, folder)
     with subprocess.Popen(
@@ -40,7 +36,6 @@ def service(
         stderr=subprocess.DEVNULL,
         text=True,
     ) as process:
-        assert process.stdout is not None
         line = process.stdout.readline()
         yield process, line[line.index("http://") :].strip()
         process.terminate()
@@ -48,9 +43,7 @@ def service(
 
 
 @pytest.fixture(autouse=True)
-def _as_a_user(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, service: tuple[subprocess.Popen[str], str]
-) -> None:
+def _as_a_user(monkeypatch, tmp_path, service):
     monkeypatch.chdir(ROOT)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.setenv("LOA_SERVICE", service[1])
@@ -111,7 +104,7 @@ def test_the_paper_s_flow_runs_again_without_the_service(service, monkeypatch, t
     examples = ROOT / "examples"
     monkeypatch.syspath_prepend(str(examples))
 
-    def run(output: Path) -> str:
+    def run(output):
         monkeypatch.setattr(sys, "argv", ["run_up_from_service.py", "-o", str(output)])
         runpy.run_path(str(examples / "run_up_from_service.py"), run_name="__main__")
         return capsys.readouterr().out

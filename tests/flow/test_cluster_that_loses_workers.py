@@ -55,7 +55,7 @@ class Cluster:
         while len(self.alive) < count:
             command = [sys.executable, *WORKER, self.address]
             quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-            self.processes.append(subprocess.Popen(command, **quiet))  # type: ignore[call-overload]
+            self.processes.append(subprocess.Popen(command, **quiet))
         self.client.wait_for_workers(count)
 
     @property
@@ -92,7 +92,7 @@ class Losing:
 
 
 @pytest.fixture(scope="module")
-def cluster() -> Iterator[Cluster]:
+def cluster():
     with (
         distributed.LocalCluster(n_workers=0, dashboard_address=None, host="127.0.0.1") as scheduler,
         distributed.Client(scheduler, set_as_default=False) as client,
@@ -108,13 +108,13 @@ def cluster() -> Iterator[Cluster]:
 
 
 @pytest.fixture(autouse=True)
-def small_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
+def small_tasks(monkeypatch):
     monkeypatch.setattr(contact_lines, "TASK_SECONDS", 0.01)
     monkeypatch.setattr(dispatch, "START_SECONDS", 0.0)
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 
@@ -133,7 +133,7 @@ def table(cache: Path, workers: Workers = InProcess()) -> SteDatabase:  # noqa: 
 
 
 @pytest.fixture(scope="module")
-def alone(cache: Path) -> SteDatabase:
+def alone(cache):
     return table(cache)
 
 
@@ -204,7 +204,7 @@ def test_what_two_callers_want_at_once_is_done_once(cluster, tmp_path):
             for client in (cluster.client, other, cluster.client)
         )
         next(third)
-        third.close()  # type: ignore[attr-defined]
+        third.close()
         assert list(first) == list(second) == [None] * len(links)
     assert sorted(map(os.readlink, links)) == ["nowhere"] * len(links)
 
@@ -215,7 +215,7 @@ def test_a_gear_is_condensed_once_for_all_machines_and_the_oldest_one_goes(clust
     monkeypatch.setattr(dask_cluster, "MAX_RESULTS", 2)
     first, second = replace(FEW_TEETH, teeth=10), FEW_TEETH
 
-    def tasks(machine: str, *gears: Gear) -> int:
+    def tasks(machine, *gears):
         """Return how many were condensed for a machine that has none of them."""
         (tmp_path / machine).mkdir()
         with distributed.Client(cluster.address, set_as_default=False) as client:

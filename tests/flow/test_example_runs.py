@@ -7,9 +7,8 @@ from pathlib import Path
 import pytest
 from command_line import loa
 
-from dynamics.simulation import simulate
-from fe_contact import analyze
-from fe_contact.ste import SteDatabase
+from dynamics import simulate
+from fe_contact import SteDatabase, analyze
 from lineofaction.gearbox.convert.case import analysis_options, gear_pair, table_axes
 from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.subjects import scene_of, with_case
@@ -59,7 +58,7 @@ def output_of(*arguments: object) -> str:
 
 
 @pytest.fixture(scope="module")
-def table(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def table(tmp_path_factory):
     file = tmp_path_factory.mktemp("ring") / "ring.nc"
     output_of("analyze", RING, "-o", file)
     return file

@@ -11,12 +11,12 @@ from pathlib import Path
 
 import pytest
 from condensed_once import find_condensed
+from repository import ROOT
 from running_service import PATIENCE_S, until
 
 from service.page.example_cases import examples
 
 RESTS_ON = ("examples",)
-ROOT = Path(__file__).parents[2]
 JOB = ROOT / "examples" / "main_job.py"
 HELICAL = ROOT / "examples" / "helical_ev_23_67.toml"
 
@@ -40,7 +40,7 @@ def running(folder: Path) -> list[int]:
 
 
 @pytest.fixture(scope="module")
-def job(tmp_path_factory: pytest.TempPathFactory, condensed_bodies: Path) -> tuple[Path, str]:
+def job(tmp_path_factory, condensed_bodies):
     """Run the whole job once; return its folder and what it printed."""
     folder = tmp_path_factory.mktemp("main-job")
     find_condensed(condensed_bodies, folder / "out" / "service")

@@ -5,26 +5,25 @@ import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import manual
 import pytest
 from condensed_once import find_condensed
+from repository import ROOT
 
 RESTS_ON = ("README.md", "docs/studies.md", "docs/tutorials", "docs/how-to", "examples")
-ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 
 
 @pytest.fixture(scope="module")
-def folder() -> Iterator[Path]:
+def folder():
     with manual.folder() as made:
         yield made
 
 
 @pytest.fixture(scope="module")
-def ran() -> set[Path]:
+def ran():
     """Pages that have run in the folder: their files are there."""
     return set()
 

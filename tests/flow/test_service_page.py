@@ -6,7 +6,6 @@ import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -20,7 +19,7 @@ ADDRESS = "http://127.0.0.1:8321"
 
 
 @pytest.fixture
-def address(tmp_path: Path, condensed_bodies: Path) -> Iterator[str]:
+def address(tmp_path, condensed_bodies):
     """A service, started as the page says but on a free port."""
     find_condensed(condensed_bodies, tmp_path / "data")
     environment = os.environ | {"OMP_NUM_THREADS": "1", "XDG_CACHE_HOME": str(tmp_path / "cache")}

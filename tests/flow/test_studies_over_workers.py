@@ -71,7 +71,7 @@ Ask = Callable[[StudyRow, Workers], Figures]
 
 
 @pytest.fixture(scope="module", autouse=True)
-def small_tasks() -> Iterator[pytest.MonkeyPatch]:
+def small_tasks():
     """Divide small questions as large ones are."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(contact_lines, "TASK_SECONDS", 0.0005)
@@ -80,10 +80,10 @@ def small_tasks() -> Iterator[pytest.MonkeyPatch]:
 
 
 @pytest.fixture(scope="module")
-def ask(small_tasks: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFactory) -> Ask:
+def ask(small_tasks, tmp_path_factory):
     """Return what puts the question of a row in Python, with a cache of its own."""
 
-    def figures(row: StudyRow, workers: Workers) -> Figures:
+    def figures(row, workers):
         small_tasks.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
         inputs, study = row.inputs | WIDER.get(str(row), {}), row.registered
         subject = inputs.pop(row.subject)
@@ -99,10 +99,10 @@ def ask(small_tasks: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFactor
 
 
 @pytest.fixture(scope="module")
-def here(ask: Ask) -> Callable[[StudyRow], Figures]:
+def here(ask):
     known: dict[str, Figures] = {}
 
-    def figures(row: StudyRow) -> Figures:
+    def figures(row):
         if str(row) not in known:
             known[str(row)] = ask(row, InProcess())
         return known[str(row)]
@@ -114,7 +114,7 @@ NIGHTLY = pytest.mark.nightly
 
 
 @pytest.fixture(scope="module", params=[pytest.param(1, marks=NIGHTLY), 2, pytest.param(4, marks=NIGHTLY)])
-def pool(request: pytest.FixtureRequest) -> Iterator[Workers]:
+def pool(request):
     with local_processes(request.param) as processes:
         yield processes
 

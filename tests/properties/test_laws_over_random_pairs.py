@@ -12,13 +12,11 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from sprung_flanks import on_springs
 
+from fe_contact import AnalysisOptions, FlankModification, Gear, GearPair, Material, PitchDeviation, TableAxes
 from fe_contact.analysis.pairs.pair_contact import PairContact
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.contact import ContactModel, ContactSolution
 from fe_contact.errors import InputError
-from fe_contact.geometry import FlankModification, Gear, GearPair, PitchDeviation
-from fe_contact.material import Material
-from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning.plan import make_plan
 
 LAWS = settings(suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow])
@@ -128,7 +126,7 @@ def test_deflection_grows_with_load_and_stiffness_does_not_fall(case):
 @LAWS
 @given(pairs(), st.floats(0.02, 50.0))
 def test_lengths_scale_and_forces_scale_with_their_square(case, scale):
-    def scaled(gear: Gear) -> Gear:
+    def scaled(gear):
         lengths = ("normal_module", "face_width", "bore_diameter")
         names = ("tip_relief", "tip_relief_length", "profile_crowning")
         modification = replace(gear.modification, **{n: scale * getattr(gear.modification, n) for n in names})

@@ -120,7 +120,7 @@ def test_swapping_and_mirroring_change_nothing_that_matters(pair):
 
 @given(pairs(), st.floats(0.05, 20.0))
 def test_lengths_scale(pair, scale):
-    def scaled(gear: Gear) -> Gear:
+    def scaled(gear):
         lengths = {
             name: getattr(gear, name) * scale for name in ("normal_module", "face_width", "bore_diameter")
         }
@@ -289,7 +289,7 @@ def deepest(
 
 @given(internal_pairs(), st.floats(0.05, 20.0))
 def test_lengths_scale_and_hands_mirror(pair, scale):
-    def scaled(gear: Any, size: str) -> Any:
+    def scaled(gear, size):
         lengths = {name: getattr(gear, name) * scale for name in ("normal_module", "face_width", size)}
         return replace(gear, helix_angle=-gear.helix_angle, **lengths)
 

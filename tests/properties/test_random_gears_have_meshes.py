@@ -33,7 +33,7 @@ def sizes(
 ) -> st.SearchStrategy[dict[str, Any]]:
     """Return fields of gears: the helix angle from and to degrees, the face width from and to modules."""
 
-    def in_si(numbers: dict[str, Any]) -> dict[str, Any]:
+    def in_si(numbers):
         angles = {name: np.radians(numbers[name]) for name in ("normal_pressure_angle", "helix_angle")}
         return numbers | angles | {"face_width": numbers["face_width"] * numbers["normal_module"]}
 

@@ -11,7 +11,7 @@ import pytest
 from sprung_flanks import on_springs
 from spur_gears import gear
 
-from fe_contact import FlankGrid, GearPair, ToothFlank
+from fe_contact import AnalysisOptions, FlankGrid, Gear, GearPair, TableAxes, ToothFlank
 from fe_contact.analysis.checks.law import LawCheck
 from fe_contact.analysis.checks.table_laws import check_laws
 from fe_contact.analysis.pairs.operating_points import OperatingPoint
@@ -23,8 +23,6 @@ from fe_contact.contact.flank_slope import rolls_at
 from fe_contact.contact.model import MeetingTeeth
 from fe_contact.contact.plain_touch import conjugate_touch
 from fe_contact.errors import InputError
-from fe_contact.geometry import Gear
-from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning.plan import make_plan
 
 POSITIONS = np.arange(32) / 32

@@ -41,7 +41,7 @@ def table(**how: object) -> SteDatabase:
 
 
 @pytest.fixture(scope="module", params=[{"positions": 32}, {"positions": 32, "receipt": "minimal"}, {}])
-def both(request) -> tuple[SteDatabase, SteDatabase]:
+def both(request):
     """The table as it should be, and the damaged one."""
     sound = table(**request.param)
     with pytest.MonkeyPatch.context() as patch:

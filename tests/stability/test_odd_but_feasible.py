@@ -8,11 +8,8 @@ import pytest
 from bad_inputs import BAD_INPUTS
 from random_cases import assessed
 
-from fe_contact import Gear, GearPair
-from fe_contact.analysis.analyze import analyze
+from fe_contact import FlankModification, Gear, GearPair, Material, PitchDeviation, analyze
 from fe_contact.errors import InputError
-from fe_contact.geometry import FlankModification, PitchDeviation
-from fe_contact.material import Material
 
 MM, UM, DEG = 1e-3, 1e-6, math.pi / 180.0
 Fields = dict[str, Any]

@@ -131,7 +131,7 @@ def largest_rounding(pair: ParallelAxes, wheel: Toothing) -> float:
         *(half_shift if shift else 0.0 for shift in shifts),
     )
 
-    def moved(index: int, by: float) -> float:
+    def moved(index, by):
         return nominal_backlash(pair, *(value + by * (i == index) for i, value in enumerate(values)))
 
     return sum(0.5 * abs(moved(i, half) - moved(i, -half)) for i, half in enumerate(halves))

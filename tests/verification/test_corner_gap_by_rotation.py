@@ -13,21 +13,11 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from fe_contact import FlankModification, Gear, GearPair, InternalGearPair, RingGear
 from fe_contact.contact.plain_touch import conjugate_touch
 from fe_contact.contact.touch import modified_touch
 from fe_contact.effects.flank_modification import ModificationGap
-from fe_contact.geometry import (
-    FlankModification,
-    Gear,
-    GearPair,
-    InternalGearPair,
-    ParallelAxes,
-    RingGear,
-    Toothing,
-    corner_contact,
-    tooth_profile,
-)
-from fe_contact.geometry.corner_contact import Side
+from fe_contact.geometry import ParallelAxes, Side, Toothing, corner_contact, tooth_profile
 
 
 def gear(teeth: int, **fields: Any) -> Gear:
@@ -229,7 +219,7 @@ def test_gap_of_a_relieved_wheel_is_the_lag_that_makes_its_flank_touch(name, rec
     removed = wheel.modification.material_removed(wheel, roll_2)
     points = profile.flank(s) - removed[:, None] * profile.normal(s)
 
-    def clearance(lag: float, roll: float) -> float:
+    def clearance(lag, roll):
         first, second = assembly.turns(roll, lag)
         return _angle_past(assembly.placed(points, second) + assembly.up, pair.pinion, first)
 
@@ -284,7 +274,7 @@ def test_gap_of_a_relieved_tip_edge_is_the_lag_that_makes_it_touch(name, side, s
     removed = relief.material_removed(body, roll) if sloped else np.full(roll.shape, DEPTH)
     points, assembly = profile.flank(s) - removed[:, None] * profile.normal(s), Assembly(pair)
 
-    def clearance(lag: float, at: float) -> float:
+    def clearance(lag, at):
         first, second = assembly.turns(at, lag)
         if gear:
             return _angle_past(assembly.placed(points, second) + assembly.up, pair.pinion, first)

@@ -9,10 +9,9 @@ from scipy.sparse.linalg import splu
 from skfem import Basis, ElementTriP2, ElementVector, MeshTri2
 from skfem.models.elasticity import linear_elasticity
 
+from fe_contact import Gear, Material
 from fe_contact.compliance import PlaneHypothesis
 from fe_contact.compliance.plane_elasticity import stiffness_matrix
-from fe_contact.geometry import Gear
-from fe_contact.material import Material
 from fe_contact.mesh import MeshRecipe, mesh_gear
 
 STEEL = Material()
@@ -81,7 +80,7 @@ def ring_mesh(radial: int) -> tuple[np.ndarray, np.ndarray]:
         -1, 2
     )
 
-    def node(i: np.ndarray, j: np.ndarray) -> np.ndarray:
+    def node(i, j):
         return i * 2 * around + j % (2 * around)
 
     i, j = (2 * a.ravel() for a in np.meshgrid(np.arange(radial), np.arange(around), indexing="ij"))

@@ -103,7 +103,7 @@ def test_one_layer_held_axially_is_plane_strain(record_figure):
 
 
 @pytest.fixture(scope="module")
-def by_layers() -> dict[int, FlankCompliance3D]:
+def by_layers():
     """The draft section with more and more equal layers."""
     recipe = replace(SectorRecipe.draft(GEAR), layer_growth=1.0, merge_rows=())
     return {n: flank_compliance_3d(GEAR, replace(recipe, layers=n)) for n in (4, 8, 16)}

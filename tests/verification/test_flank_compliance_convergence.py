@@ -42,7 +42,7 @@ def self_compliance(compliance: FlankCompliance, centers: np.ndarray) -> np.ndar
 
 
 @pytest.fixture(scope="module")
-def compliances() -> dict[float, FlankCompliance]:
+def compliances():
     """Single-tooth compliance by refinement of the standard recipe."""
     return {f: flank_compliance(GEAR, STANDARD.refined(f), teeth=1) for f in (0.5, 1.0, 2.0)}
 

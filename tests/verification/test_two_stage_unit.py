@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 from wav_files import read_wav
 
-from dynamics.acoustics import free_field_pressure
-from dynamics.acoustics.air import Air
+from dynamics.acoustics import Air, free_field_pressure
 from dynamics.noise import RadiatedSound
 from dynamics.types import FloatArray
 

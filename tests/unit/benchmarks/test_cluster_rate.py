@@ -2,7 +2,6 @@
 
 import subprocess
 from types import SimpleNamespace
-from typing import Any
 
 import pytest
 
@@ -12,11 +11,11 @@ pytest.importorskip("distributed", reason="the extra dask is not installed")
 
 
 @pytest.fixture
-def processes(monkeypatch: pytest.MonkeyPatch) -> list[subprocess.Popen[bytes]]:
+def processes(monkeypatch):
     """Collect the processes that are started."""
     processes: list[subprocess.Popen[bytes]] = []
 
-    def noted(*words: Any, **options: Any) -> subprocess.Popen[bytes]:
+    def noted(*words, **options):
         processes.append(subprocess.Popen(*words, **options))
         return processes[-1]
 

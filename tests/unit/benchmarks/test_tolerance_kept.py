@@ -38,7 +38,7 @@ def test_prices_are_those_over_the_quickest_run_whose_errors_are_within(monkeypa
     exact = np.array([[10e-6], [4e-6], [1e-6], [1e-6], [1e-6]])
     runs = {"draft": (1.008, 0.02, 1.0), "standard": (1.005, 0.005, 2.0)}
 
-    def made(_case, level: str = "", tolerance: float = 0.0) -> StoredRun:
+    def made(_case, level="", tolerance=0.0):
         part, stated, seconds = runs.get(level, (1.005, 0.005, 3.1))
         passes = [
             {"level": "draft", "slices": 15, "kept": False},

@@ -31,7 +31,7 @@ X = np.array([0.0, np.nan, 2.0])
 
 def test_copies_are_equal_nan_included_and_lists_of_files_are_tuples():
     line = Line(X, ("a",), receipt={"steps": [1, 2]}, inner=Line(X))
-    assert line == Line(X.copy(), ["a"], receipt={"steps": (1, 2)}, inner=Line(X.copy()))  # type: ignore[arg-type]
+    assert line == Line(X.copy(), ["a"], receipt={"steps": (1, 2)}, inner=Line(X.copy()))
 
 
 @pytest.mark.parametrize(

@@ -2,15 +2,14 @@
 
 import math
 import re
-from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from repository import ROOT
 
 from bounds import engineering, leftover
 
-ROOT = Path(__file__).parents[3]
 NUMBERS = st.floats(-1e308, 1e308).filter(lambda value: abs(value) > 1e-290)
 """What is rounded up beyond the largest float is none to read back."""
 

@@ -18,7 +18,7 @@ HOUR = 3600.0
 
 
 @pytest.fixture
-def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def cache(tmp_path, monkeypatch):
     """A cache of three files of 1000 bytes, used one to three hours ago."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.delenv("LOA_CACHE_BYTES", raising=False)

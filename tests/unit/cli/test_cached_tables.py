@@ -23,10 +23,10 @@ LOST = ("static_transmission_error", "tangent_compliance", "error_estimate", "ma
 
 
 @pytest.fixture
-def computed(monkeypatch: pytest.MonkeyPatch) -> list[SteDatabase]:
+def computed(monkeypatch):
     made: list[SteDatabase] = []
 
-    def computed_table(*_: object) -> SteDatabase:
+    def computed_table(*_):
         table = small_table()
         made.append(replace(table, metadata=replace(table.metadata, receipt=RECEIPT)))
         return made[-1]

@@ -1,17 +1,15 @@
 """``loa compare BEFORE AFTER --scene``: the options reach the study of a change of flanks."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from command_line import loa
+from repository import EXAMPLES
 
 from lineofaction.cli import compare, run_study
 from lineofaction.gearbox.problems import EXIT_BAD_INPUT
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.studies.change.result import ALL, DesignLevels, FlankChange
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 SPUR, SCENE = EXAMPLES / "palermo_spur_20_20.toml", EXAMPLES / "palermo_scene.toml"
 
 

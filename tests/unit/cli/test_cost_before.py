@@ -12,15 +12,14 @@ from typing import Any
 import pytest
 from command_line import loa
 from housing_solid import write_housed_scene
+from repository import EXAMPLES
 from spur_case import spur_case
 
 from bounds import engineering
 from dynamics.acoustics import BoundaryElements, ElementalRadiators
-from dynamics.assembly.assemble import System, assemble
+from dynamics.assembly.assemble import assemble
 from dynamics.influence import neglected_check
-from dynamics.scene import Scene
 from fe_contact.analysis.pairs.pair_contact import PairContact
-from fe_contact.analysis.run_plan import PredictedDesigns
 from fe_contact.microgeometry import evaluator
 from fe_contact.microgeometry.design_study import design_study
 from fe_contact.microgeometry.tolerance_study import curves_of_samples
@@ -48,7 +47,6 @@ from model_studies.stage_clock import StageClock
 
 sound_band_module = import_module("dynamics.noise.sound_band")
 steady_cost_module = import_module("dynamics.periodic.steady_cost")
-EXAMPLES = Path(__file__).parents[3] / "examples"
 SPEEDS = [100.0 * k for k in range(1, 61)]
 CHANGE: dict[str, Any] = {
     "after": tomllib.loads((EXAMPLES / "palermo_spur_20_20.toml").read_text()),
@@ -74,7 +72,7 @@ OF_SCENES = ("modes", "steady", "response")
 
 
 @pytest.fixture
-def case(tmp_path: Path) -> CheckedCase:
+def case(tmp_path):
     file = tmp_path / "case.toml"
     file.write_text(spur_case(torques=[100.0]))
     return CheckedCase(read_model(Case, file))
@@ -126,7 +124,7 @@ def test_drawn_teeth_cost_each_solved_pair_a_revolution_of_their_gear():
     """As many base pitches as it has teeth, whatever the sample; none where no order is beside the mesh."""
     case = CheckedCase(read_model(Case, EXAMPLES / "industrial_spur_21_59.toml"))
 
-    def revolutions(limit: str, samples: int = 64) -> list[Work]:
+    def revolutions(limit, samples=64):
         inputs = {"samples": samples, "exact": 12, "finishing": "hobbing", "limit": limit}
         return [part for part in predicted("scatter", inputs, case).parts if part.name == "revolutions"]
 
@@ -144,11 +142,11 @@ def test_pairs_of_scatter_are_solved_on_one_compliance(case, monkeypatch):
     study = design_study(request.space, request.torques, [], StageClock(), Run(), request.checked)
     assembled, solved = PairContact._assembled, evaluator.solve_contact
 
-    def counted_positions(own: PairContact, candidates: Any, couple: bool) -> Any:
+    def counted_positions(own, candidates, couple):
         counts["compliance"] += candidates.position.size
         return assembled(own, candidates, couple)
 
-    def counted_points(problem: Any, load: Any) -> Any:
+    def counted_points(problem, load):
         counts["pairs"] += problem.candidates.position.size * load.size
         return solved(problem, load)
 
@@ -174,13 +172,12 @@ def test_a_pair_of_scatter_is_solved_once_however_it_is_misaligned(misalignment)
 def test_contacts_of_a_deflection_come_with_their_errors(monkeypatch):
     own = deflect.predicted_designs
 
-    def priced(checked: Any, cache: Path | None) -> PredictedDesigns:
+    def priced(checked, cache):
         return own(checked, cache)._replace(design=1.0, errors=2.0, across_face=True)
 
     monkeypatch.setattr(deflect, "predicted_designs", priced)
     scene, folder = scene_of(EXAMPLES / "flexible_shafts_scene.toml")
     cost = study_cost(STUDIES["deflect"], scene, folder, STUDIES["deflect"].inputs())
-    assert cost is not None
     parts = {part.name: part for part in cost.parts}
     assert parts["contacts"].piece_seconds == 3.0
     assert parts["deflections"].pieces == 4  # of one load case: before, and in three passes
@@ -262,7 +259,6 @@ def test_a_study_costs_its_runs_and_the_contact_of_other_flanks(samples, monkeyp
     for path, contacts in (("loads.brake.torque_n_m", 0), ("meshes.mesh.case.pair.pinion.tip_relief_um", 4)):
         inputs = validated(study.inputs, study_inputs(4, path, samples))
         cost = study_cost(study, scene, folder, inputs)
-        assert cost is not None
         pieces = {part.name: part.pieces for part in cost.parts}
         assert pieces["runs"] == 4 * samples
         assert pieces.get("contacts", 0) == contacts
@@ -285,7 +281,7 @@ def test_a_complaint_costs_its_lines_at_one_speed_and_of_a_case_next_to_nothing(
 
 
 @pytest.fixture
-def housed(tmp_path: Path) -> Path:
+def housed(tmp_path):
     """A folder with a scene in a housing with a surface, and its case."""
     scene = write_housed_scene(tmp_path) / "scene.json"
     table = json.loads(scene.read_text())
@@ -319,7 +315,7 @@ def test_the_band_of_a_sound_costs_as_many_responses_as_it_has(housed, monkeypat
     responses: list[float] = []
     forced = sound_band_module.forced_power
 
-    def counted(*values: Any) -> Any:
+    def counted(*values):
         responses.append(1.0)
         return forced(*values)
 
@@ -330,7 +326,6 @@ def test_the_band_of_a_sound_costs_as_many_responses_as_it_has(housed, monkeypat
     part = scene.housings[0].model_copy(update={"feet": (foot,)})
     mounted = scene.model_copy(update={"housings": (part,)})
     stands, hangs = (study_cost(study, own, folder, inputs) for own in (scene, mounted))
-    assert stands is not None and hangs is not None
     assert (stands.parts[-1].pieces, hangs.parts[-1].pieces) == (len(responses), len(responses) + 2)
     assert study_cost(study, scene, folder, alone) == StudyCost(stands.parts[:-1])
 
@@ -342,7 +337,7 @@ def test_the_lines_of_a_sound_are_within_twice_those_that_boundary_elements_corr
     inputs = validated(study.inputs, fields)
     panels: list[int] = []
 
-    def by_monopoles(_model: Any, hull: Any, *of: Any) -> Any:
+    def by_monopoles(_model, hull, *of):
         panels.append(len(hull.triangles))
         return ElementalRadiators().resistance(hull, *of)
 
@@ -360,9 +355,8 @@ def test_the_lines_of_a_sound_are_within_twice_those_that_boundary_elements_corr
 def test_more_points_have_more_lines_up_to_the_most(housed):
     study, (scene, folder) = STUDIES["noise"], scene_of(housed)
 
-    def pieces(**fields: Any) -> float:
+    def pieces(**fields):
         cost = study_cost(study, scene, folder, validated(study.inputs, {"speed_rpm": SPEEDS[:6], **fields}))
-        assert cost is not None
         return next((part.pieces for part in cost.parts if "boundary" in part.name), 0.0)
 
     assert [pieces(orders=6), pieces(speed_rpm=SPEEDS, orders=10)] == [3, 4]
@@ -380,7 +374,6 @@ def test_a_change_costs_two_contacts_a_pair_and_two_of_the_designs():
     for samples in (10, 40):
         inputs = validated(study.inputs, CHANGE | {"tolerances": {"samples": samples}})
         cost = study_cost(study, scene, folder, inputs)
-        assert cost is not None
         assert [part.pieces for part in cost.parts] == [1, 2 * samples + 2]
 
 
@@ -389,7 +382,7 @@ def test_a_scene_is_assembled_once_for_all_verbs_that_ask_of_it(monkeypatch):
     scene = scene.model_copy(update={"run": scene.run.model_copy(update={"duration_s": 0.0123})})
     resolved: list[float | None] = []
 
-    def counted(own: Scene) -> System:
+    def counted(own):
         resolved.append(own.highest_frequency)
         return assemble(own)
 
@@ -474,11 +467,11 @@ def test_the_status_checks_each_case_of_a_unit_once(tmp_path, monkeypatch):
     decisions: list[str] = []
     checked, decision = CheckedCase._checked, plan._decision
 
-    def checked_and_counted(own: CheckedCase, **how: bool) -> Any:
+    def checked_and_counted(own, **how):
         checks[own.case.model_dump_json(), str(how)] += 1
         return checked(own, **how)
 
-    def decided_and_counted(own: CheckedCase, cache: Path | None) -> Any:
+    def decided_and_counted(own, cache):
         decisions.append(own.case.model_dump_json())
         return decision(own, cache)
 

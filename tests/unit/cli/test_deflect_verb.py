@@ -27,11 +27,7 @@ from lineofaction.gearbox.studies.deflect.figures import optimization_inputs, wr
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks, Outline
 from lineofaction.gearbox.studies.deflect.run import RUN
 from lineofaction.gearbox.studies.optimize import Inputs as OptimizeInputs
-from lineofaction.report.deflection.deflect import (
-    PAGE,
-    _force_table,
-    _meshes_worst_first,
-)
+from lineofaction.report.deflection.deflect import PAGE, _force_table, _meshes_worst_first
 from lineofaction.report.deflection.gearbox_drawing import _exaggeration
 from lineofaction.report.document import write_report
 from lineofaction.report.drawing.figure import Table, number
@@ -163,7 +159,7 @@ def flanks_of(case: Any, mesh: Any) -> MeshFlanks:
 
 
 @pytest.fixture(scope="module")
-def result() -> GearboxDeflection:
+def result():
     """The two stages under four cases, with flanks as `flanks_of` makes them."""
     scene = two_stages()
     found = deflect(scene, CASES, 3)
@@ -329,8 +325,8 @@ def test_no_life_is_said_with_its_reason(result):
 
 
 def test_forces_within_rounding_are_zero(result):
-    def axial(force: float) -> Callable[[BearingLoad], BearingLoad]:
-        def changed(load: BearingLoad) -> BearingLoad:
+    def axial(force):
+        def changed(load):
             return replace(load, force=np.array([*load.force[:2], force, 0.0, 0.0]))
 
         return changed
@@ -342,19 +338,12 @@ def test_forces_within_rounding_are_zero(result):
 
 
 def test_displacements_within_rounding_are_zero(result):
-    def clear(play: float) -> Callable[[BearingLoad], BearingLoad]:
+    def clear(play):
         return lambda load: replace(load, clearance=np.full(5, play))
 
     noisy, small = (with_bearings(result, clear(play)) for play in (1e-19, 1e-12))
     assert {row[6] for row in tables(noisy)[-2].rows} == {"0"}
     assert {float(row[6]) for row in tables(small)[-2].rows} == {1.41e-6}
-
-
-def test_a_long_life_has_three_digits(result):
-    long = with_bearings(result, lambda load: replace(load, rating_life=1.23456e10))
-    hours = RUN.figures(long)["bearings"][0]["rating_life_hours"]
-    assert hours > 1e5
-    assert len(tables(long)[-1].rows[0][2].rstrip("0")) == 3
 
 
 ROTOR = Path(__file__).parents[3] / "examples" / "jeffcott_scene.toml"

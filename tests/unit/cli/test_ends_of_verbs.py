@@ -4,18 +4,12 @@ import re
 from pathlib import Path
 
 import pytest
-from click import Context
 from command_line import loa
 from small_table import small_table
-from typer.main import get_command
 
-from lineofaction.cli.commands import app
 from lineofaction.client import LineOfActionClient
-from lineofaction.gearbox.registry import STUDIES
 
 SPUR = Path(__file__).parents[3] / "examples" / "palermo_spur_20_20.toml"
-LOA = get_command(app)
-VERBS = LOA.list_commands(Context(LOA))
 COARSE = ("--level", "draft", "--set", "accuracy.positions=16")
 
 
@@ -54,11 +48,3 @@ def test_a_fetched_result_ends_with_its_figures(tmp_path, monkeypatch):
     assert results[0] == f"database {key}"
     assert [line.partition(" STE at ")[0] for line in results[1:]] == ["mean", "peak-to-peak"]
     assert written == f"written to {file}"
-
-
-def test_the_help_lists_every_verb_once_in_a_group_with_its_whole_sentence():
-    groups = loa("--help").stdout.partition("Start:\n")[2].partition("\n\n  Start with")[0]
-    listed = re.findall(r"^  ([a-z-]+)  +\S", groups, re.M)
-    assert sorted(listed) == sorted(VERBS)
-    assert "..." not in groups
-    assert " ".join(STUDIES["noise"].description.split()) in " ".join(groups.split())

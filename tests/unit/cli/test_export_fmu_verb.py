@@ -2,7 +2,6 @@
 
 import re
 import zipfile
-from pathlib import Path
 
 import pytest
 from command_line import loa, printed
@@ -10,7 +9,7 @@ from small_table import BASE_RADIUS, small_table
 
 
 @pytest.fixture
-def database(tmp_path: Path) -> Path:
+def database(tmp_path):
     file = tmp_path / "ste.nc"
     small_table().to_netcdf(file)
     return file

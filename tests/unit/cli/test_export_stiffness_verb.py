@@ -14,7 +14,7 @@ FORCE = 100.0 / BASE_RADIUS
 
 
 @pytest.fixture
-def table(tmp_path: Path) -> Path:
+def table(tmp_path):
     file = tmp_path / "ste.nc"
     small_table().to_netcdf(file)
     return file

@@ -32,7 +32,7 @@ def test_a_run_becomes_a_universal_file_or_a_table(tmp_path):
 
 
 @pytest.fixture
-def small(tmp_path: Path) -> Path:
+def small(tmp_path):
     file = tmp_path / "small.toml"
     file.write_text(SMALL)
     return file

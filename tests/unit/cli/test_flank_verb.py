@@ -1,7 +1,6 @@
 """``loa flank`` and ``loa report --flank``: what they write and print, and how they refuse."""
 
 import json
-from pathlib import Path
 
 import pytest
 from command_line import loa, printed
@@ -17,7 +16,7 @@ SMALL = spur_case(torques=[50, 100, 200], model="plane_strain", positions=16)
 
 
 @pytest.fixture
-def small(tmp_path: Path) -> Path:
+def small(tmp_path):
     file = tmp_path / "small.toml"
     file.write_text(SMALL)
     return file
@@ -108,7 +107,7 @@ def test_a_submission_that_cannot_be_is_one_line(small, arguments, said):
 def test_a_submission_names_its_process_and_inputs(small, monkeypatch):
     asked: list[tuple[str, dict[str, object]]] = []
 
-    def submit(_client: LineOfActionClient, process: str, inputs: dict[str, object]) -> JobState:
+    def submit(_client, process, inputs):
         asked.append((process, inputs))
         return JobState("1", process, "accepted", "", "", 0, 0)
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from command_line import loa
 from matplotlib.path import Path as Polygon
+from repository import EXAMPLES
 from typer.testing import Result
 
 from fe_contact.geometry.flank_tolerances import helix_tolerance, profile_tolerance
@@ -19,7 +20,6 @@ from lineofaction.gearbox.schemas.toml import toml_text
 from lineofaction.report.drawing.figure import Figure, Panel
 from lineofaction.report.pair import pair_drawing
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 SPUR, HELICAL, INTERNAL = (
     EXAMPLES / f"{name}.toml" for name in ("palermo_spur_20_20", "sensitivity_automotive", "internal_gear")
 )

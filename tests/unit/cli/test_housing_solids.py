@@ -50,7 +50,7 @@ SIDES = [
 
 
 @pytest.fixture(scope="module")
-def shared(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def shared(tmp_path_factory):
     """A folder with the STEP file of the block, and the cache of its mesh."""
     folder = tmp_path_factory.mktemp("solid")
     write_block(folder / "block.step")
@@ -58,7 +58,7 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def folder(tmp_path: Path, shared: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path, shared, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(shared / "cache"))
     (tmp_path / "block.step").write_bytes((shared / "block.step").read_bytes())
     return tmp_path
@@ -315,7 +315,7 @@ COST = vars(WorkCost(24.6, 1.07e9, 25.1, None))
 
 
 @pytest.fixture(scope="module")
-def two_bores(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def two_bores(tmp_path_factory):
     return write_housed_scene(tmp_path_factory.mktemp("costs"), modes=6)
 
 

@@ -11,9 +11,8 @@ from command_line import loa
 from typer.testing import Result
 
 from bounds.error_digits import with_error
-from fe_contact import AllowedError, FlankModification, Gear, GearPair, SteDatabase, analyze
+from fe_contact import AllowedError, AnalysisOptions, FlankModification, Gear, GearPair, TableAxes, analyze
 from fe_contact.analysis.run_plan import plan_run
-from fe_contact.options import AnalysisOptions, TableAxes
 from lineofaction.cli.tolerance_lines import tolerance_lines, tolerance_warnings
 from lineofaction.gearbox.convert.answers import draft_line
 from lineofaction.gearbox.convert.effects import assumption_lines, ledger_table, run_lines
@@ -139,7 +138,7 @@ PASS = RAN | {"cpu_seconds": 0.5, "used": 3.0, "refined": []}
 
 
 @pytest.fixture(scope="module")
-def draft() -> SteDatabase:
+def draft():
     pair = GearPair(*[Gear(20, 2e-3, 12e-3, 20e-3)] * 2, 40e-3)
     return analyze(pair, torques=[2.0, 5.0], level="draft", model="plane_strain", positions=16)
 
@@ -203,7 +202,6 @@ def test_json_holds_the_warning_and_the_passes(tmp_path):
 def test_the_draft_is_one_line_at_the_highest_load(draft):
     line = draft_line(draft, "slices 15 -> 23")
     found = re.fullmatch(r"draft: mean (.+) ± .+ µm, p-p (.+) ± .+ µm at 5 N m \(refining (.+)\)", line)
-    assert found is not None
     assert float(found[1]) == pytest.approx(1e6 * draft.mean(torque=5.0).value, rel=1e-3)
     assert float(found[2]) == pytest.approx(1e6 * draft.peak_to_peak(torque=5.0).value, rel=1e-3)
     assert found[3] == "slices 15 -> 23"

@@ -2,8 +2,6 @@
 
 import csv
 import math
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -32,12 +30,12 @@ ABSENT = {
 
 
 @pytest.fixture(scope="module")
-def scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def scene(tmp_path_factory):
     return measured_scene(tmp_path_factory.mktemp("measured"))
 
 
 @pytest.fixture(scope="module")
-def answer(scene: Path) -> Any:
+def answer(scene):
     told = printed("vibration", scene, *SPEEDS)
     check_declared("vibration", told)
     return told

@@ -30,7 +30,7 @@ def written(kind: str, folder: Path, *options: object) -> Path:
 
 
 def case(kind: str, **wanted: float) -> Case:
-    return validated(Case, tomllib.loads(text_of_kind(kind, PairWishes(**wanted))))  # type: ignore[arg-type]
+    return validated(Case, tomllib.loads(text_of_kind(kind, PairWishes(**wanted))))
 
 
 @pytest.mark.parametrize("kind", CASES)

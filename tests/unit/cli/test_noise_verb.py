@@ -2,11 +2,9 @@
 
 import re
 import sys
-from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
 from html import escape
-from pathlib import Path
 
 import meshlane
 import numpy as np
@@ -44,7 +42,7 @@ def housing():
 
 
 @pytest.fixture(scope="module", autouse=True)
-def _once() -> Iterator[None]:
+def _once():
     """Compute what equal calls ask for once; pictures of surfaces and hulls of lines are coarse."""
     with computed_once(run), pytest.MonkeyPatch.context() as patch:
         patch.setattr(exact_lines, "COARSE", Coarseness(EDGES, 100))
@@ -53,7 +51,7 @@ def _once() -> Iterator[None]:
 
 
 @pytest.fixture
-def scene(tmp_path: Path) -> Path:
+def scene(tmp_path):
     file = scene_file(tmp_path)
     housing().to_netcdf(tmp_path / "case.nc")
     file.write_text(f'{file.read_text()}[[housings]]\nname = "case"\nmodes_file = "case.nc"\n')

@@ -1,9 +1,7 @@
 """``loa optimize``: tables, files of every kind, and a design that the case file takes as it is."""
 
 import json
-from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
 
 import pytest
 from command_line import loa
@@ -29,7 +27,7 @@ positions = 16
 
 
 @pytest.fixture
-def files(tmp_path: Path) -> tuple[Path, Path]:
+def files(tmp_path):
     case, study = tmp_path / "case.toml", tmp_path / "study.toml"
     case.write_text(CASE.format(pinion="", wheel=""), encoding="utf-8")
     study.write_text(STUDY, encoding="utf-8")
@@ -81,8 +79,8 @@ def test_an_interrupted_search_writes_its_best_and_says_so(files, tmp_path, monk
     asked = [0]
 
     @contextmanager
-    def interrupted_after_twelve() -> Iterator[Callable[[], bool]]:
-        def cancel() -> bool:
+    def interrupted_after_twelve():
+        def cancel():
             asked[0] += 1
             return asked[0] > 13  # once before the start
 

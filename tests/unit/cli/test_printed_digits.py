@@ -16,11 +16,11 @@ import pytest
 from command_line import loa
 from drawn_cases import turn
 from printed_numbers import contradictions, faults, text_of_page
+from repository import EXAMPLES
 
 from lineofaction.gearbox.schemas.toml import toml_text
 
 Json = dict[str, Any]
-EXAMPLES = Path(__file__).parents[3] / "examples"
 DRAFT: Json = {"level": "draft", "positions": 16}
 PLANE: Json = {"level": "draft", "model": "plane_strain"}
 STANDARD: Json = {"level": "standard", "model": "plane_strain"}

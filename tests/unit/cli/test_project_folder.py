@@ -4,10 +4,10 @@ import json
 import os
 import shutil
 from pathlib import Path
-from typing import Any
 
 import pytest
 from command_line import loa, printed
+from repository import EXAMPLES
 from scene_files import scene_file
 from spur_case import spur_case
 
@@ -23,13 +23,10 @@ from lineofaction.gearbox.project import (
     tables_in,
 )
 from lineofaction.gearbox.registry import STUDIES
-from lineofaction.gearbox.study import Study
-
-EXAMPLES = Path(__file__).parents[3] / "examples"
 
 
 @pytest.fixture
-def rotor(tmp_path: Path) -> Path:
+def rotor(tmp_path):
     """A folder with a scene under another name, and files that are none of the program's."""
     folder = tmp_path / "rotor"
     folder.mkdir()
@@ -159,7 +156,7 @@ def test_the_status_refuses_nothing_that_is_there_and_says_what_lacks(rotor):
 
 
 @pytest.fixture
-def unit(rotor: Path) -> Path:
+def unit(rotor):
     """A folder with two cases and load cases beside its scene."""
     for stage in ("first", "second"):
         (rotor / f"{stage}.toml").write_text(spur_case(torques=[100.0]))
@@ -203,7 +200,7 @@ def test_a_verb_takes_a_folder_and_does_each_of_its_cases(words, unit, monkeypat
 def test_a_study_takes_a_folder_and_names_its_result_by_the_case(words, unit, monkeypatch):
     done: list[list[str]] = []
 
-    def study(study: Study, options: dict[str, Any]) -> None:
+    def study(study, options):
         files = options[study.argument] if study.several else [options[study.argument]]
         done.append([f"{file.path.name}: {result_name(study, file.part)}" for file in files])
 

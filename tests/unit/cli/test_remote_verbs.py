@@ -1,11 +1,11 @@
 """The verbs of a service's jobs: what a person reads, and what a program does."""
 
 import json
-from pathlib import Path
 from typing import Any
 
 import command_line
 import pytest
+from repository import ROOT
 from small_table import small_table
 from stored_jobs import state
 from typer.testing import Result
@@ -14,7 +14,6 @@ from lineofaction.client import JobState, LineOfActionClient
 from lineofaction.client import Result as Reference
 from lineofaction.gearbox.problems import ResultNotReady
 
-ROOT = Path(__file__).parents[3]
 CASE = ROOT / "examples" / "palermo_spur_20_20.toml"
 ADDRESS = "http://127.0.0.1:9"
 KEY = "ab" * 32
@@ -29,10 +28,10 @@ def job(identifier: str, status: str, **facts: Any) -> JobState:
 
 
 @pytest.fixture
-def listed(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
+def listed(monkeypatch):
     asked: list[dict[str, Any]] = []
 
-    def jobs(_client: LineOfActionClient, **wanted: Any) -> list[JobState]:
+    def jobs(_client, **wanted):
         asked.append(wanted)
         begun = {"remaining_s": 240.0, "created": "2026-05-06T07:08:09.123456Z", "subject": "20/20"}
         done = job("3-4", "successful", title="EV", subject="31/41")
@@ -66,7 +65,7 @@ def test_dismiss_says_what_became_of_the_job(monkeypatch):
 
 
 def test_ctrl_c_while_waiting_says_how_to_go_on_and_how_to_end(monkeypatch):
-    def interrupted(*_arguments: object) -> None:
+    def interrupted(*_arguments):
         raise KeyboardInterrupt
 
     monkeypatch.setattr(LineOfActionClient, "submit", lambda *_: job("1-2", "accepted"))
@@ -83,7 +82,7 @@ def test_fetch_waits_if_it_is_to_and_says_so_if_not(tmp_path, monkeypatch):
     stored, file = tmp_path / "stored.nc", tmp_path / "fetched.nc"
     small_table().to_netcdf(stored)
 
-    def not_ready(*_arguments: object) -> None:
+    def not_ready(*_arguments):
         raise ResultNotReady("Job a-1 is running.")
 
     monkeypatch.setattr(LineOfActionClient, "result", not_ready)

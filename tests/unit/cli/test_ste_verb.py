@@ -2,7 +2,6 @@
 
 import math
 import re
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,14 +18,14 @@ TORQUE = 1.0
 
 
 @pytest.fixture(scope="module")
-def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def file(tmp_path_factory):
     file = tmp_path_factory.mktemp("table") / "ste.nc"
     small_table().to_netcdf(file)
     return file
 
 
 @pytest.fixture(scope="module")
-def curve(file: Path) -> Json:
+def curve(file):
     """A curve whose errors are small enough for some of its harmonics to be above them."""
     found = curve_json(SteDatabase.from_netcdf(file), torque_n_m=TORQUE)
     smaller = {name: 1e-3 * np.array(value) for name, value in found.items() if "error" in name}
@@ -34,7 +33,7 @@ def curve(file: Path) -> Json:
 
 
 @pytest.fixture(scope="module")
-def answer(file: Path, curve: Json) -> list[str]:
+def answer(file, curve):
     return list(_answer(SteDatabase.from_netcdf(file), f"report {file}", curve))
 
 
@@ -52,7 +51,6 @@ def test_figures_are_those_of_the_curve_with_two_digits_of_the_error(answer, cur
     for name, key in (("mean", "mean_um"), ("peak to peak", "peak_to_peak_um")):
         (line,) = (line for line in answer if line.startswith(f"  {name} "))
         found = re.match(rf"  {name} +([\d.]+) +± ([\d.]+) µm", line)
-        assert found is not None
         places = len(found[2].partition(".")[2])
         assert places == len(found[1].partition(".")[2]) and 9.5 < float(found[2]) * 10.0**places < 100.0
         last = 0.51 * 10.0**-places
@@ -92,7 +90,7 @@ def test_positions_are_printed_where_they_are_requested(file):
 
 
 def test_the_error_of_a_point_names_the_part_of_interpolation(file, curve):
-    def said(**bands: Any) -> str:
+    def said(**bands):
         lines = _answer(SteDatabase.from_netcdf(file), "report", curve | bands)
         return next(line.strip() for line in lines if "error of a point" in line)
 

@@ -1,7 +1,6 @@
 """What is implausible comes before the numbers, into JSON and files, and decides the exit code if asked."""
 
 import json
-from pathlib import Path
 
 import h5netcdf
 import pytest
@@ -34,7 +33,7 @@ MESSAGE = "pair.pinion.tip_relief_um = 0.02 µm: "
 
 
 @pytest.fixture
-def case(tmp_path: Path) -> Path:
+def case(tmp_path):
     file = tmp_path / "case.toml"
     file.write_text(CASE.format(relief="tip_relief_um = 0.02\ntip_relief_length_mm = 1.5"))
     return file

@@ -10,17 +10,17 @@ import tomllib
 from dataclasses import dataclass
 from functools import wraps
 from pathlib import Path
-from typing import Any, get_args
+from typing import get_args
 
 import numpy as np
 import pytest
 from command_line import loa
 from declared_figures import check_declared
+from repository import EXAMPLES
 from scene_files import SCENE, scene_file
 from spur_case import spur_case
 
-from dynamics.results import RunResult
-from dynamics.simulation import simulate
+from dynamics import RunResult, simulate
 from dynamics.study import QUANTITIES, Design, Levels, Response, Study, StudyTask, responses_of, study
 from dynamics.study.run_study import _run_batch
 from fe_contact.ste import PairGeometry
@@ -40,7 +40,6 @@ from lineofaction.gearbox.studies.study.scenes import VariedScene, places_of, wi
 from lineofaction.gearbox.subjects import scene_of, with_inline_cases
 from lineofaction.report.document import write_report
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 STUDY = """
 samples = 3
 seed = 5
@@ -67,7 +66,7 @@ def study_file(folder: Path, text: str = STUDY) -> Path:
 
 
 @pytest.fixture
-def scene(tmp_path: Path) -> Path:
+def scene(tmp_path):
     return scene_file(tmp_path)
 
 
@@ -81,7 +80,7 @@ class Studied:
 
 
 @pytest.fixture(scope="module")
-def studied(tmp_path_factory: pytest.TempPathFactory) -> Studied:
+def studied(tmp_path_factory):
     folder = tmp_path_factory.mktemp("studied")
     scene, out = scene_file(folder), folder / "out"
     with pytest.MonkeyPatch.context() as patch:
@@ -124,7 +123,7 @@ def test_a_killed_study_goes_on_where_it_was(scene, tmp_path):
     kept = tmp_path / "cache" / "lineofaction" / "studies"
     decided = 4  # points at which effects are decided before the runs
 
-    def finished() -> list[Path]:
+    def finished():
         return [file for file in kept.glob("*/*") if file.suffix != ".partial"]
 
     with subprocess.Popen([sys.executable, "-m", "lineofaction.cli", *arguments], env=os.environ) as running:
@@ -138,7 +137,7 @@ def test_a_killed_study_goes_on_where_it_was(scene, tmp_path):
     done = []
 
     @wraps(_run_batch)
-    def counted(task: Any, batch: Any) -> Any:
+    def counted(task, batch):
         done.append(len(batch))
         return _run_batch(task, batch)
 
@@ -249,7 +248,7 @@ RESPONSES = (Response("dte_peak_to_peak"), Response("peak_mesh_force"))
 
 
 @pytest.fixture(scope="module")
-def written(tmp_path_factory: pytest.TempPathFactory) -> SceneInput:
+def written(tmp_path_factory):
     folder = tmp_path_factory.mktemp("flanks")
     (folder / "case.toml").write_text(SPUR_CASE, encoding="utf-8")
     text = SCENE.format(duration=0.05, speed=300.0, rate=20e3)
@@ -259,9 +258,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> SceneInput:
 
 
 @pytest.fixture(scope="module")
-def scenes(
-    written: SceneInput, tmp_path_factory: pytest.TempPathFactory, condensed_once: None
-) -> VariedScene:
+def scenes(written, tmp_path_factory, condensed_once):
     case = written.meshes[0].case
     assert case is not None
     database = computed_table(CheckedCase(case), lambda _stage, _fraction: None)

@@ -1,7 +1,6 @@
 """``loa sweep``: names as in the case file or short, the same numbers in every form, three lines."""
 
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -22,14 +21,14 @@ OVER = "torque=100:200:50,pinion.tip_relief=0:20:10"
 
 
 @pytest.fixture
-def file(tmp_path: Path) -> Path:
+def file(tmp_path):
     file = tmp_path / "case.toml"
     file.write_text(CASE, encoding="utf-8")
     return file
 
 
 @pytest.fixture
-def case(file: Path) -> CheckedCase:
+def case(file):
     return CheckedCase(read_model(Case, InputFile(file)))
 
 

@@ -17,7 +17,6 @@ from spur_case import spur_case
 from lineofaction.cli.commands import app
 from lineofaction.cli.output import EMPHASIS, console, print_parts, table
 from lineofaction.cli.verb_warnings import in_lines
-from lineofaction.cli.verbs import of_imports
 from lineofaction.cli.verbs.of_studies import GROUPS, StudyGroup
 from lineofaction.report.presentation import effect_text
 
@@ -42,7 +41,7 @@ ANSWERS: dict[str, tuple[tuple[str, ...], str]] = {
 
 
 @pytest.fixture(scope="module")
-def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+def files(tmp_path_factory):
     folder = tmp_path_factory.mktemp("terminal")
     project = folder / "unit"
     project.mkdir()
@@ -155,7 +154,7 @@ def test_decimal_points_of_a_column_stand_below_each_other(capsys):
     head, *lines = capsys.readouterr().out.splitlines()
     assert head.split() == ["mesh", "CPU", "s", "mean", "µm", "p-p"]
     (whole, mean, part), (point, other, lower) = (
-        [re.search(mark, line).start() for mark in marks]  # type: ignore[union-attr]
+        [re.search(mark, line).start() for mark in marks]
         for line, marks in zip(
             lines, ([r" 16 ", r"\.035", r"-11"], [r"\.25", r"\.6 ", r"\.2345 %"]), strict=False
         )
@@ -261,16 +260,3 @@ def check_help(columns: int) -> None:
 def test_the_help_has_every_verb_in_one_group_and_cuts_no_line(columns, monkeypatch):
     monkeypatch.setenv("COLUMNS", str(columns))
     check_help(columns)
-
-
-@pytest.mark.parametrize("group", [None, "further"])
-def test_a_verb_in_no_group_fails_the_check(group, monkeypatch):
-    monkeypatch.setattr(of_imports.verbs.registered_commands[0], "rich_help_panel", group)
-    with pytest.raises(AssertionError, match="KeyError"):
-        check_help(80)
-
-
-def test_a_number_stays_with_its_unit_of_two_words(monkeypatch):
-    monkeypatch.setenv("COLUMNS", "30")
-    lines = in_lines("largest peak-to-peak STE at 27 N m and 28 µm", Terminal()).splitlines()
-    assert lines == ["largest peak-to-peak STE at", "27 N m and 28 µm"]

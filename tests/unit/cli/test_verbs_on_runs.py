@@ -27,7 +27,7 @@ def told(*arguments: object) -> Any:
 
 
 @pytest.fixture(scope="module")
-def scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def scene(tmp_path_factory):
     """A scene with a housing, run up, in `run.nc` beside it, and at a constant speed, in `even.nc`."""
     folder = tmp_path_factory.mktemp("runs")
     file = scene_file(folder, duration=0.6)

@@ -2,7 +2,6 @@
 
 import json
 import re
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -23,12 +22,12 @@ SPEEDS = ("--speed-rpm", "1500:3000:250", "--orders", 4)
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def folder(tmp_path_factory):
     return write_housed_scene(tmp_path_factory.mktemp("vibration"), modes=6)
 
 
 @pytest.fixture(scope="module", autouse=True)
-def _once() -> Iterator[None]:
+def _once():
     """Compute what equal calls ask for once; pictures of surfaces are coarse."""
     with computed_once(run), pytest.MonkeyPatch.context() as patch:
         patch.setattr(surface_view, "ACROSS", 90)
@@ -36,12 +35,12 @@ def _once() -> Iterator[None]:
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("cache")
 
 
 @pytest.fixture
-def scene(folder: Path, cache: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def scene(folder, cache, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(cache))
     return folder / "scene.json"
 

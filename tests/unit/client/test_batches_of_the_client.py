@@ -1,7 +1,5 @@
 """Batches from both clients, against the service itself with fake work."""
 
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -19,7 +17,7 @@ WISHES: list[dict[str, Any]] = [{"text": "b"}, {"text": "a"}, {"mode": "mesh"}]
 
 
 @pytest.fixture
-def address(tmp_path: Path) -> Iterator[str]:
+def address(tmp_path):
     with served(create_app(Settings(data_directory=tmp_path / "service", workers=2), REGISTRY)) as port:
         yield f"http://127.0.0.1:{port}"
 
@@ -28,7 +26,7 @@ def test_both_clients_get_the_jobs_of_a_batch_in_order(address, tmp_path):
     assert "fake" not in offers()  # its results are read as files
     jobs = [{"wish": wish} for wish in WISHES]
 
-    def blocking() -> tuple[list[str], list[str], int]:
+    def blocking():
         with LineOfActionClient(address, cache_dir=tmp_path / "a") as client:
             batch = client.batch(client.submit_batch("fake", jobs).id)
             progress = [event.progress for event in batch.events()]
@@ -42,7 +40,7 @@ def test_both_clients_get_the_jobs_of_a_batch_in_order(address, tmp_path):
             assert progress == sorted(progress)
             return texts, [job.state.status for job in ends], batch.state.children
 
-    async def awaited() -> tuple[list[str], list[str], int]:
+    async def awaited():
         async with AsyncLineOfActionClient(address, cache_dir=tmp_path / "b") as client:
             batch = await client.batch((await client.submit_batch("fake", jobs)).id)
             async for event in batch.events():

@@ -3,9 +3,7 @@
 import json
 import subprocess
 import sys
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 from typing import Any
 
 import httpx2
@@ -34,7 +32,7 @@ KEY = "ab" * 32
 
 
 @pytest.fixture
-def service(tmp_path: Path) -> Iterator[TestClient]:
+def service(tmp_path):
     """A running app with the fake and one table in its store."""
     app = create_app(Settings(data_directory=tmp_path / "data"), REGISTRY)
     file = tmp_path / "table.nc"
@@ -45,7 +43,7 @@ def service(tmp_path: Path) -> Iterator[TestClient]:
 
 
 @pytest.fixture
-def client(service: TestClient, tmp_path: Path) -> Iterator[LineOfActionClient]:
+def client(service, tmp_path):
     transport = service._transport
     with LineOfActionClient("http://testserver", cache_dir=tmp_path / "tables", transport=transport) as found:
         yield found
@@ -63,14 +61,10 @@ def test_submit_wait_result(client):
     assert client.fetch_file(result.key).read_text() == "x"
 
 
-def test_the_table_that_arrives_is_the_table_that_is_stored(client):
-    assert client.fetch(KEY).identical(small_table())
-
-
 def test_a_cached_table_needs_no_service(client, tmp_path):
     client.fetch(KEY)
 
-    def silent(_request: httpx2.Request) -> httpx2.Response:
+    def silent(_request):
         raise AssertionError("the cache was not used")
 
     assert against(silent, tmp_path / "tables").fetch(KEY).identical(small_table())
@@ -83,7 +77,7 @@ def test_a_damaged_cache_is_not_used(client):
 
 
 def test_a_file_damaged_on_its_way_is_refused_and_not_kept(tmp_path):
-    def damaged(_request: httpx2.Request) -> httpx2.Response:
+    def damaged(_request):
         return httpx2.Response(200, content=b"half of", headers={"Content-Digest": "sha-256=:AAAA:"})
 
     with pytest.raises(DamagedFile):
@@ -114,7 +108,7 @@ def test_waiting_ends_after_the_time_given_and_the_job_goes_on(client):
 
 
 def test_a_bad_case_is_refused_before_anything_is_sent(tmp_path):
-    def silent(_request: httpx2.Request) -> httpx2.Response:
+    def silent(_request):
         raise AssertionError("something was sent")
 
     wrong = case() | {"load": {"torque_n_m": [float("nan")]}}
@@ -140,7 +134,7 @@ def test_unknown_results_and_jobs_are_not_found(client):
 def test_no_service_is_said_with_its_address_after_all_attempts(tmp_path):
     asked: list[str] = []
 
-    def refuses(request: httpx2.Request) -> httpx2.Response:
+    def refuses(request):
         asked.append(request.method)
         raise httpx2.ConnectError("refused")
 
@@ -155,7 +149,7 @@ def test_a_case_known_from_before_is_served_offline(tmp_path):
     online = [True]
     content = file.read_bytes()
 
-    def answer(request: httpx2.Request) -> httpx2.Response:
+    def answer(request):
         if not online[0]:
             raise httpx2.ConnectError("refused")
         if request.url.path.endswith("/results"):
@@ -219,7 +213,7 @@ def test_arrays_are_asked_as_lists_are(client):
 def test_threads_share_one_client(client):
     """Eight threads submit the same job, query and fetch: one computation, equal answers, sound files."""
 
-    def ask(number: int) -> tuple[str, bool, list[float]]:
+    def ask(number):
         result = client.wait(client.submit("fake", wish(text="shared")).id, interval=0.02)
         return (
             client.fetch_file(result.key).read_text(),

@@ -3,7 +3,6 @@
 import base64
 import hashlib
 import re
-from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
 from email.utils import format_datetime
 from itertools import pairwise
@@ -12,7 +11,7 @@ import httpx2
 import pytest
 from stored_jobs import against, state
 
-from lineofaction.client import JobState, LineOfActionClient
+from lineofaction.client import LineOfActionClient
 from lineofaction.client.problem_answers import problem_of
 from lineofaction.gearbox import problems
 from lineofaction.gearbox.problems import (
@@ -47,7 +46,7 @@ def results() -> httpx2.Response:
 def test_what_may_pass_is_asked_again_whatever_the_method(tmp_path, slept, method, status, again):
     asked: list[str] = []
 
-    def answer(request: httpx2.Request) -> httpx2.Response:
+    def answer(request):
         asked.append(request.method)
         return httpx2.Response(status, text="no")
 
@@ -63,7 +62,7 @@ def test_the_service_says_when_in_seconds_or_as_a_date(tmp_path, slept):
     past = format_datetime(datetime.now(UTC) - timedelta(days=1), usegmt=True)
     asked = iter(["3", later, past, "3600", "soon", None])
 
-    def answer(_request: httpx2.Request) -> httpx2.Response:
+    def answer(_request):
         when = next(asked)
         return seen("running") if when is None else httpx2.Response(503, headers={"Retry-After": when})
 
@@ -119,7 +118,7 @@ def test_address_and_key_come_from_the_environment(tmp_path, monkeypatch):
     monkeypatch.setenv("LOA_KEY", "secret")
     sent: list[httpx2.Request] = []
 
-    def answer(request: httpx2.Request) -> httpx2.Response:
+    def answer(request):
         sent.append(request)
         return seen("running")
 
@@ -151,7 +150,7 @@ def test_there_are_as_many_errors_as_the_tree_shows():
 def test_a_download_that_breaks_is_begun_again(tmp_path, slept):
     content, asked = b"0123456789" * 100_000, [0]
 
-    def pieces() -> Iterator[bytes]:
+    def pieces():
         asked[0] += 1
         if asked[0] < 3:
             yield b"9876543210" * 110_000
@@ -160,7 +159,7 @@ def test_a_download_that_breaks_is_begun_again(tmp_path, slept):
 
     digest = base64.b64encode(hashlib.sha256(content).digest()).decode()
 
-    def answer(_request: httpx2.Request) -> httpx2.Response:
+    def answer(_request):
         return httpx2.Response(200, content=pieces(), headers={"Content-Digest": f"sha-256=:{digest}:"})
 
     assert against(answer, tmp_path).fetch_file(KEY).read_bytes() == content
@@ -170,7 +169,7 @@ def test_a_download_that_breaks_is_begun_again(tmp_path, slept):
 def test_waiting_looks_often_at_first_and_never_more_than_a_tenth_of_the_time_late(tmp_path, slept):
     looks: list[float] = []
 
-    def answer(request: httpx2.Request) -> httpx2.Response:
+    def answer(request):
         if request.url.path.endswith("/results"):
             return results()
         looks.append(sum(slept))
@@ -187,7 +186,7 @@ def test_waiting_looks_often_at_first_and_never_more_than_a_tenth_of_the_time_la
 def test_a_restart_of_the_service_is_waited_out(tmp_path, slept):
     away = [True]
 
-    def answer(request: httpx2.Request) -> httpx2.Response:
+    def answer(request):
         if 1.0 < sum(slept) < 21.0:
             away.append(True)
             raise httpx2.ConnectError("refused")
@@ -202,7 +201,7 @@ def test_a_restart_of_the_service_is_waited_out(tmp_path, slept):
 
 
 def test_patience_has_an_end(tmp_path, slept):
-    def answer(_request: httpx2.Request) -> httpx2.Response:
+    def answer(_request):
         if sum(slept) > 1.0:
             raise httpx2.ConnectError("refused")
         return seen("running")
@@ -213,7 +212,7 @@ def test_patience_has_an_end(tmp_path, slept):
 
 
 def test_a_service_that_never_answered_is_told_at_once(tmp_path, slept):
-    def answer(_request: httpx2.Request) -> httpx2.Response:
+    def answer(_request):
         raise httpx2.ConnectError("refused")
 
     with pytest.raises(Unreachable):
@@ -231,11 +230,11 @@ def test_the_time_to_wait_is_kept_and_is_a_timeout(tmp_path, slept):
 def test_ctrl_c_leaves_the_job_and_says_so(tmp_path):
     methods: list[str] = []
 
-    def answer(request: httpx2.Request) -> httpx2.Response:
+    def answer(request):
         methods.append(request.method)
         return seen("running")
 
-    def interrupted(_state: JobState) -> None:
+    def interrupted(_state):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt) as caught:
@@ -248,7 +247,7 @@ def test_ctrl_c_leaves_the_job_and_says_so(tmp_path):
 def test_a_refusal_by_another_version_says_so(tmp_path, version, noted):
     refusal = BadInput.of("case.pair.news", 1, "left out").as_json()
 
-    def answer(request: httpx2.Request) -> httpx2.Response:
+    def answer(request):
         if request.url.path == "/v1/":
             return httpx2.Response(200, json={} if version is None else {"version": version})
         return httpx2.Response(422, json=refusal)
@@ -262,7 +261,7 @@ def test_a_refusal_by_another_version_says_so(tmp_path, version, noted):
 def test_a_full_queue_is_asked_again_before_it_is_told(tmp_path, slept):
     body = QueueFull("100 computations wait already.").as_json()
 
-    def full(_request: httpx2.Request) -> httpx2.Response:
+    def full(_request):
         return httpx2.Response(429, json=body, headers={"Retry-After": "7"})
 
     with pytest.raises(QueueFull, match="100 computations"):

@@ -41,13 +41,13 @@ def test_a_table_says_what_is_declared():
 
 def test_members_are_read_as_attributes_and_by_their_names():
     figures = figures_model("ablation").model_validate(ABLATION)
-    assert figures.nominal.mean_um == [1.0]  # type: ignore[attr-defined]
+    assert figures.nominal.mean_um == [1.0]
     assert figures["nominal"] == ABLATION["nominal"]
     for missing in ("nominals", "torque_n_m"):  # of a case alone
         with pytest.raises(KeyError):
             figures[missing]
     with pytest.raises(ValidationError):
-        figures.of = "scene"  # type: ignore[attr-defined]
+        figures.of = "scene"
 
 
 def test_what_a_later_service_adds_is_kept():

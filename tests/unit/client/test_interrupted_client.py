@@ -3,7 +3,6 @@
 import asyncio
 import json
 import time
-from collections.abc import Iterator
 from contextlib import aclosing
 from datetime import UTC, datetime, timedelta
 from email.utils import format_datetime
@@ -64,7 +63,7 @@ def test_a_map_ends_when_the_service_stays_away(tmp_path, slept):
 def test_a_full_queue_delays_a_map(tmp_path, slept):
     network, full = StoredJobs(), QueueFull("100 computations wait already.").as_json()
 
-    def answer(request: httpx2.Request) -> httpx2.Response:
+    def answer(request):
         if request.method == "POST" and sum(slept) < 40.0:
             return httpx2.Response(429, json=full, headers={"Retry-After": "7"})
         return network(request)
@@ -80,12 +79,12 @@ def test_a_restart_while_the_result_is_fetched_is_waited_out(tmp_path, slept):
         result = job.wait()
         begin = sum(slept)
 
-        def answer(request: httpx2.Request) -> httpx2.Response:
+        def answer(request):
             if sum(slept) - begin < 20.0:
                 raise httpx2.ConnectError("refused")
             return network(request)
 
-        client.driver._http._transport = httpx2.MockTransport(answer)  # type: ignore[assignment]
+        client.driver._http._transport = httpx2.MockTransport(answer)
         assert job.file().read_text() == "analyze-20"
     assert result.kind == "database"
 
@@ -122,7 +121,7 @@ def test_a_loop_left_early_dismisses_what_is_under_way(tmp_path):
 def test_an_awaited_loop_left_early_dismisses_what_is_under_way(tmp_path):
     network = Endless()
 
-    async def left() -> None:
+    async def left():
         async with awaited_against(network, tmp_path) as client:
             async with aclosing(client.analyze.map(map(case, range(13, 40)), concurrency=4)) as jobs:
                 async for job in jobs:
@@ -144,7 +143,7 @@ def noted(error: BaseException) -> set[str]:
 def test_ctrl_c_in_a_map_says_which_jobs_continue(tmp_path, monkeypatch, looks):
     network, pauses = Endless(), [0]
 
-    def stop(_seconds: float) -> None:
+    def stop(_seconds):
         pauses[0] += 1
         if pauses[0] > looks:
             raise KeyboardInterrupt
@@ -160,14 +159,14 @@ def test_ctrl_c_in_a_map_says_which_jobs_continue(tmp_path, monkeypatch, looks):
 def test_what_is_cancelled_says_which_jobs_continue(tmp_path):
     network = Endless()
 
-    async def cancelled() -> tuple[BaseException, BaseException]:
+    async def cancelled():
         async with awaited_against(network, tmp_path) as client:
 
-            async def mapped() -> None:
+            async def mapped():
                 async for _ in client.analyze.map(map(case, range(14, 40)), concurrency=3):
                     pass
 
-            async def waited() -> None:
+            async def waited():
                 await client.wait("analyze-99")
 
             errors = []
@@ -201,8 +200,8 @@ def test_a_clock_that_is_wrong_does_not_change_the_pause(tmp_path, slept, ahead)
 
 
 def test_events_that_are_interrupted_say_so_and_those_that_end_do_at_once(tmp_path, slept):
-    def stream(status: str, error: type[BaseException] | None) -> httpx2.Response:
-        def pieces() -> Iterator[bytes]:
+    def stream(status, error):
+        def pieces():
             yield b"data: " + json.dumps(state("j", status)).encode() + b"\n\n"
             if error is not None:
                 raise error
@@ -222,7 +221,7 @@ def test_a_body_that_ends_too_early_is_asked_for_again(tmp_path):
     asked: list[str] = []
 
     class Handler(BaseHTTPRequestHandler):
-        def do_GET(self) -> None:
+        def do_GET(self):
             asked.append(self.path)
             self.send_response(200)
             self.send_header("Content-Type", "application/json")
@@ -230,7 +229,7 @@ def test_a_body_that_ends_too_early_is_asked_for_again(tmp_path):
             self.end_headers()
             self.wfile.write(body if len(asked) > 1 else body[:20])
 
-        def log_message(self, *_args: object) -> None:
+        def log_message(self, *_args):
             """Say nothing."""
 
     server = ThreadingHTTPServer(("127.0.0.1", 0), Handler)

@@ -13,7 +13,7 @@ from lineofaction.report.document import stored_figures
 
 
 @pytest.fixture(scope="module")
-def answer(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+def answer(tmp_path_factory):
     file = tmp_path_factory.mktemp("table") / "table.nc"
     small_table().to_netcdf(file)
     found: dict[str, Any] = json.loads(json.dumps(stored_figures({"file": str(file)})))

@@ -144,17 +144,17 @@ HOSTILE = {
 
 
 @pytest.fixture
-def asked(monkeypatch: pytest.MonkeyPatch) -> list[httpx2.Request]:
+def asked(monkeypatch):
     """Requests of the command line, which the service in memory answers."""
     requests: list[httpx2.Request] = []
 
-    def answer(request: httpx2.Request) -> httpx2.Response:
+    def answer(request):
         requests.append(request)
         return service(request)
 
     plain: Callable[..., None] = BlockingDriver.__init__
 
-    def connect(driver: BlockingDriver, _: object, options: dict[str, Any]) -> None:
+    def connect(driver, _, options):
         plain(driver, httpx2.MockTransport(answer), options)
 
     monkeypatch.setattr(BlockingDriver, "__init__", connect)

@@ -15,7 +15,7 @@ ADDRESS = "http://127.0.0.1:8321"
 
 
 @pytest.fixture
-def cache(tmp_path: Path) -> ResultCache:
+def cache(tmp_path):
     return ResultCache(tmp_path)
 
 
@@ -43,7 +43,7 @@ def test_a_damaged_file_is_set_aside_for_a_person_to_look_at(cache, damaged):
 
 
 def test_what_is_not_kept_leaves_nothing(tmp_path, cache):
-    def breaks() -> None:
+    def breaks():
         with cache.incoming() as file:
             file.write(b"half")
             raise RuntimeError("the line broke")
@@ -59,11 +59,11 @@ def test_writers_of_the_same_key_never_spoil_it_for_readers(tmp_path):
     keep(ResultCache(tmp_path), contents[0])
     seen: list[bytes | None] = []
 
-    def write(content: bytes) -> None:
+    def write(content):
         for _ in range(40):
             keep(ResultCache(tmp_path), content)
 
-    def read() -> None:
+    def read():
         for _ in range(120):
             file = ResultCache(tmp_path).get("database", KEY)
             seen.append(None if file is None else file.read_bytes())

@@ -21,7 +21,7 @@ def counted() -> tuple[list[Frozen], object]:
     calls: list[Frozen] = []
 
     @identity_cached
-    def total(data: Frozen, factor: float) -> list[float]:
+    def total(data, factor):
         calls.append(data)
         if factor < 0.0:
             raise ValueError("negative")

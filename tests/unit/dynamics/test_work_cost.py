@@ -28,7 +28,7 @@ KIND, COST = "work", Cost(10.0, 2e9)
 
 
 @pytest.fixture(autouse=True)
-def _host_three_times_as_slow(monkeypatch: pytest.MonkeyPatch) -> None:
+def _host_three_times_as_slow(monkeypatch):
     monkeypatch.setattr(host_speed, "measured_slowness", lambda: 3.0)
 
 

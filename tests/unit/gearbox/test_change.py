@@ -141,7 +141,7 @@ def test_twice_the_transmission_error_is_6_db_louder(monkeypatch):
     """A spur pair whose stiffness is the same everywhere: its transmission error alone excites it."""
     involute = HeardFlanks.table
 
-    def waved(self: HeardFlanks, pair: Any, misalignment: float = 0.0) -> SteDatabase:
+    def waved(self, pair, misalignment=0.0):
         plain = self.bodies.checked.request.pair
         twice = pair.pinion.modification.tip_relief > 0.0
         return rippling(involute(self, plain, misalignment), 2e-8 if twice else 1e-8)
@@ -197,7 +197,7 @@ def test_quantiles_are_those_of_whole_analyses_of_the_pairs():
     tolerances = {"samples": 200, "tolerance_class": 4}
     own = change(helical(), {"after": designs[1], "tolerances": tolerances, **speeds})
 
-    def level(case: Json) -> float:
+    def level(case):
         force = response(helical(case), speeds).bearing_force[:, :3]
         return float(10.0 * np.log10(0.5 * np.sum(np.abs(force) ** 2, axis=(0, 1, 3)).max()))
 

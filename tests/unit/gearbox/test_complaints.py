@@ -3,11 +3,11 @@
 import json
 import math
 import tomllib
-from pathlib import Path
 from typing import Any
 
 import pytest
 from pytest import approx
+from repository import ROOT
 from typer.testing import CliRunner
 
 import lineofaction as loa
@@ -15,12 +15,7 @@ from dynamics.mechanism.passing import MESH, SIDEBAND
 from lineofaction.cli.commands import app
 from lineofaction.gearbox.convert.case_plausibility import case_warnings
 from lineofaction.gearbox.convert.checked_case import CheckedCase
-from lineofaction.gearbox.convert.complaint import (
-    Complaint,
-    complaint_of,
-    complaint_of_case,
-    marks_of_case,
-)
+from lineofaction.gearbox.convert.complaint import Complaint, complaint_of, complaint_of_case, marks_of_case
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import validated
@@ -32,7 +27,6 @@ from lineofaction.report.drawing.marks import of_run
 from lineofaction.report.response.complaint import PAGE
 
 Json = dict[str, Any]
-ROOT = Path(__file__).parents[3]
 ANGLE = math.radians(20.0)
 
 
@@ -377,7 +371,6 @@ def test_a_run_keeps_what_its_scene_complains_of(tmp_path):
     done = CliRunner().invoke(app, ["simulate", str(tmp_path / "scene.json"), "-o", str(tmp_path / "run.nc")])
     assert done.exit_code == 0, done.stderr
     marks = read_inputs([tmp_path / "run.nc"]).marks
-    assert marks is not None
     assert marks["meshes"] == {
         "mesh 0": {"order": approx(2.0 / 3.0), "driver_rpm": approx(3000.0), "torque_n_m": None},
         "mesh 1": {"order": approx(2.0), "driver_rpm": approx(3000.0 * 25 / 63), "torque_n_m": None},

@@ -97,7 +97,6 @@ def reactions(unit: OpenedUnit) -> Any:
 
 def test_beyond_the_end_of_its_shaft_a_force_acts_with_its_lever():
     unit, at = OpenedUnit.of(two_stages(**pulled(u_coordinate_on_shaft=END + 20.0, **VALUES))), BELT
-    assert unit.scene is not None
     (force,) = unit.scene.forces
     assert (force.shaft, force.position_mm) == ("shaft 3", pytest.approx(END, rel=1e-12))
     # x, y, z are v, w, u; the lever of 20 mm adds -0.02 F_w about v and 0.02 F_v about w
@@ -123,7 +122,6 @@ def test_a_shaft_described_from_its_other_end_is_pulled_the_same_way():
     plain, other = (
         OpenedUnit.of(document) for document in (two_stages(**loads), antiparallel(INPUT, END, **loads))
     )
-    assert plain.scene is not None and other.scene is not None
     for own, seen in zip(plain.scene.forces, other.scene.forces, strict=True):
         assert seen.position_mm == pytest.approx(own.position_mm, rel=1e-12)
         assert (seen.force_n, seen.moment_n_m) == (own.force_n, own.moment_n_m)
@@ -141,7 +139,6 @@ def test_the_mirrored_unit_is_pulled_to_the_other_side():
 def test_the_torque_of_a_load_drives_and_is_no_moment_of_its_force():
     changes = {MOTOR: {"force_v_direction": 70.0, "torque_around_w_axis": 3.0}}
     plain, unit = (OpenedUnit.of(two_stages(changed)) for changed in ({}, changes))
-    assert plain.scene is not None and unit.scene is not None
     assert (unit.scene.loads, unit.scene.drives) == (plain.scene.loads, plain.scene.drives)
     assert forces_of(two_stages(changes)) == {"external_load 41": ((70.0, 0.0, 0.0), (0.0, 3.0, 0.0))}
     assert lines_of(unit, MOTOR)["torque_around_u_axis"] == [("taken", "torque about u from outside, N m")]

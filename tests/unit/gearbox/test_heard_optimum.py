@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from small_inputs import small_inputs
 
+from fe_contact import Limits
 from fe_contact.microgeometry.design_problem import PENALTY
 from fe_contact.microgeometry.linearized_table import tabled_loads
-from fe_contact.microgeometry.objective import Limits
 from fe_contact.microgeometry.scatter import ScatterNodes
 from fe_contact.types import FloatArray
 from host.directories import cache_home
@@ -166,7 +166,6 @@ def predicted(**heard: Any) -> dict[str, list[Work]]:
     question = inputs(**heard)
     subject = SceneInput.model_validate(scene())
     cost = RUN.predicted(subject, Inputs.model_validate(question), None)
-    assert cost is not None
     return {part.name: [own for own in cost.parts if own.name == part.name] for part in cost.parts}
 
 
@@ -175,7 +174,7 @@ def test_a_usual_search_takes_the_contacts_that_are_predicted(monkeypatch):
     """Counted at few positions and at all, a design with its slopes as often as it costs; within 2."""
     solved: Counter[int] = Counter()
 
-    def counted(evaluator: Any, values: Any, nodes: Any, *slopes: Any) -> Any:
+    def counted(evaluator, values, nodes, *slopes):
         solved[evaluator.position.size] += LINEARIZED if slopes else 1.0
         return tabled_loads(evaluator, values, nodes, *slopes)
 
@@ -324,7 +323,7 @@ def test_what_gets_worse_is_said_first():
     ],
 )
 def test_a_scene_without_what_is_heard_is_refused_by_its_field(question, field):
-    def predicted() -> object:
+    def predicted():
         return RUN.predicted(SceneInput.model_validate(scene()), validated(Inputs, question), None)
 
     for refused in (lambda: optimize(scene(), question), predicted):
@@ -370,7 +369,7 @@ def test_a_limit_of_ripple_is_rows_of_the_merit_with_their_slopes():
     """The largest row is the peak-to-peak of the worst load, and moves as that of solved contacts does."""
     own = replace(problems()[0], limits=Limits(peak_to_peak=2e-7), scale=level(problems()[0], DESIGN))
 
-    def ripple(values: dict[str, float]) -> float:
+    def ripple(values):
         return float(own.evaluator.evaluate(values).peak_to_peak.max())
 
     assessed, merit = own.linearize(place(own), InProcess())

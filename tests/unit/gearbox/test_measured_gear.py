@@ -12,7 +12,6 @@ from damaged_text import fates_of_a_hundred
 from spur_case import spur_case
 
 from fe_contact.geometry import Gear, PitchDeviation, RingGear, ToothFlank, Toothing
-from fe_contact.types import FloatArray
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.inspection.as_made import Inspected, measured_case
 from lineofaction.gearbox.inspection.evaluation import gaussian, split
@@ -153,7 +152,7 @@ def test_other_teeth_are_the_mean_of_the_measured_ones():
         indexing="ij",
     )
 
-    def surface(gear: Toothing, tooth: int) -> FloatArray:
+    def surface(gear, tooth):
         flanks = [flank.excess(gear, *place) for flank in gear.tooth_flanks if flank.tooth == tooth]
         return np.asarray(sum(flanks, -gear.modification.removed(gear, *place)))
 

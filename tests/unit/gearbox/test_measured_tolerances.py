@@ -1,7 +1,6 @@
 """Tolerance studies of measured gears: a population equal to a class gives the pairs of that class."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -57,7 +56,7 @@ OF = (*SAMPLE, "--limit", "1=0.5um")
 
 
 @pytest.fixture(scope="module")
-def case(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def case(tmp_path_factory):
     file = tmp_path_factory.mktemp("measured") / "case.toml"
     file.write_text(spur_case(torques=[100.0], model="plane_strain"), encoding="utf-8")
     return file

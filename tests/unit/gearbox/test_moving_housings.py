@@ -6,7 +6,7 @@ from housed_tubes import OFF, mount_of, subject_of, tube_on
 from scipy.spatial import cKDTree
 
 from dynamics.assembly.assemble import assemble
-from dynamics.housings import ReducedHousing, receptance
+from dynamics.housings import receptance
 from dynamics.housings.rigid_body import rigid_motions
 from dynamics.mechanism.bodies import modal_housing
 from lineofaction.gearbox.convert.scene import TabledScene
@@ -26,7 +26,7 @@ def amplitudes_move(subject: TabledScene) -> tuple[Hull, np.ndarray]:
 
 
 @pytest.fixture(scope="module")
-def mounted() -> ReducedHousing:
+def mounted():
     return tube_on(mount_of(2e8))
 
 
@@ -39,7 +39,6 @@ def test_the_surface_by_its_amplitudes_is_that_of_the_reduction(mounted, maximum
     hull, moved = amplitudes_move(subject)
     assert len(hull.facets) <= maximum
     surface, modal = mounted.surface, modal_housing(subject.scene.housings[0])
-    assert surface is not None
     distance, node = cKDTree(surface.points).query(hull.points)
     assert distance.max() < 1e-7, "points that are drawn are points of the mesh"
     over = np.diag([1.0] * 5 + [1.0, -1.0, -1.0, 1.0, -1.0])  # its y and z are turned over

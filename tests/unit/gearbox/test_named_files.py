@@ -8,6 +8,7 @@ from pathlib import Path
 import h5py
 import pytest
 from reduced_housings import random_housing
+from repository import ROOT
 
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, SceneInput, read_model
@@ -16,7 +17,6 @@ from lineofaction.gearbox.schemas.files import side_files
 from lineofaction.gearbox.schemas.toml import toml_text
 from service.reading.texts import case_of_toml, scene_of_toml
 
-ROOT = Path(__file__).parents[3]
 SCENE = ROOT / "examples" / "palermo_scene.toml"
 CASE = SCENE.with_name("palermo_spur_20_20.toml")
 BOX = """

@@ -70,12 +70,12 @@ def made_from(folder: Path, **pair: Any) -> TabledScene:
 
 
 @pytest.fixture(scope="module")
-def subject(tmp_path_factory: pytest.TempPathFactory) -> TabledScene:
+def subject(tmp_path_factory):
     return made_from(tmp_path_factory.mktemp("scene"))
 
 
 @pytest.fixture(scope="module")
-def model(subject: TabledScene) -> SoundModel:
+def model(subject):
     (housing,) = subject.housings.values()
     radiation = housing_radiation(housing, EquivalentRadiatedPower(), (50.0, 10e3))
     return SoundModel(subject.scene, subject.housings, {"case": radiation})

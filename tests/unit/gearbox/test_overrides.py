@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 import typer
 from command_line import loa, printed
+from repository import EXAMPLES
 
 from lineofaction.cli.commands import app
 from lineofaction.gearbox.input_file import InputFile, Override
@@ -14,7 +15,6 @@ from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas import Case, read_model, read_table
 from lineofaction.gearbox.schemas.scene import SceneInput
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 SPUR, SCENE = EXAMPLES / "palermo_spur_20_20.toml", EXAMPLES / "palermo_scene.toml"
 TAKES_FILES = ("analyze", "geometry", "export", "plan", "simulate", "submit", *STUDIES.keys() - {"listen"})
 
@@ -107,7 +107,7 @@ def test_what_is_no_toml_value_is_a_text(value):
 
 
 def test_shorthands_take_the_place_of_what_they_exclude():
-    def planned(*options: object) -> Any:
+    def planned(*options):
         return printed("plan", SPUR, *options)
 
     assert planned("--level", "fine")["choice"]["level"] == "fine"

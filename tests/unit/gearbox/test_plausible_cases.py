@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 from changed_scenes import By, changed
+from repository import EXAMPLES
 
 from bounds import engineering
 from dynamics.plausibility import CHECKS as SCENE_CHECKS
@@ -23,7 +24,6 @@ from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.units import DEGREE, GPA, MM, UM
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 CASE_FILES = [file for file in sorted(EXAMPLES.rglob("*.toml")) if "[pair]" in file.read_text("utf-8")]
 SPUR = {
     "pair": {

@@ -12,8 +12,7 @@ from fzg_reference import FOLDER, needs_fzg_reference
 from machine_texts import GEAR, Wave, heading, machine_text, wave_texts
 from spur_case import spur_case
 
-from fe_contact.flank.modification import FlankModification
-from fe_contact.geometry import Gear, ToothFlank
+from fe_contact import FlankModification, Gear, ToothFlank
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.inspection.measured_gear import Chart
 from lineofaction.gearbox.inspection.population import gear_files, inspected_gear, population, values_beside
@@ -56,7 +55,7 @@ def test_a_made_up_batch_is_read_back_within_its_sampling_error(tmp_path):
     pick = np.ix_(of_slopes, of_slopes)
     of_means = BETWEEN + WITHIN / len(TEETH)
 
-    def errors(covariance: FloatArray, freedom: float) -> FloatArray:
+    def errors(covariance, freedom):
         """Return standard errors of the entries of a sample covariance of normal deviates."""
         variance = np.diag(covariance)
         return np.sqrt((np.outer(variance, variance) + covariance**2) / freedom)

@@ -2,7 +2,6 @@
 
 import io
 import sys
-from collections.abc import Iterator
 from types import ModuleType, SimpleNamespace
 
 import pytest
@@ -21,27 +20,27 @@ class Terminal(io.StringIO):
 
 
 @pytest.fixture
-def cell(monkeypatch: pytest.MonkeyPatch) -> Iterator[Shown]:
+def cell(monkeypatch):
     """Run in a notebook; what its cell shows, first and later."""
     shown: Shown = []
     handle = SimpleNamespace(update=lambda text: shown.append(("later", text)))
     ipython, display = ModuleType("IPython"), ModuleType("IPython.display")
-    ipython.get_ipython = lambda: SimpleNamespace(kernel=object())  # type: ignore[attr-defined]
-    display.HTML = str  # type: ignore[attr-defined]
+    ipython.get_ipython = lambda: SimpleNamespace(kernel=object())
+    display.HTML = str
 
-    def show(text: str, *, display_id: bool) -> SimpleNamespace:
+    def show(text, *, display_id):
         assert display_id
         shown.append(("first", text))
         return handle
 
-    display.display = show  # type: ignore[attr-defined]
+    display.display = show
     monkeypatch.setitem(sys.modules, "IPython", ipython)
     monkeypatch.setitem(sys.modules, "IPython.display", display)
     yield shown
 
 
 @pytest.fixture
-def clock(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
+def clock(monkeypatch):
     now = SimpleNamespace(s=100.0)
     monkeypatch.setattr("time.monotonic", lambda: now.s)
     return now

@@ -9,13 +9,13 @@ from pathlib import Path
 
 import pytest
 from faulty_units import LEFT_OUT, TWO_STAGE
+from repository import ROOT
 
 import lineofaction as loa
 from bounds.brief import MAX_LINES, WIDTH
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas import Case, validated
 
-ROOT = Path(__file__).parents[3]
 EXAMPLES = ROOT / "examples"
 MAX_NAMES = 60
 FUNCTIONS = {study.package: study for study in STUDIES.values()}

@@ -263,7 +263,7 @@ EXAMPLES = pytest.mark.parametrize("path", examples(), ids=lambda path: path.nam
 
 @cache
 def unit_of(path: object) -> tuple[GearUnit, tuple[StageCase, ...]]:
-    unit = GearUnit(upgrade(read_rexs(path).model)[0])  # type: ignore[arg-type]
+    unit = GearUnit(upgrade(read_rexs(path).model)[0])
     return unit, StageCase.all_of(unit, {})
 
 
@@ -275,7 +275,7 @@ def test_every_stage_has_its_case(path):
         for case in cases
         for pair in [case.case.pair]
     }
-    assert found == STAGES[path.name[:5]]  # type: ignore[attr-defined]
+    assert found == STAGES[path.name[:5]]
     assert len({case.name for case in cases}) == len(cases)
 
 

@@ -9,11 +9,8 @@ from typing import Any
 import pytest
 
 from bounds import Kind, PlausibilityWarning
-from fe_contact.analysis.analyze import analyze
+from fe_contact import FlankModification, InternalGearPair, Material, RingGear, analyze
 from fe_contact.compliance.rounding import LARGEST_ROUNDING, disc_rounding
-from fe_contact.flank.modification import FlankModification
-from fe_contact.geometry import InternalGearPair, RingGear
-from fe_contact.material import Material
 from lineofaction.gearbox.convert.case import THICK, case_json, gear_pair
 from lineofaction.gearbox.convert.checked_case import check_case, check_plain_case
 from lineofaction.gearbox.problems import BadInput

@@ -8,7 +8,7 @@ from pytest import approx
 from small_inputs import small_inputs
 
 import lineofaction as loa
-from dynamics.noise import QuantityLevel, RadiatedSound, SoundModel, SoundPressure
+from dynamics.noise import QuantityLevel, SoundModel, SoundPressure
 from lineofaction.gearbox.studies.noise.run import RUN
 from lineofaction.gearbox.workbench import tabled
 from lineofaction.report.housing.noise import PAGE
@@ -18,12 +18,12 @@ QUICK: dict[str, Any] = {"speed_rpm": [300.0, 600.0], "orders": 2, "boundary_ele
 
 
 @pytest.fixture(scope="module")
-def scene() -> dict[str, Any]:
+def scene():
     return dict(small_inputs("noise")["scene"])
 
 
 @pytest.fixture(scope="module")
-def sound(scene: dict[str, Any]) -> RadiatedSound:
+def sound(scene):
     """That of a complaint at order 1, heard at its microphone."""
     return loa.noise(scene | {"complaint": {"order": 20.0, "microphone_mm": PLACE}}, QUICK)
 

@@ -3,7 +3,6 @@
 import json
 import tomllib
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -124,12 +123,12 @@ def test_too_few_bores_place_nothing(names):
 
 
 @pytest.fixture(scope="module")
-def block(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def block(tmp_path_factory):
     return write_block(tmp_path_factory.mktemp("block") / "block.step")
 
 
 @pytest.fixture
-def scene(tmp_path: Path) -> Path:
+def scene(tmp_path):
     """A scene file with a comment and without a housing."""
     table: dict[str, Any] = {k: v for k, v in housed_scene(tmp_path).items() if k != "housings"}
     file = tmp_path / "scene.toml"

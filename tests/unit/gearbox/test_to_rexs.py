@@ -59,7 +59,6 @@ def table() -> SteDatabase:
 
 def of_stage(document: Document) -> dict[str, Attribute]:
     stage = document.model.component(STAGE)
-    assert stage is not None
     return {entry.id: entry for entry in stage.attributes if entry.origin == "calculated"}
 
 
@@ -131,7 +130,6 @@ def test_equal_stages_have_equal_results():
     written = exported(Document(model), [replace(stage, equal=(21,))], [table()])
     first, second = (written.model.component(number) for number in (STAGE, 21))
     assert first is not None
-    assert second is not None
     assert set(second.attributes) == set(of_stage(written).values()) != set()
 
 
@@ -196,7 +194,7 @@ def results(document: Document, case: int | None = None) -> dict[int, Values]:
         part.id: {
             entry.id: np.array([si_value(float(v), entry.unit, str(entry.unit), "") for v in values])
             if isinstance(values := entry.value, tuple)
-            else si_value(float(values), entry.unit, str(entry.unit), "")  # type: ignore[arg-type]
+            else si_value(float(values), entry.unit, str(entry.unit), "")
             for entry in part.attributes
             if entry.origin == "calculated"
         }
@@ -209,7 +207,7 @@ def vector(values: Values, name: str) -> np.ndarray[Any, Any]:
 
 
 @pytest.fixture(scope="module")
-def deflected_unit() -> tuple[Document, GearboxDeflection]:
+def deflected_unit():
     return written(spectrum())
 
 
@@ -407,7 +405,7 @@ def test_settings_of_the_computation_may_differ():
 def test_other_load_cases_and_lost_ones_are_refused(deflected_unit):
     result, unit = deflected_unit[1], OpenedUnit.of(spectrum())
 
-    def with_case(**changes: Any) -> GearboxDeflection:
+    def with_case(**changes):
         first, *others = result.deflection.cases
         cases = (replace(first, **changes), *others)
         return replace(result, deflection=replace(result.deflection, cases=cases))

@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.results import RunResult
-from dynamics.scene import Scene
-from dynamics.simulation import run_scene, simulate, undescribed
+from dynamics import RunResult, Scene, simulate
+from dynamics.simulation import run_scene, undescribed
 from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.studies.study.scenes import VariedScene, places_of, scene_of_json, with_value

@@ -15,7 +15,7 @@ from lineofaction.hardcases import HARD_SCENES, Measured, Outcome, run_scenes
 
 
 @pytest.fixture(autouse=True)
-def _imported_once(monkeypatch: pytest.MonkeyPatch) -> None:
+def _imported_once(monkeypatch):
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload(["lineofaction.hardcases.scene_process", "scenes_that_break"])
     monkeypatch.setattr("lineofaction.hardcases.scene_process.multiprocessing.get_context", lambda _: context)

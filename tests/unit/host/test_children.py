@@ -4,7 +4,6 @@ import os
 import resource
 import signal
 import sys
-from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 
@@ -25,13 +24,13 @@ FRAMES = st.lists(st.builds(Frame, st.text(max_size=20), st.binary(max_size=300)
 
 
 @pytest.fixture(autouse=True)
-def fake_work(monkeypatch: pytest.MonkeyPatch) -> None:
+def fake_work(monkeypatch):
     """Let children find the module of their work."""
     monkeypatch.setenv("PYTHONPATH", str(Path(framed_fake_work.__file__).parent), prepend=os.pathsep)
 
 
 @pytest.fixture(params=["started anew", "forked"])
-def child(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Child]:
+def child(request, tmp_path):
     """A child that answers each order with the same."""
     launcher = Launcher(WORK, [], tmp_path / "warm.log", print)
     launch = partial(launcher.launch, warm_within=60.0)

@@ -6,7 +6,6 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
@@ -182,14 +181,14 @@ Run = Callable[..., Ended]
 
 
 @pytest.fixture
-def confined(tmp_path: Path) -> Run:
+def confined(tmp_path):
     (tmp_path / "canary").write_text("canary")
     own = tmp_path / "own"
     own.mkdir()
     (own / "link").symlink_to(tmp_path / "canary")
     (own / "own").touch()
 
-    def run(tries: dict[str, str], **limits: int) -> Ended:
+    def run(tries, **limits):
         places = {"canary": str(tmp_path / "canary"), "outside": str(tmp_path)}
         expressions = {name: text.format(**places) for name, text in tries.items()}
         request = json.dumps([expressions, limits, PRELUDE])

@@ -10,8 +10,8 @@ import llvmlite.binding
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from repository import ROOT
 
-ROOT = Path(__file__).parents[3]
 VERBS = {"analyze": "palermo_spur_20_20.toml", "simulate": "palermo_scene.toml"}
 
 

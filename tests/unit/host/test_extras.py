@@ -4,14 +4,13 @@ import re
 import subprocess
 import sys
 import tomllib
-from pathlib import Path
 
 import pytest
+from repository import ROOT
 from small_table import small_table
 
 from host.extras import MODULES, MissingExtra, missing_extra, require
 
-ROOT = Path(__file__).parents[3]
 EXTRAS = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["optional-dependencies"]
 IMPORTED_AS = {"scikit-fem": "skfem", "opentelemetry-api": "opentelemetry"}
 ANALYSIS_ADVICE = "It comes with the extra analysis: pip install 'lineofaction[analysis]'"

@@ -37,7 +37,7 @@ def scaled(x):
 
 
 @pytest.fixture(autouse=True)
-def beside_the_source(monkeypatch: pytest.MonkeyPatch) -> None:
+def beside_the_source(monkeypatch):
     """Keep entries beside the source, also where the whole run of tests has a folder for them."""
     monkeypatch.setattr(config, "CACHE_DIR", "")
 

@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numba.core.codegen import JITCodeLibrary
-from numpy.typing import NDArray
 
 from host import loops, shared_loops
 
@@ -84,10 +83,8 @@ def test_processes_that_need_a_loop_at_once_compile_it_once(tmp_path):
     with ExitStack() as stack:
         children = [stack.enter_context(command()) for _ in range(3)]
         for child in children:
-            assert child.stdout is not None
             assert child.stdout.readline() == "ready\n"
         for child in children:
-            assert child.stdin is not None
             child.stdin.write("\n")
             child.stdin.flush()
         compiled = [int(child.communicate()[0]) for child in children]
@@ -96,15 +93,15 @@ def test_processes_that_need_a_loop_at_once_compile_it_once(tmp_path):
 
 def test_an_inner_loop_is_part_of_its_callers_and_python_may_call_it_too():
     @loops.inner(error_model="numpy")
-    def reciprocal(x: float) -> float:
+    def reciprocal(x):
         return 1.0 / x
 
     @loops.inner()
-    def twice(x: float) -> float:
+    def twice(x):
         return 2.0 * reciprocal(x)
 
     @loops.njit
-    def outer(x: float) -> float:
+    def outer(x):
         return twice(x) + reciprocal(x)
 
     assert outer(0.0) == float("inf")
@@ -119,14 +116,14 @@ def test_what_a_loop_takes_of_numba_becomes_part_of_it(monkeypatch):
     made: list[str] = []
     finalize = JITCodeLibrary._finalize_final_module
 
-    def counted(library: JITCodeLibrary) -> None:
+    def counted(library):
         made.append(library.name)
         finalize(library)
 
     monkeypatch.setattr(JITCodeLibrary, "_finalize_final_module", counted)
 
     @loops.njit
-    def spread(values: NDArray[np.float64], count: int) -> NDArray[np.float64]:
+    def spread(values, count):
         spread = np.zeros((count, 2))
         spread[:, 0] = np.cumsum(np.repeat(values, 2))
         return spread

@@ -23,7 +23,7 @@ def test_windows_is_asked_through_psutil(monkeypatch):
 def test_a_lock_that_another_has_on_windows_is_the_error_of_posix(tmp_path, monkeypatch):
     held: list[Any] = []
 
-    def locking(*file: int) -> None:
+    def locking(*file):
         if held:
             raise PermissionError(13, "Permission denied")
         held.append(file)

@@ -1,6 +1,5 @@
 """A Dask scheduler with certificates: who has them may use it, who has not is told what is missing."""
 
-from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
@@ -44,7 +43,7 @@ def certificate(folder: Path) -> dict[str, Any]:
 
 
 @pytest.fixture(scope="module")
-def certificates(tmp_path_factory: pytest.TempPathFactory) -> dict[str, dict[str, Any]]:
+def certificates(tmp_path_factory):
     folder = tmp_path_factory.mktemp("certificates")
     ours, others = (certificate(folder / name) for name in ("ours", "others"))
     gone = ours | {"distributed.comm.tls.ca-file": str(folder / "gone.crt")}
@@ -52,7 +51,7 @@ def certificates(tmp_path_factory: pytest.TempPathFactory) -> dict[str, dict[str
 
 
 @pytest.fixture(scope="module")
-def port(certificates: dict[str, dict[str, Any]]) -> Iterator[str]:
+def port(certificates):
     """Yield where a scheduler listens that takes encrypted connections alone."""
     with dask.config.set(certificates["ours"]):
         where: dict[str, Any] = {

@@ -99,7 +99,7 @@ def test_what_was_spent_has_the_tasks_of_workers():
 
 
 @pytest.fixture(autouse=True)
-def always(monkeypatch: pytest.MonkeyPatch) -> None:
+def always(monkeypatch):
     """Send everything, whatever it costs."""
     monkeypatch.setattr(dispatch, "START_SECONDS", 0.0)
 

@@ -47,7 +47,7 @@ READERS: dict[str, Callable[[Path], Any]] = {
 
 
 @pytest.fixture(scope="module")
-def good(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def good(tmp_path_factory):
     folder = tmp_path_factory.mktemp("good")
     for name, (write, _) in WRITERS.items():
         write(folder / f"{name}.nc")
@@ -55,10 +55,10 @@ def good(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def strike(good: Path, tmp_path: Path) -> Callable[[str, str], Path]:
+def strike(good, tmp_path):
     canary = write_canary(tmp_path)
 
-    def make(kind: str, name: str) -> Path:
+    def make(kind, name):
         file = tmp_path / "file.nc"
         file.write_bytes((good / f"{kind}.nc").read_bytes())
         struck(file, WRITERS[kind][1], STRIKES[name], canary)

@@ -51,17 +51,17 @@ SLOPES = Tolerances(0.0, {"pinion.profile_slope": 10e-6, "wheel.profile_slope": 
 
 
 @pytest.fixture(scope="module")
-def compliances(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def compliances(tmp_path_factory):
     return tmp_path_factory.mktemp("compliances")
 
 
 @pytest.fixture(scope="module")
-def pair() -> GearPair:
+def pair():
     return PAIR
 
 
 @pytest.fixture(scope="module")
-def local(pair: GearPair, compliances: Path) -> ToleranceStudy:
+def local(pair, compliances):
     return study(pair, compliances, InProcess())
 
 
@@ -77,7 +77,7 @@ def study(pair: GearPair, compliances: Path, workers: Workers) -> ToleranceStudy
 
 
 @pytest.fixture(scope="module")
-def pool() -> Iterator[ByExecutor]:
+def pool():
     with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as executor:
         yield ByExecutor(executor)
 
@@ -188,7 +188,7 @@ def test_what_tasks_share_is_packed_once_and_passed_by_a_file(monkeypatch):
     packed: list[int] = []
     of = Packed.of
 
-    def counted(shared: object) -> Packed:
+    def counted(shared):
         packed.append(id(shared))
         return of(shared)
 
@@ -272,14 +272,14 @@ class Here:
 
 
 @pytest.fixture(autouse=True)
-def small_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
+def small_tasks(monkeypatch):
     """Cut small tables as large ones are."""
     monkeypatch.setattr(contact_lines, "TASK_SECONDS", 0.005)
     monkeypatch.setattr(dispatch, "START_SECONDS", 0.0)
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 

@@ -2,22 +2,20 @@
 
 from collections import Counter
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
-from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.schemas.report import ReportInput
 from lineofaction.report.binding import bound
 from lineofaction.report.document import page_of, read_inputs, write_page
-from lineofaction.report.drawing.page import Page, Part
+from lineofaction.report.drawing.page import Part
 from lineofaction.report.title_block import titled
 
 PARTS = ("first stage", "second stage")
 
 
 @pytest.fixture
-def pages(database: SteDatabase, tmp_path: Path) -> dict[str, Page]:
+def pages(database, tmp_path):
     pages = {}
     for part, torque in zip(PARTS, (1.0, 3.0), strict=True):
         scaled = replace(database, torque=torque * database.torque, force=torque * database.force)

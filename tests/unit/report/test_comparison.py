@@ -10,10 +10,9 @@ import numpy as np
 import pytest
 from geared_scenes import RPM, gear_pair_scene
 
+from dynamics import TimeLaw, simulate
 from dynamics.export import write_universal_file
-from dynamics.loads import TimeLaw
-from dynamics.simulation import simulate
-from fe_contact.types import Estimate
+from fe_contact import Estimate
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.report.comparison.compare import compare, compare_runs
 from lineofaction.report.comparison.measured import (

@@ -17,7 +17,7 @@ from lineofaction.report.drawing.interactive import plotly_figure
 
 
 @pytest.fixture(scope="module")
-def outline() -> Outline:
+def outline():
     found = Outline.of(two_stages())
     return replace(found, gears=("first pinion", "wheel of the first stage", "second pinion", "second wheel"))
 

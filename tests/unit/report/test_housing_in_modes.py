@@ -18,7 +18,7 @@ from lineofaction.report.unit_motion import motion_json
 
 
 @pytest.fixture(scope="module")
-def modes() -> ModalAnalysis:
+def modes():
     """At rest and at 100 rad/s, with what a study keeps of the housing."""
     subject = subject_of(tube_on(None))
     found = modal_analysis(assemble(subject.scene), [0.0, 100.0])

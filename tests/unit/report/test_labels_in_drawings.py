@@ -28,7 +28,7 @@ def panel(ends: list[float], label: str = "{:g} N m", scale: str = "linear") -> 
         Line(f"{k}", ENDS, np.array([1.0, end]), palette.category(k), label=label.format(10 * k))
         for k, end in enumerate(ends)
     )
-    return Panel(Axis("position"), Axis("STE, µm", scale), lines)  # type: ignore[arg-type]
+    return Panel(Axis("position"), Axis("STE, µm", scale), lines)
 
 
 def sorted_gaps(middles: np.ndarray, heights: np.ndarray) -> np.ndarray:
@@ -218,7 +218,7 @@ def test_the_largest_parts_have_the_colors():
 def test_title_axis_and_legend_of_a_drawing_stand_apart(teeth, monkeypatch):
     sheets: list[Sheet] = []
 
-    def laid_out(sheet: Sheet, *_: object, **__: object) -> None:
+    def laid_out(sheet, *_, **__):
         sheet.draw_without_rendering()
         sheets.append(sheet)
 

@@ -3,7 +3,6 @@
 import json
 import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -27,7 +26,7 @@ from lineofaction.gearbox.studies.listen.run import HeardRun
 
 
 @pytest.fixture
-def file(run: RunResult, tmp_path: Path) -> Path:
+def file(run, tmp_path):
     run.to_netcdf(tmp_path / "run.nc")
     return tmp_path / "run.nc"
 
@@ -110,7 +109,7 @@ MICROPHONE = ("--microphone", "600,800,-200")
 
 
 @pytest.fixture(scope="module")
-def housing() -> ReducedHousing:
+def housing():
     bare = bare_housing(("left", "right"), motions=3, positions=[(0.0, 0.0, 0.05), (0.08, 0.0, 0.05)])
     hull = box((0.3, 0.2, 0.15), (6, 4, 3))
     sounding = with_surface(bare, hull, smooth_motion(hull, len(bare.stiffness)))
@@ -119,7 +118,7 @@ def housing() -> ReducedHousing:
 
 
 @pytest.fixture
-def scene(housing: ReducedHousing, tmp_path: Path) -> Path:
+def scene(housing, tmp_path):
     moved_file = scene_file(tmp_path)
     housing.to_netcdf(tmp_path / "case.nc")
     moved_file.write_text(f'{moved_file.read_text()}[[housings]]\nname = "case"\nmodes_file = "case.nc"\n')
@@ -127,7 +126,7 @@ def scene(housing: ReducedHousing, tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def moved(run: RunResult, housing: ReducedHousing) -> RunResult:
+def moved(run, housing):
     """The run of a scene with the housing, at constant speed: its loudness is told faster."""
     part = json.loads(json.dumps(vars(scene_housing(housing, "case")), default=list))
     speed = np.broadcast_to([[-40.0], [80.0]], run.speed.shape)
@@ -135,7 +134,7 @@ def moved(run: RunResult, housing: ReducedHousing) -> RunResult:
 
 
 @pytest.fixture
-def moved_file(moved: RunResult, tmp_path: Path) -> Path:
+def moved_file(moved, tmp_path):
     moved.to_netcdf(tmp_path / "run.nc")
     return tmp_path / "run.nc"
 
@@ -276,7 +275,7 @@ def figures_of(samples: Recording, run: RunResult) -> SoundFigures:
 
 
 @pytest.fixture
-def steady(run: RunResult) -> RunResult:
+def steady(run):
     return replace(run, speed=np.broadcast_to([[-40.0], [80.0]], run.speed.shape))
 
 

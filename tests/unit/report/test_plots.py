@@ -1,13 +1,12 @@
 """Plots by one call: figures of the report on axes, on axes of the caller, by plotly."""
 
 import sys
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any, get_args, get_origin
 
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from repository import EXAMPLES
 
 import lineofaction as loa
 from bounds.plottable import Plottable
@@ -15,11 +14,9 @@ from lineofaction.gearbox.registry import STUDIES
 from lineofaction.report.drawing.figure import HeatMap
 from lineofaction.report.plots import figures_of
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
-
 
 @pytest.fixture(autouse=True)
-def without_a_screen() -> Iterator[None]:
+def without_a_screen():
     with plt.rc_context():
         plt.switch_backend("Agg")
         yield

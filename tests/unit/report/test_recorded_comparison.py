@@ -2,7 +2,6 @@
 
 import re
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,9 +9,7 @@ import pytest
 from geared_scenes import RPM, gear_pair_scene
 from recordings import FULL_SCALE, PULSES, WRITERS, universal
 
-from dynamics.loads import TimeLaw
-from dynamics.results import RunResult
-from dynamics.simulation import simulate
+from dynamics import RunResult, TimeLaw, simulate
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.report.comparison.compare import compare
 from lineofaction.report.comparison.recorded import Measurement
@@ -27,7 +24,7 @@ VIEW = RunView(quantity="acceleration", bearing="input.left", direction="y", ord
 
 
 @pytest.fixture(scope="module")
-def recorded(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any]]:
+def recorded(tmp_path_factory):
     """A run at the rate of the program, and the same motion at that of a recorder with noise and a tone."""
     scene = gear_pair_scene(speed=TimeLaw.ramp(600.0 * RPM, 1500.0 * RPM, 1.5), duration=1.5)
     computed, dense = (

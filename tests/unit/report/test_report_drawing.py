@@ -59,10 +59,10 @@ def test_a_name_stands_once_in_the_legend():
 
 
 def test_a_line_that_a_note_names_is_not_in_the_legend():
-    (panel,) = stacked(1).content  # type: ignore[misc]
+    (panel,) = stacked(1).content
     noted = replace(stacked(), content=(panel, replace(panel, notes=(Note(2.0, 4.0, "b"),))))
-    assert legend_names(noted.content) == ["a", "b"]  # type: ignore[arg-type]  # the first panel needs it
-    alone = replace(noted, content=(noted.content[1],))  # type: ignore[index]
+    assert legend_names(noted.content) == ["a", "b"]  # the first panel needs it
+    alone = replace(noted, content=(noted.content[1],))
     assert [t["name"] for t in plotly_figure(alone)["data"] if t["showlegend"]] == ["a"]
     assert not plotly_figure(alone)["layout"]["showlegend"]
 
@@ -108,7 +108,7 @@ def test_references_fake_their_own_panel():
 
 
 def test_a_logarithmic_axis_places_limits_and_labels_in_decades():
-    panel = stacked(1).content[0]  # type: ignore[index]
+    panel = stacked(1).content[0]
     panel = replace(
         panel, x=Axis("frequency, Hz", "log", (10.0, 1000.0)), references=(Reference("f", 100.0),)
     )
@@ -138,7 +138,7 @@ def _ticks(x: list[float], y: list[float]) -> tuple[list[str], list[str]]:
         low, high = axis.get_view_interval()
         ticks = [*axis.get_major_ticks(), *axis.get_minor_ticks()]
         found.append([t.label1.get_text() for t in ticks if low <= t.get_loc() <= high])
-    return tuple([text for text in texts if text] for texts in found)  # type: ignore[return-value]
+    return tuple([text for text in texts if text] for texts in found)
 
 
 def test_orders_have_ticks_at_whole_numbers_and_fractions_have_their_own():
@@ -169,7 +169,7 @@ def test_a_legend_stays_within_the_sheet(count, length):
 
 
 def test_ordered_colors_lighten_and_stay_visible_on_white():
-    def luminance(color: str) -> float:
+    def luminance(color):
         parts = (int(color[i : i + 2], 16) / 255 for i in (1, 3, 5))
         linear = [p / 12.92 if p <= 0.04045 else ((p + 0.055) / 1.055) ** 2.4 for p in parts]
         return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
@@ -210,10 +210,10 @@ def test_names_stand_on_an_axis_in_place_of_numbers():
     line = Line("torque", np.array([0.0, 2.0]), np.array([1.0, 1.0]), "#000000")
     panel = Panel(Axis("N"), Axis("", limits=(0.4, 2.6), names=((1.0, "torque"), (2.0, "speed"))), (line,))
     figure = Figure("key", "Title", "Caption", "Words", (panel,))
-    assert legend_names(figure.content) == []  # type: ignore[arg-type]
+    assert legend_names(figure.content) == []
     axis = plotly_figure(figure)["layout"]["yaxis"]
     assert (axis["tickvals"], axis["ticktext"]) == ([1.0, 2.0], ["torque", "speed"])
-    drawn = panel_sheet(figure.content).axes[0]  # type: ignore[arg-type]
+    drawn = panel_sheet(figure.content).axes[0]
     assert [tick.get_text() for tick in drawn.get_yticklabels()] == ["torque", "speed"]
 
 
@@ -223,7 +223,7 @@ def test_colors_span_least_to_largest():
     )
     drawn = plotly_figure(shaded(shade, 1))["data"][0]
     assert (drawn["zmin"], drawn["zmax"]) == (1.0, 1.05)
-    _, scale = panel_sheet(shaded(shade, 1).content).axes  # type: ignore[arg-type]
+    _, scale = panel_sheet(shaded(shade, 1).content).axes
     assert scale.get_ylim() == (1.0, 1.05)
 
 
@@ -249,7 +249,7 @@ def test_a_sheet_of_cells_or_strokes_shows_its_scale():
         HeatMap(np.arange(3.0), np.arange(2.0), np.ones((2, 3)), "pressure, MPa", 2.0),
         Strokes(x, x, np.array([0.0, 1.0, 2.0]), "line load, N/mm", 2.0),
     ):
-        sheet = panel_sheet(shaded(shade, 1).content)  # type: ignore[arg-type]
+        sheet = panel_sheet(shaded(shade, 1).content)
         panel, scale = sheet.axes
         assert scale.get_ylabel() == shade.label
         assert scale.get_ylim() == (0.0, 2.0)

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene
 
-from dynamics.scene import Outputs
-from dynamics.simulation import simulate
+from dynamics import Outputs, simulate
 from dynamics.types import RunStatus
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.report.drawing.placing import envelope
@@ -57,7 +56,7 @@ def test_dynamic_and_static_error_are_drawn_at_three_speeds(run):
 def test_the_bearing_that_varies_most_is_shown(run):
     signal = selected_signal(run, RunView())
     assert (signal.name, signal.unit) == ("force on bearing right", "N rms")
-    whole, detail = signal_over_time(run, signal).content  # type: ignore[misc]
+    whole, detail = signal_over_time(run, signal).content
     assert [line.name for line in whole.lines] == ["y"]
     assert whole.lines[0].y.min() < -1020
     assert detail.x.limits[0] > whole.x.limits[0]
@@ -66,7 +65,7 @@ def test_the_bearing_that_varies_most_is_shown(run):
 def test_over_a_few_pitches_the_ripple_is_drawn_about_its_mean(run):
     shifted = replace(run, bearing_force=run.bearing_force + 1e5)
     signal = selected_signal(shifted, RunView())
-    _, detail = signal_over_time(shifted, signal).content  # type: ignore[misc]
+    _, detail = signal_over_time(shifted, signal).content
     assert detail.y.label.endswith("less its mean, N")
     (ripple,) = (line.y for line in detail.lines if line.name == "y")  # alone has any
     assert ripple.min() < 0.0 < ripple.max()
@@ -130,7 +129,7 @@ def test_mesh_orders_are_found_where_they_are(run):
 
 
 def test_orders_are_marked_at_multiples_of_the_mesh_frequency(run):
-    (panel,) = signal_spectrum(run, selected_signal(run, RunView())).content  # type: ignore[misc]
+    (panel,) = signal_spectrum(run, selected_signal(run, RunView())).content
     marks = [reference.value for reference in panel.references]
     np.testing.assert_allclose(marks, np.arange(1, 7) * marks[0])  # what the rate holds
     assert marks[0] == pytest.approx(20 * 900 * 0.925 / 60, rel=1e-3)
@@ -147,7 +146,7 @@ def test_a_run_without_bearing_forces_shows_its_mesh_force(run):
 
 def test_the_audit_and_the_step_error_are_told(run):
     tables = {t.caption: t for s in dynamic_making(run) for t in (*s.tables, *s.folded)}
-    accuracy = dict(tables["Accuracy of the run"].rows)  # type: ignore[arg-type]
+    accuracy = dict(tables["Accuracy of the run"].rows)
     assert accuracy["step error, nm rms (step control)"] == "1.00"
     assert ("residual", "0") in tables["Energy audit, J"].rows
     (row,) = tables["Effects"].rows

@@ -16,7 +16,6 @@ from dynamics.orders import highest_valid_order, order_frequency
 from dynamics.results import RunResult
 from fe_contact.analysis.studies.fidelity_result import FidelityResult
 from fe_contact.analysis.studies.frontier import Frontier
-from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.problems import BadInput, DamagedFile
 from lineofaction.gearbox.studies.frontier.run import RUN
 from lineofaction.report.comparison.compare import stored_comparison
@@ -35,7 +34,7 @@ Work = Callable[[dict[str, Any]], Any]
 
 
 @pytest.fixture
-def files(tmp_path: Path, database: SteDatabase, run: RunResult) -> tuple[Path, Path]:
+def files(tmp_path, database, run):
     database.to_netcdf(tmp_path / "ste.nc")
     run.to_netcdf(tmp_path / "run.nc")
     return tmp_path / "ste.nc", tmp_path / "run.nc"
@@ -62,12 +61,6 @@ DYNAMIC = {
     "octave_bands",
     "dynamic_factor",
 }
-
-
-def test_kinds_are_read_from_the_files(files):
-    table, run = (read_inputs([file]) for file in files)
-    assert table.run is run.database is None
-    assert table.database is not None and run.run is not None
 
 
 def test_a_page_and_all_images_of_both(files, tmp_path):
@@ -187,7 +180,7 @@ SPEED = 3843.5 / 60.0  # turns per second
 
 
 @pytest.fixture(scope="module")
-def rotor_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def rotor_run(tmp_path_factory):
     file = tmp_path_factory.mktemp("rotor") / "run.nc"
     told = loa("simulate", ROTOR, "-o", file)
     assert told.exit_code == 0, told.output

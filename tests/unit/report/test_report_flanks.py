@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from matplotlib.contour import ContourSet
 
-from fe_contact.analysis.flanks.load_distribution import FlankErrors, LoadDistribution
+from fe_contact.analysis.flanks.load_distribution import FlankErrors
 from fe_contact.analysis.flanks.pressure_map import pressure_map
 from lineofaction.report.document import write_report
 from lineofaction.report.drawing.figure import HeatMap, Panel, Strokes, number
@@ -26,7 +26,7 @@ from lineofaction.report.flank.flank import (
 
 
 def panels(figure: object) -> tuple[Panel, ...]:
-    content = figure.content  # type: ignore[attr-defined]
+    content = figure.content
     assert isinstance(content, tuple)
     return content
 
@@ -47,7 +47,6 @@ def test_the_pattern_passes_through_the_pressures_that_were_computed(flanks):
         assert np.all(shade.z[:, -1] == 0.0)
         assert shade.largest == pytest.approx(1e-6 * flanks.pressure.max())
         assert 0.0 < shade.isolines[0] < shade.isolines[-1] < shade.largest
-        assert panel.y.limits is not None
         assert panel.y.limits[0] < shade.y[0] < shade.y[-1] < panel.y.limits[1]
 
 
@@ -168,7 +167,7 @@ def test_one_slice_has_a_curve_and_nothing_over_the_face(one_slice):
 
 
 @pytest.fixture
-def one_slice(flanks: LoadDistribution) -> LoadDistribution:
+def one_slice(flanks):
     middle = {
         name: getattr(flanks, name)[:, :, 2:3]
         for name in ("roll_length_1", "roll_length_2", "on_path", "force", "lever", "pressure", "gap")
@@ -210,7 +209,7 @@ def test_every_headline_has_its_error_or_says_why_there_is_none(flanks):
     errors = FlankErrors(0.05, 0.02, 0.03, 0.01, 0.04, "none is missing")
     stated = PAGE.page(replace(flanks, errors=errors)).headlines
     load, pressure = 1e-3 * flanks.line_load.max(), 1e-6 * flanks.pressure.max()
-    bands = [float(re.match(r"± ([\d.]+)", h.remark)[1]) for h in stated]  # type: ignore[index]
+    bands = [float(re.match(r"± ([\d.]+)", h.remark)[1]) for h in stated]
     expected = [0.01 * pressure, 0.05 * load, 0.02 * flanks.mean_face_load_factor]
     assert bands == pytest.approx(expected, rel=0.05)
     lines = list(_text(replace(flanks, errors=errors)))

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from fe_contact.geometry import Gear, GearPair
+from fe_contact import Gear, GearPair
 from lineofaction.gearbox.units import boundary_ledger
 from lineofaction.report.document import Inputs, page_of, read_inputs
 from lineofaction.report.drawing import palette
@@ -18,12 +18,7 @@ from lineofaction.report.drawing.page import Headline, Page, Part, Section, html
 from lineofaction.report.drawing.tables import records, settings_table, side_by_side
 from lineofaction.report.pair import data_sheet_section, pair_of, pair_remarks
 from lineofaction.report.ste.headlines import static_headlines
-from lineofaction.report.ste.page import (
-    case_tables,
-    contact_effects,
-    static_alarms,
-    static_making,
-)
+from lineofaction.report.ste.page import case_tables, contact_effects, static_alarms, static_making
 
 PNG = b"\x89PNG\r\n\x1a\n"
 HOSTILE = '</script><script src="http://example.org/x.js"></script>'
@@ -50,7 +45,7 @@ def figure(key: str = "ste", title: str = "STE") -> Figure:
 def page(title: str = "Report", **changes: object) -> Page:
     section = Section("Static", "Text.", (figure(),), (settings_table("Case", {"center_distance_mm": 80.0}),))
     given = {"headlines": (Headline("mean STE", "6.245 µm", "± 0.02"),), "sections": (section,)} | changes
-    return Page(title, "A pair.", **given)  # type: ignore[arg-type]
+    return Page(title, "A pair.", **given)
 
 
 def outline(text: str) -> list[tuple[str, dict[str, str | None]]]:

@@ -95,13 +95,12 @@ def test_the_finding_names_order_load_and_level(database):
     table = with_orders(database, {1.0: 2e-6, 2.0: 3e-6}, 1e-4)
     figure = ste_waterfall(table)
     assert figure.alternative == "Order 2 at 400 N m is the largest: 9.5 dB re 1 µm."
-    assert figure.table is not None
     assert [row[0] for row in figure.table.rows] == [load_labels(table)[k] for k in drawn_loads(table)]
     assert figure.table.head == ("torque", "order 1", "order 2")
 
 
 def test_one_load_has_no_spectrum_over_torque(database):
-    def keys(table: SteDatabase) -> set[str]:
+    def keys(table):
         return {figure.key for section in static_results(table) for figure in section.figures}
 
     along = {name: axes.index("force") for name, axes in database.stored.items() if "force" in axes}

@@ -2,7 +2,6 @@
 
 import json
 from dataclasses import field, fields, make_dataclass, replace
-from pathlib import Path
 from typing import Any, get_type_hints
 
 import h5netcdf
@@ -29,7 +28,6 @@ from fe_contact.types import FloatArray
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas.plan import InputWarning
-from lineofaction.gearbox.study import Study
 from lineofaction.report.design.optimize import _ripple_table
 from lineofaction.report.document import page_json, page_of, read_inputs, stored_figures
 from lineofaction.report.effects.ablate import PAGE
@@ -44,12 +42,12 @@ QUICK: dict[str, Any] = {"level": "draft", "model": "plane_strain"}
 
 
 @pytest.fixture(scope="module")
-def compliance(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def compliance(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 
 @pytest.fixture(scope="module")
-def studies(compliance: Path) -> dict[str, tuple[Study, Any]]:
+def studies(compliance):
     only = ["tooth_coupling", "profile_modification", "misalignment"]
     of_case = ablate(
         PAIR,
@@ -146,7 +144,7 @@ def test_both_harris_maps_are_drawn_to_one_scale(studies):
     (figure,) = (
         f for s in presentation_of(study).page(result).sections for f in s.figures if f.key == "harris_map"
     )
-    before, after, _ = figure.content  # type: ignore[misc]
+    before, after, _ = figure.content
     assert before.y.limits == after.y.limits
     for panel, name in ((before, "start"), (after, "optimum")):
         told = content[name]["harris_map"]
@@ -173,7 +171,7 @@ def test_torques_that_count_and_those_that_get_worse_are_drawn(studies):
         f for s in presentation_of(study).page(wide).sections for f in s.figures if f.key == "harris_map"
     )
     expected = {37.0, *result.torque.tolist()}
-    for panel in figure.content[:2]:  # type: ignore[index]
+    for panel in figure.content[:2]:
         drawn = {float(line.name.removesuffix(" N m")) for line in panel.lines}
         assert expected <= drawn and len(panel.lines) <= MAX_CURVES
     (warning,) = study.run.warnings(wide) or ()

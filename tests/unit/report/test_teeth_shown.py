@@ -21,13 +21,13 @@ FORCE = 100.0 / 0.0375877
 
 
 @pytest.fixture
-def alike(with_pitch_errors: Tables) -> SteDatabase:
+def alike(with_pitch_errors):
     """20 pitches of 20/20 teeth, all of which carry as much."""
     return with_pitch_errors(20)
 
 
 @pytest.fixture
-def table(alike: SteDatabase) -> SteDatabase:
+def table(alike):
     """Three of four parts of the load on all teeth, at most, and nine of ten on one of either gear."""
     share = np.where(alike.load_share == 1.0, 0.75, np.where(alike.load_share == 0.0, 0.25, 0.5))
     share[alike.pairs_in_contact == 1, 2] = 0.0

@@ -15,7 +15,7 @@ from lineofaction.report.unit_motion import motion_json
 
 
 @pytest.fixture(scope="module")
-def pulsating() -> SurfaceShape:
+def pulsating():
     """A sphere whose nodes move outward by 1 mm/s."""
     hull = sphere(6, 0.1)
     outward = hull.nodes / np.linalg.norm(hull.nodes, axis=1)[:, None]

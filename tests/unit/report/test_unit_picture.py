@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from command_line import loa
 from hulls import sphere
+from repository import EXAMPLES
 from sounding_housings import rigid_housing
 
 from bounds.types import Json
@@ -21,7 +22,6 @@ from lineofaction.report.drawing.image import still
 from lineofaction.report.drawing.page import Page
 from lineofaction.report.unit_picture import COLORS, HOUSED, UNHOUSED, is_picture, unit_png, with_picture
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 ROTOR, PLANETARY = EXAMPLES / "jeffcott_scene.toml", EXAMPLES / "lin_parker_planetary_scene.toml"
 SIZE = (240, 180)
 

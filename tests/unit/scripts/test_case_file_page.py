@@ -1,14 +1,12 @@
 """The lists of fields on the page of case files are those of the declarations."""
 
-from pathlib import Path
-
 import case_file_page
+from repository import ROOT
 
 from dynamics.housings import Material
 from fe_contact.flank.modification import FlankModification
 from lineofaction.gearbox.schemas.declared import figures
 
-ROOT = Path(__file__).parents[3]
 PAGE = (ROOT / "docs" / "case-file.md").read_text("utf-8")
 
 
@@ -27,18 +25,18 @@ def test_an_entry_says_the_unit_the_bounds_and_the_default():
     entries = case_file_page.definitions(figures(FlankModification)).split("\n\n")
     usual = entries[0].replace("\n", " ")
     assert (
-        "`.._um`: 0 to 1000; default 0." in usual
+        "`.._um`: [0, 1000]; default 0." in usual
         and "`tip_relief_um`\n: Tip relief at the tip diameter." in entries
     )
     assert '`.._shape`: `"linear"`, `"parabolic"`, ' in usual and usual.endswith('; default `"linear"`.')
     assert "`tip_relief_shape`\n: Tip relief over its length." in entries
-    assert any(entry.endswith(" -1000 to 1000; default 0.") for entry in entries)
-    assert any(entry.endswith(" 5 to 85; default 30.") for entry in entries)
+    assert any(entry.endswith(" [-1000, 1000]; default 0.") for entry in entries)
+    assert any(entry.endswith(" [5, 85]; default 30.") for entry in entries)
 
 
 def test_a_meaning_that_the_name_says_is_left_out():
     entries = {figure.field: case_file_page.definition(figure) for figure in figures(Material)}
-    assert entries["youngs_modulus_gpa"].startswith("`youngs_modulus_gpa`\n: 0.001 to 2000; ")
+    assert entries["youngs_modulus_gpa"].startswith("`youngs_modulus_gpa`\n: [0.001, 2000]; ")
     assert entries["thermal_expansion_per_k"].startswith("`thermal_expansion_per_k`\n: Coefficient of ")
 
 

@@ -9,8 +9,8 @@ from pathlib import Path
 import client_wheel
 import httpx2
 import pytest
+from repository import ROOT
 
-ROOT = Path(__file__).parents[3]
 WITHOUT = ("gmsh", "skfem", "numba", "scipy", "xarray", "h5py", "fastapi", "tenacity", "rich", "typer")
 USE = """
 import sys
@@ -39,7 +39,7 @@ except ModuleNotFoundError as error:
 
 
 @pytest.fixture(scope="module")
-def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def tree(tmp_path_factory):
     """The sources of the distribution."""
     folder = tmp_path_factory.mktemp("client")
     client_wheel.collect(folder)

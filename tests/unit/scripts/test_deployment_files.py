@@ -10,12 +10,12 @@ import tomllib
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import pytest
 import yaml
 from postgres_server import migrated, postgres
+from repository import ROOT
 from typer.main import get_command
 
 from lineofaction.cli.commands import app
@@ -23,7 +23,6 @@ from service.secret_files import is_secret
 from service.settings import Settings
 
 __all__ = ["postgres"]
-ROOT = Path(__file__).resolve().parents[3]
 MANIFESTS = ROOT / "deploy" / "kubernetes"
 FIELDS = {name.upper(): field for name, field in Settings.model_fields.items()}
 VARIABLES = {f"LOA_{name}" for name in FIELDS} | {
@@ -93,7 +92,7 @@ def variables_of(part: str) -> dict[str, str]:
 
 
 @pytest.fixture
-def kubernetes_validate() -> ModuleType:
+def kubernetes_validate():
     """Its import takes three seconds, of every worker if it stood above."""
     return importlib.import_module("kubernetes_validate")
 
@@ -148,7 +147,7 @@ def test_commands_are_verbs_of_the_program(part):
     ):
         program, verb, *rest = words
         assert program == "loa"
-        command = get_command(app).commands[verb]  # type: ignore[attr-defined]
+        command = get_command(app).commands[verb]
         options = {option for parameter in command.params for option in parameter.opts}
         assert all(word in options or word in getattr(command, "commands", {}) for word in rest)
 
@@ -182,7 +181,6 @@ def test_pods_have_the_least_rights(part):
     spec, only = pods()[part], container(part)
     assert spec["automountServiceAccountToken"] is False
     user = re.search(r"--uid (\d+)", dockerfile())
-    assert user is not None
     assert (spec["securityContext"]["runAsNonRoot"], spec["securityContext"]["runAsUser"]) == (
         True,
         int(user[1]),
@@ -196,7 +194,6 @@ def test_pods_have_the_least_rights(part):
     for bound in ("requests", "limits"):
         assert set(only["resources"][bound]) == {"cpu", "memory"}
     place = re.search(r"LOA_DATA_DIRECTORY=(\S+)", dockerfile())
-    assert place is not None
     writable = [mount["mountPath"] for mount in only["volumeMounts"] if not mount.get("readOnly")]
     assert "/tmp" in writable and any(Path(place[1]).is_relative_to(path) for path in writable)
 

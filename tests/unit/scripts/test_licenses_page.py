@@ -1,11 +1,10 @@
 """The page of licenses has every locked package, and only such as let the image be passed on."""
 
 import re
-from pathlib import Path
 
 import licenses
+from repository import ROOT
 
-ROOT = Path(__file__).parents[3]
 FREE = "MIT|BSD|Apache|PSF|Python Software Foundation|ISC|MPL|Mozilla|LGPL-3.0|GPLv2\\+"
 
 

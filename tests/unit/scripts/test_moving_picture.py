@@ -1,17 +1,15 @@
 """The moving picture of the README moves, is small, and is drawn by its script."""
 
-from pathlib import Path
-
 import moving_picture
 import numpy as np
 import pytest
 from PIL import Image
 from PIL.GifImagePlugin import GifImageFile
+from repository import ROOT
 from scipy.io import wavfile
 
 from lineofaction.report.drawing.figure import Axis, Line, Panel
 
-ROOT = Path(__file__).parents[3]
 PICTURE = ROOT / "docs" / "images" / "relief.gif"
 
 

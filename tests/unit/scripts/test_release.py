@@ -5,13 +5,13 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from repository import ROOT
 
-ROOT = Path(__file__).resolve().parents[3]
 GIT = ("git", "-c", "user.name=a tester", "-c", "user.email=tester@example.org")
 
 
 @pytest.fixture
-def project(tmp_path: Path) -> Path:
+def project(tmp_path):
     """A repository with what a release reads: scripts, changelog, version."""
     for name in ("scripts/release", "scripts/environment"):
         (tmp_path / name).parent.mkdir(exist_ok=True)

@@ -2,7 +2,6 @@
 
 import subprocess
 from pathlib import Path
-from typing import Any
 
 import pytest
 import resolver
@@ -18,7 +17,7 @@ def answered(monkeypatch: pytest.MonkeyPatch, errors: dict[str, str]) -> list[st
     """Let uv fail on platforms with a text; return what it is asked for."""
     asked: list[str] = []
 
-    def run(command: list[str], **options: Any) -> subprocess.CompletedProcess[str]:
+    def run(command, **options):
         platform = command[command.index("--python-platform") + 1]
         asked.append(f"{platform} {command[-1]} {options['input']}")
         error = errors.get(platform, "") if "gmsh" in options["input"] else ""

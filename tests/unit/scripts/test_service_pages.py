@@ -1,12 +1,9 @@
 """The tables of verbs, routes and processes on their pages are those of the program."""
 
-from pathlib import Path
-
 import pytest
 import service_pages
 from described_api import DESCRIPTION
-
-ROOT = Path(__file__).parents[3]
+from repository import ROOT
 
 
 @pytest.mark.parametrize(("name", "tables"), [("cli", ["verbs"]), ("service", ["routes", "processes"])])
@@ -24,6 +21,7 @@ def test_a_verb_links_to_its_section_and_a_default_is_one_value():
         "| [`loa ste`](#loa-ste) | Print one STE curve of a database. |" in verbs
         and "| `loa keys add` |" in verbs
     )
+    assert "loa modes" not in verbs, "studies have a table of their own, in docs/studies.md"
     assert "`samples` (1000)" in service_pages.processes(DESCRIPTION)
     assert service_pages.default({"default": []}) == service_pages.default({}) == ""
     assert service_pages.default({"default": True}) == " (true)"

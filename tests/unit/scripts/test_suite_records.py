@@ -16,7 +16,7 @@ BEFORE = {f"{THIS}::long": 4.0, f"{THIS}::removed": 2.0, f"{OTHER}::slow": 3.0}
 
 
 @pytest.fixture(autouse=True)
-def records(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def records(monkeypatch, tmp_path):
     for name in ("COSTS", "PASSED"):
         for module in (suite_records, suite_selection):
             monkeypatch.setattr(module, name, tmp_path / name)

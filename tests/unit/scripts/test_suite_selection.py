@@ -37,7 +37,7 @@ def _left(items: list[Any], **options: Any) -> list[str]:
 
 
 @pytest.fixture
-def on_record(monkeypatch: pytest.MonkeyPatch) -> dict[str, str]:
+def on_record(monkeypatch):
     """Have a slow test on record, and what it rested on; the caller may change that."""
     passed = {"tests/unit/scripts/test_suite_selection.py": digest(HERE)}
     monkeypatch.setattr(suite_selection, "read_costs", lambda: {SLOW_TEST: SLOW + 0.1})
@@ -119,7 +119,7 @@ def test_a_file_that_is_named_runs_whole_in_workers_too(monkeypatch, day):
     named = SimpleNamespace(
         args_source=pytest.Config.ArgsSource.ARGS, option=option, getoption=vars(option).get
     )
-    heed_named_files(named)  # type: ignore[arg-type]
+    heed_named_files(named)
     assert option.all != day
 
 
@@ -177,7 +177,7 @@ def test_the_digest_follows_every_file_of_a_house(monkeypatch, tmp_path):
 
 
 @pytest.fixture
-def page_test(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
+def page_test(monkeypatch, tmp_path):
     """Return a test that rests on itself, a folder of pages and `versions`, which both have a file."""
     monkeypatch.setattr(suite_selection, "ROOT", tmp_path)
     monkeypatch.setattr(suite_selection, "VERSIONS", tmp_path / "versions")

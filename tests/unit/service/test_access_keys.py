@@ -3,7 +3,6 @@
 import json
 import stat
 from datetime import datetime, timedelta
-from pathlib import Path
 
 import pytest
 import structlog.testing
@@ -19,7 +18,7 @@ from service.settings import Settings
 
 
 @pytest.fixture
-def file(tmp_path: Path) -> KeyFile:
+def file(tmp_path):
     return KeyFile(tmp_path / "keys.json")
 
 
@@ -33,7 +32,6 @@ def test_a_key_opens_and_is_nowhere_on_disk(file):
     assert len(secret) >= 43, "256 bits"
     assert secret not in file.path.read_text()
     holder = Keyring(file).holder(secret)
-    assert holder is not None
     assert (holder.name, holder.requests_per_minute, holder.unfinished_jobs) == ("bench", 60, None)
 
 
@@ -47,7 +45,7 @@ def test_only_its_owner_reads_the_file_whatever_the_mask(tmp_path, file):
 @pytest.mark.parametrize(
     "change", [lambda k: k[:-1], lambda k: k + "A", str.upper, lambda k: "", lambda k: k[4:]]
 )
-def test_anything_but_the_key_is_nobody(file: KeyFile, change) -> None:  # type: ignore[no-untyped-def]
+def test_anything_but_the_key_is_nobody(file, change):
     assert Keyring(file).holder(change(file.add("bench"))) is None
 
 
@@ -57,7 +55,7 @@ def test_every_key_is_compared_whichever_it_is(file, monkeypatch):
     keyring = Keyring(file)
     seen: list[str] = []
 
-    def compare(a: str, b: str) -> bool:
+    def compare(a, b):
         seen.append(b)
         return a == b
 
@@ -172,7 +170,6 @@ def test_a_key_of_before_there_were_scopes_may_do_what_it_did(file):
     former = {name: entry[name] for name in ("name", "sha256", "created", "requests_per_minute")}
     file.path.write_text(json.dumps({"keys": [former | {"of_a_later_program": 1}]}))
     holder = Keyring(file).holder(secret)
-    assert holder is not None
     assert (set(holder.scopes), holder.project, holder.expires) == (set(Scope), "", None)
 
 
@@ -220,7 +217,6 @@ def test_rotation_leaves_the_old_key_the_overlap_and_the_new_one_all_rights(file
     new = file.rotate("bench", overlap="7d")
     keyring = Keyring(file)
     before, after = keyring.holder(old), keyring.holder(new)
-    assert before is not None and after is not None
     for key in (before, after):
         assert (key.name, key.project, key.scopes, key.streams) == ("bench", "axle", (Scope.READ,), 3)
     assert before.ends_within(timedelta(days=7)) and not before.ends_within(timedelta(days=6, hours=23))
@@ -266,7 +262,7 @@ def test_a_key_that_ends_soon_is_mentioned_once_a_day(file):
 def test_the_verbs_show_rights_and_never_a_hash(tmp_path):
     path = tmp_path / "keys.json"
 
-    def verb(*arguments: str) -> str:
+    def verb(*arguments):
         shown = loa("keys", *arguments, "--file", path, "--json")
         assert shown.exit_code == 0, shown.output
         return shown.stdout

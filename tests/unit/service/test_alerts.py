@@ -167,12 +167,12 @@ def dashboard_expressions() -> list[str]:
 
 
 @pytest.fixture(scope="module")
-def told(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[dict[str, str]]]:
+def told(tmp_path_factory):
     """The labels of all samples of a service by name: with a job that runs, one that waits, and a result."""
     app = create_app(Settings(data_directory=tmp_path_factory.mktemp("service")), REGISTRY)
     with served(app) as port, httpx2.Client(base_url=f"http://127.0.0.1:{port}", timeout=None) as client:
 
-        def submit(mode: str, text: str) -> str:
+        def submit(mode, text):
             body = {"inputs": {"wish": {"mode": mode, "text": text}}}
             return str(client.post(EXECUTION, json=body).headers["location"])
 

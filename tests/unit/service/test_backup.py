@@ -38,7 +38,7 @@ def dumped(url: str, server: PostgresServer, folder: Path) -> str:
 def submitting(machine: Bench) -> Iterator[None]:
     stop = threading.Event()
 
-    def submit() -> None:
+    def submit():
         number = 0
         while not stop.wait(0.01):
             machine.submit(text=f"meanwhile {number}")

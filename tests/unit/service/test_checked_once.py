@@ -2,10 +2,9 @@
 
 import json
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import Future
 from contextlib import ExitStack
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -57,19 +56,19 @@ class Calls:
 
 
 @pytest.fixture
-def calls(monkeypatch: pytest.MonkeyPatch) -> Iterator[Calls]:
+def calls(monkeypatch):
     calls = Calls()
     convert, check, validate = conversion.gear_pair, request_check.check_request, Case.model_validate_json
 
-    def converted(case: Case) -> Any:
+    def converted(case):
         calls.converted += 1
         return convert(case)
 
-    def checked(*request: Any, **limits: Any) -> Any:
+    def checked(*request, **limits):
         calls.checked.append(repr(request))
         return check(*request, **limits)
 
-    def read(text: str) -> Case:
+    def read(text):
         calls.validated += 1
         return validate(text)
 
@@ -90,7 +89,7 @@ def _replace(
 
 
 @pytest.fixture
-def file(tmp_path: Path) -> Path:
+def file(tmp_path):
     file = tmp_path / "case.toml"
     file.write_text(toml_text(CASE), encoding="utf-8")
     return file
@@ -194,7 +193,7 @@ def inputs(torque_n_m: float) -> AnalyzeInputs:
 def test_a_case_is_checked_until_its_table_is_stored(tmp_path, monkeypatch):
     class Refused:
         @property
-        def feasible(self) -> None:
+        def feasible(self):
             raise BadInput.of("case", None, "never checked")
 
     store, known = stored_results(tmp_path), inputs(100.0)

@@ -1,8 +1,6 @@
 """Cost limits of jobs: refused by the plan, ended by the CPU time, extended by jobs that share the work."""
 
 import time
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -22,7 +20,7 @@ from service.settings import Settings
 
 
 @pytest.fixture
-def machine(tmp_path: Path, database_url: str | None) -> Iterator[Bench]:
+def machine(tmp_path, database_url):
     found = bench(tmp_path, REGISTRY, database_url=database_url)
     found.scheduler.start()
     yield found
@@ -80,7 +78,7 @@ def test_a_prediction_beyond_the_limit_is_told_with_its_largest_stages():
 
 
 @pytest.fixture
-def client(tmp_path: Path) -> Iterator[TestClient]:
+def client(tmp_path):
     """A client of an app whose scheduler does not run; plans are made."""
     app = create_app(Settings(data_directory=tmp_path))
     yield TestClient(app)

@@ -4,7 +4,7 @@ import resource
 import shutil
 import sqlite3
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -37,7 +37,7 @@ PAGE = 4096
 
 
 @pytest.fixture(scope="module")
-def sound(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def sound(tmp_path_factory):
     directory = tmp_path_factory.mktemp("sound")
     with TestClient(create_app(Settings(data_directory=directory), REGISTRY, works=False)) as client:
         for number in range(8):
@@ -47,12 +47,12 @@ def sound(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def directory(tmp_path: Path, sound: Path) -> Path:
+def directory(tmp_path, sound):
     return shutil.copytree(sound, tmp_path / "data")
 
 
 @pytest.fixture
-def client(directory: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[TestClient]:
+def client(directory, monkeypatch):
     """A client of an app on it, which tries at each question whether it can write."""
     monkeypatch.setattr("service.store.write_check.VALID_S", 0.0)
     with TestClient(create_app(Settings(data_directory=directory), REGISTRY)) as found:
@@ -105,7 +105,7 @@ def test_a_start_does_not_wait_for_a_long_look_and_what_it_finds_makes_unready(d
     damage(directory / "service.sqlite3", "one bad page")
     found, look = threading.Event(), Schema.check
 
-    def late(schema: Schema) -> None:
+    def late(schema):
         found.wait(60.0)
         look(schema)
 
@@ -154,9 +154,9 @@ def test_damage_beneath_a_running_service_is_said_at_once(client, directory, kin
 )
 def test_a_database_that_takes_nothing_is_said_and_taken_up_again(client, pragma, kind, what):
     """Read-only, and full: when that is mended the service goes on."""
-    engine = client.app.state.context.engine  # type: ignore[attr-defined]
+    engine = client.app.state.context.engine
 
-    def harm(connection: sqlite3.Connection, _record: object) -> None:
+    def harm(connection, _record):
         connection.execute(f"PRAGMA {pragma}")
 
     event.listen(engine, "connect", harm)
@@ -250,14 +250,14 @@ class Place:
 
 
 def failing(error: Exception) -> Callable[[], None]:
-    def step() -> None:
+    def step():
         raise error
 
     return step
 
 
 @pytest.fixture
-def place(monkeypatch: pytest.MonkeyPatch) -> Place:
+def place(monkeypatch):
     monkeypatch.setattr(write_check, "VALID_S", -1.0)
     return Place()
 
@@ -268,7 +268,7 @@ def fault(check: WriteCheck) -> str:
 
 def test_one_that_waits_for_its_turn_is_ready_until_it_has_waited_too_long(place, monkeypatch):
     """200 submissions at once held the database for a second, and a service at work said 503."""
-    check = WriteCheck(place)  # type: ignore[arg-type]
+    check = WriteCheck(place)
     assert fault(check) == ""
     place.database = failing(DatabaseUnavailable("Others hold it."))
     assert fault(check) == ""
@@ -278,11 +278,11 @@ def test_one_that_waits_for_its_turn_is_ready_until_it_has_waited_too_long(place
 
 def test_one_that_has_never_written_is_not_ready(place):
     place.database = failing(DatabaseUnavailable("Others hold it."))
-    assert fault(WriteCheck(place)) == "Others hold it."  # type: ignore[arg-type]
+    assert fault(WriteCheck(place)) == "Others hold it."
 
 
 def test_damage_is_told_at_once(place):
-    check = WriteCheck(place)  # type: ignore[arg-type]
+    check = WriteCheck(place)
     assert fault(check) == ""
     place.database = failing(DatabaseDamaged("It is malformed."))
     assert fault(check) == "It is malformed."

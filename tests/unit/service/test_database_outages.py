@@ -3,17 +3,15 @@
 import os
 import socket
 import sqlite3
-from collections.abc import Iterator
 from itertools import count
-from pathlib import Path
 
 import pytest
 from cut_connections import relay
 from fastapi.testclient import TestClient
-from postgres_server import PostgresServer, migrated, running_server
-from running_service import Bench, bench
+from postgres_server import migrated, running_server
+from running_service import bench
 from service_fakes import REGISTRY
-from sqlalchemy import Connection, event
+from sqlalchemy import event
 
 from lineofaction.gearbox.problems import BadInput, Busy
 from service.app import create_app
@@ -25,7 +23,7 @@ KEEPALIVE = (socket.TCP_KEEPIDLE, socket.TCP_KEEPINTVL, socket.TCP_KEEPCNT)
 
 
 @pytest.fixture
-def server_url(postgres: PostgresServer) -> str:
+def server_url(postgres):
     url = postgres.new_database()
     engine = database_engine(url)
     Schema(engine).upgrade()
@@ -34,7 +32,7 @@ def server_url(postgres: PostgresServer) -> str:
 
 
 @pytest.fixture
-def machine(tmp_path: Path, server_url: str) -> Iterator[Bench]:
+def machine(tmp_path, server_url):
     found = bench(tmp_path, REGISTRY, database_url=server_url)
     yield found
     found.close()
@@ -49,7 +47,7 @@ def test_steps_go_on_when_their_connections_are_ended(machine, postgres):
 
     ended: list[int] = []
 
-    def end_once(_connection: object) -> None:
+    def end_once(_connection):
         if not ended:
             ended.append(postgres.end_connections(url))
 
@@ -63,7 +61,7 @@ def test_steps_go_on_when_their_connections_are_ended(machine, postgres):
 def test_an_answer_to_a_commit_that_is_lost_enters_no_job_twice(machine):
     """The transaction was committed; the connection broke before the answer came: the step runs again."""
     entry, work = machine.submissions.entry(), BatchCase("ab" * 32, {"wish": {}})
-    enter = Entry._job.__wrapped__  # type: ignore[attr-defined]
+    enter = Entry._job.__wrapped__
     identifier = "7a8a9f0e-26f4-4f55-9e0b-3a3e3a3f3a3f"
     for _ in range(2):
         enter(entry, identifier, "fake", work, now())
@@ -74,7 +72,7 @@ def test_an_answer_to_a_commit_that_is_lost_enters_no_job_twice(machine):
 def test_jobs_end_while_connections_are_ended_all_the_time(machine, postgres):
     url, writes = str(machine.settings.database_address), count(1)
 
-    def end_at_every_third(connection: Connection) -> None:
+    def end_at_every_third(connection):
         if connection.get_execution_options().get("immediate") and next(writes) % 3 == 0:
             postgres.end_connections(url)
 
@@ -106,7 +104,7 @@ def test_a_network_that_swallows_everything_is_noticed(postgres):
         url = postgres.new_database().partition("?")[0].replace("@", f"@127.0.0.1:{between.port}")
         engine = database_engine(url)
         with engine.connect() as connection:
-            descriptor = os.dup(connection.connection.dbapi_connection.fileno())  # type: ignore[union-attr]
+            descriptor = os.dup(connection.connection.dbapi_connection.fileno())
             with socket.socket(fileno=descriptor) as wire:
                 assert 0 < wire.getsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT) <= 20_000
                 silent = [wire.getsockopt(socket.IPPROTO_TCP, option) for option in KEEPALIVE]
@@ -121,7 +119,7 @@ def test_a_connection_that_is_cut_in_mid_statement_is_outlasted(tmp_path, postgr
         url = direct.partition("?")[0].replace("@", f"@127.0.0.1:{between.port}")
         machine, cuts = bench(tmp_path, REGISTRY, database_url=url), []
 
-        def cut_once(*_: object) -> None:
+        def cut_once(*_):
             if len(cuts) < 1:
                 cuts.append(between.cut())
 

@@ -3,7 +3,7 @@
 import hashlib
 import json
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
@@ -37,13 +37,13 @@ NewDatabase = Callable[[], str]
 
 
 @pytest.fixture(params=["one machine", "servers"])
-def on_servers(request: pytest.FixtureRequest) -> bool:
+def on_servers(request):
     """Whether index and files are on servers (PostgreSQL, S3) or in folders (SQLite)."""
     return bool(request.param == "servers")
 
 
 @pytest.fixture
-def new_database(tmp_path: Path, on_servers: bool, request: pytest.FixtureRequest) -> NewDatabase:
+def new_database(tmp_path, on_servers, request):
     if on_servers:
         server: PostgresServer = request.getfixturevalue("postgres")
         return lambda: migrated(server.new_database())
@@ -52,12 +52,12 @@ def new_database(tmp_path: Path, on_servers: bool, request: pytest.FixtureReques
 
 
 @pytest.fixture
-def place(tmp_path: Path, on_servers: bool, request: pytest.FixtureRequest) -> str:
+def place(tmp_path, on_servers, request):
     return str(request.getfixturevalue("s3_url")) if on_servers else (tmp_path / "results").as_uri()
 
 
 @pytest.fixture
-def first(tmp_path: Path, new_database: NewDatabase, place: str) -> Iterator[Bench]:
+def first(tmp_path, new_database, place):
     """A deployment with three results, all requested some time ago."""
     machine = bench(tmp_path / "first", REGISTRY, database_url=new_database(), results_url=place)
     for key in KEYS:
@@ -186,7 +186,7 @@ def test_two_that_start_on_one_place_at_the_same_time_are_one(tmp_path, new_data
     for url in urls:
         open_database(url).dispose()  # alembic migrates one database at a time
 
-    def start(number: int) -> Bench | None:
+    def start(number):
         try:
             return bench(
                 tmp_path / str(number), REGISTRY, database_url=urls[number], results_url=place + "/shared"
@@ -309,7 +309,7 @@ def test_the_verbs_refuse_and_rebuild(tmp_path, monkeypatch):
 
 
 def test_a_note_is_whole_and_the_first_one_stays_where_there_are_no_links(tmp_path, monkeypatch):
-    def refuse(*_: object) -> None:
+    def refuse(*_):
         raise PermissionError("no links here")
 
     for name, linked in (("linked", True), ("written", False)):

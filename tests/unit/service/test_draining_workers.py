@@ -3,12 +3,10 @@
 import os
 import signal
 import time
-from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from dask_processes import DaskProcesses, dask_processes
-from running_service import PATIENCE_S, Bench, bench, until
+from running_service import PATIENCE_S, bench, until
 from service_fakes import REGISTRY
 
 from service.queue import cluster
@@ -20,7 +18,7 @@ PRELOAD = "service.worker.draining"
 
 
 @pytest.fixture
-def dask(tmp_path: Path) -> Iterator[DaskProcesses]:
+def dask(tmp_path):
     with dask_processes(tmp_path, 0, LOA_DATA_DIRECTORY=str(tmp_path / "data")) as running:
         running.start_workers(nanny=False, preload=PRELOAD)
         running.await_workers(1)
@@ -28,7 +26,7 @@ def dask(tmp_path: Path) -> Iterator[DaskProcesses]:
 
 
 @pytest.fixture
-def server(dask: DaskProcesses, tmp_path: Path) -> Iterator[Bench]:
+def server(dask, tmp_path):
     made = bench(tmp_path / "server", REGISTRY, scheduler=dask.address)
     made.scheduler._crew = cluster.Cluster(dask.address, "draining")
     made.scheduler.start()

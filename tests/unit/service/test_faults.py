@@ -11,20 +11,9 @@ from typing import Any
 import pytest
 from command_line import loa
 from pydantic import BaseModel, ValidationError
+from repository import EXAMPLES
 
-from bounds import (
-    Bound,
-    FieldName,
-    Quantity,
-    SiNote,
-    Text,
-    above,
-    at_least,
-    at_most,
-    below,
-    exactly,
-    from_to,
-)
+from bounds import Bound, FieldName, Quantity, SiNote, Text, above, at_least, at_most, below, exactly, from_to
 from dynamics.errors import InputError as DynamicsInputError
 from dynamics.errors import SolveError as DynamicsSolveError
 from fe_contact.errors import InputError, MeshError
@@ -147,7 +136,6 @@ def test_what_the_libraries_do_not_raise_on_purpose_is_not_translated():
     assert translated(ZeroDivisionError("0")) is None
 
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 SPUR = EXAMPLES / "palermo_spur_20_20.toml"
 
 
@@ -284,7 +272,7 @@ def test_the_manual_that_a_table_names_has_all_its_fields():
         if len(table.model_fields) > 12
     }
     for table in wide:
-        manual = (EXAMPLES.parent / table.MANUAL).read_text(encoding="utf-8")  # type: ignore[attr-defined]
+        manual = (EXAMPLES.parent / table.MANUAL).read_text(encoding="utf-8")
         missing = [name for name in table.model_fields if not re.search(rf"\b{name}\b", manual)]
         assert not missing, table
     assert len(wide) > 8
@@ -374,7 +362,7 @@ def test_what_is_bounded_once_is_not_bounded_again():
     class Uses(BoundaryModel):
         whole: Whole
 
-    def bounds(node: object) -> int:
+    def bounds(node):
         """Return the most functions that see the data of one schema in turn."""
         if not isinstance(node, dict) or node.get("type") != "function-before":
             return 0

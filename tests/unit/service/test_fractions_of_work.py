@@ -115,7 +115,7 @@ def reports_of(case: Case, folder: Path) -> list[Report]:
 
 
 @pytest.fixture(scope="module")
-def reports(tmp_path_factory: pytest.TempPathFactory) -> list[Report]:
+def reports(tmp_path_factory):
     reports_of(helical(10.0, model="3d", level="draft", positions=8), tmp_path_factory.mktemp("compiles"))
     return reports_of(helical(model="3d", level="draft"), tmp_path_factory.mktemp("measured"))
 

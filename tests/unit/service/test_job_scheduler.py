@@ -4,31 +4,27 @@ import errno
 import itertools
 import os
 import signal
-from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
 
 import pytest
 from running_service import Bench, bench, lives, until
 from service_fake_work import SECRET
 from service_fakes import REGISTRY
 
-from host.children.launcher import ChildProcess, Ends, Launcher, start_child
+from host.children.launcher import Launcher, start_child
 from host.directories import cache_home, data_home
 from service.queue import claims
 from service.queue.claims import MAX_LOST_RUNS, Claim
 from service.queue.scheduler import Scheduler
 from service.settings import MIN_MEMORY_MB, Settings
-from service.store.results import ResultStore, StoredResult
+from service.store.results import ResultStore
 from service.worker.usage import machine_memory_mb
 from service.worker.worker import WORK
 
 
 @pytest.fixture(params=["started anew", "forked"])
-def machine(
-    tmp_path: Path, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
-) -> Iterator[Bench]:
+def machine(tmp_path, request, monkeypatch):
     """A started scheduler with two workers, started anew or forked from a warm process."""
     if request.param == "started anew":
         monkeypatch.setattr(Launcher, "launch", lambda _, ends: start_child(WORK, ends))
@@ -233,7 +229,7 @@ def test_a_result_that_cannot_be_stored_never_leaves_its_job_running(machine, mo
     """It fails, for want of room or under a number in the log, and those behind it have their turn."""
     put, failed = ResultStore.put, []
 
-    def full_once(store: ResultStore, *arguments: Any) -> StoredResult:
+    def full_once(store, *arguments):
         if failed:
             return put(store, *arguments)
         failed.append(1)
@@ -281,7 +277,7 @@ def test_what_a_dead_service_left_running_is_taken_up_again(tmp_path):
 
 
 @pytest.fixture
-def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+def at_once(monkeypatch):
     """Let nothing wait after a run that was lost."""
     monkeypatch.setattr(claims, "wait_s", lambda _lost_runs: 0.0)
 
@@ -302,7 +298,7 @@ def fall(server: Bench, *, begun: bool = True) -> list[str]:
 
 
 def _next_beside(scheduler: Scheduler, runs: list[Claim]) -> Claim | None:
-    scheduler._running = {claim.id: SimpleNamespace(claim=claim) for claim in runs}  # type: ignore[misc]
+    scheduler._running = {claim.id: SimpleNamespace(claim=claim) for claim in runs}
     try:
         return scheduler._next()
     finally:
@@ -388,7 +384,7 @@ def test_a_child_that_ends_before_it_begins_costs_no_attempt(tmp_path, monkeypat
     """Here the first one finds no program."""
     launched: list[int] = []
 
-    def launch(_launcher: Launcher, ends: Ends) -> ChildProcess:
+    def launch(_launcher, ends):
         launched.append(1)
         return start_child("no.such.module" if len(launched) == 1 else WORK, ends)
 

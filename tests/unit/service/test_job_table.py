@@ -1,12 +1,9 @@
 """The job table: single flight, shared dismissal, bounded queue, order."""
 
 import uuid
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
-from pathlib import Path
-from typing import Any
 
 import pytest
 from running_service import Bench, bench
@@ -23,7 +20,7 @@ from service.store.results import Mark
 
 
 @pytest.fixture
-def machine(tmp_path: Path, database_url: str | None) -> Iterator[Bench]:
+def machine(tmp_path, database_url):
     """The table without a running scheduler, on each database."""
     found = bench(tmp_path, REGISTRY, queue_limit=3, database_url=database_url)
     yield found
@@ -76,7 +73,7 @@ def test_a_claim_whose_commit_was_not_answered_is_the_same_claim(machine):
     """The connection broke after the commit: the step runs again and finds what it has done."""
     machine.submit(text="a")
     row = machine.claims._first()
-    begin = Claims._begin.__wrapped__  # type: ignore[attr-defined]
+    begin = Claims._begin.__wrapped__
     assert row is not None and begin(machine.claims, row) and begin(machine.claims, row)
     assert [claim.attempts for claim in machine.claims.running()] == [1]
 
@@ -202,7 +199,7 @@ def test_a_callers_last_job_is_sought_among_its_own_alone(machine):
         pytest.skip("a server plans by the numbers of its rows")
     plan: list[str] = []
 
-    def explain(_connection: object, cursor: Any, statement: str, parameters: Any, *_: object) -> None:
+    def explain(_connection, cursor, statement, parameters, *_):
         rows = cursor.connection.execute(f"EXPLAIN QUERY PLAN {statement}", parameters)
         plan.extend(str(row[3]) for row in rows)
 

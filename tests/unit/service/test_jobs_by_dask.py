@@ -6,7 +6,7 @@ import json
 import os
 import signal
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -41,7 +41,7 @@ BUSY = 10.0
 
 
 @pytest.fixture(scope="module")
-def dask(tmp_path_factory: pytest.TempPathFactory) -> Iterator[DaskProcesses]:
+def dask(tmp_path_factory):
     """Two workers with one thread each, whose data directory is that of all servers of this file."""
     folder = tmp_path_factory.mktemp("dask")
     with dask_processes(folder, 2, LOA_DATA_DIRECTORY=str(folder / "data")) as running:
@@ -49,11 +49,11 @@ def dask(tmp_path_factory: pytest.TempPathFactory) -> Iterator[DaskProcesses]:
 
 
 @pytest.fixture
-def server(dask: DaskProcesses, tmp_path: Path) -> Iterator[MakeServer]:
+def server(dask, tmp_path):
     """Return what makes servers on one table whose jobs the workers do."""
     made: list[Bench] = []
 
-    def make(**settings: Any) -> Bench:
+    def make(**settings):
         dask.await_workers(2)
         made.append(bench(tmp_path / "server", REGISTRY, scheduler=dask.address, **settings))
         made[-1].scheduler._crew = cluster.Cluster(dask.address, tmp_path.name)
@@ -65,7 +65,7 @@ def server(dask: DaskProcesses, tmp_path: Path) -> Iterator[MakeServer]:
         made[-1].submissions.dismiss(job.id)  # it would go on without a server
     made[-1].scheduler.wake()
     for file in (dask.folder / "data").glob("started_*"):
-        until(lambda file=file: not lives(int(file.read_text().split()[-3])))  # type: ignore[misc]
+        until(lambda file=file: not lives(int(file.read_text().split()[-3])))
     for file in (*(dask.folder / "data").glob("started_*"), *(dask.folder / "data").glob("grandchild_*")):
         file.unlink()
     for one in made:
@@ -294,12 +294,12 @@ class Future:
 
 
 @pytest.fixture
-def dropped() -> list[str]:
+def dropped():
     return []
 
 
 @pytest.fixture
-def task(tmp_path: Path, dropped: list[str]) -> cluster.Task:
+def task(tmp_path, dropped):
     order = WorkOrder("a:b", {}, "k", tmp_path, tmp_path)
     return cluster.Task("name", order, tmp_path / "log", dropped.append)
 
@@ -307,7 +307,7 @@ def task(tmp_path: Path, dropped: list[str]) -> cluster.Task:
 def follow(task: cluster.Task, ends: Done | Exception, status: str = "finished") -> Outcome | None:
     """Let a task end so; return its outcome, None if it is followed anew."""
 
-    async def publish(*_: Any, **__: Any) -> None:
+    async def publish(*_, **__):
         return
 
     client: Any = SimpleNamespace(submit=lambda *_, **__: Future(ends, status), publish_dataset=publish)
@@ -360,7 +360,7 @@ def test_what_fails_on_a_worker_is_said_in_our_words(task, error, text):
 
 
 def test_a_full_disk_of_the_server_ends_the_job_with_that_reason(task, monkeypatch):
-    def full(*_: Any) -> int:
+    def full(*_):
         raise OSError(errno.ENOSPC, SECRET)
 
     monkeypatch.setattr(Path, "write_bytes", full)

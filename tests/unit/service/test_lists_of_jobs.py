@@ -2,7 +2,7 @@
 
 import random
 import uuid
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from datetime import UTC, datetime, timedelta
 from functools import partial
 from pathlib import Path
@@ -25,7 +25,7 @@ from service.store.results import Mark
 
 
 @pytest.fixture(scope="module", autouse=True)
-def migrated_once() -> None:
+def migrated_once():
     """Let migrations make all tables: an upgrade is part of what is tested here."""
 
 
@@ -245,7 +245,7 @@ def filled(file: Path, count: int) -> Submissions:
 
 
 @pytest.fixture(scope="module")
-def small_and_large(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Submissions, Submissions]]:
+def small_and_large(tmp_path_factory):
     folder = tmp_path_factory.mktemp("growth")
     small, large = (filled(folder / f"{count}.sqlite3", count) for count in (10_000, 100_000))
     yield small, large
@@ -257,11 +257,11 @@ def work_of(submissions: Submissions, ask: Callable[[], object]) -> int:
     """Return the instructions of SQLite that a question takes, in tens."""
     tens = [0]
 
-    def count() -> int:
+    def count():
         tens[0] += 1
         return 0
 
-    def counted(connection: Any, _record: object) -> None:
+    def counted(connection, _record):
         connection.set_progress_handler(count, 10)
 
     event.listen(submissions._engine, "connect", counted)

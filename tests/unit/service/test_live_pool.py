@@ -4,7 +4,6 @@ import json
 import os
 import signal
 import time
-from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -49,7 +48,7 @@ class LivePool(QuestionPool):
 
 
 @pytest.fixture
-def pool(tmp_path: Path) -> Iterator[LivePool]:
+def pool(tmp_path):
     made = LivePool(tmp_path, AnswerTimes(obsolete_s=0.1))
     yield made
     made.stop()

@@ -74,7 +74,7 @@ def test_a_server_with_keys_tells_them_without_one(tmp_path):
 
 
 @pytest.fixture
-def signs(tmp_path: Path) -> Iterator[tuple[Vitals, Path]]:
+def signs(tmp_path):
     """The signs of a running scheduler, and its data directory."""
     machine = bench(tmp_path, REGISTRY)
     machine.scheduler.start()

@@ -59,7 +59,6 @@ def test_a_start_with_too_few_files_is_refused_by_their_name(tmp_path):
 def test_with_few_files_as_many_connections_are_taken_as_they_suffice_for(tmp_path):
     """Beyond them the connections that are idle for longest make room, and every request is answered."""
     with serving(tmp_path, 256) as process, ExitStack() as held:
-        assert process.stdout is not None
         port = int(process.stdout.readline().rpartition(":")[2])
         assert all(healthy(port, held) for _ in range(300))
     log = (tmp_path / "lines").read_text()

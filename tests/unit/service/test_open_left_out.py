@@ -5,7 +5,6 @@ import json
 import re
 import tomllib
 from base64 import b64encode
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,6 +13,7 @@ from click.testing import Result
 from command_line import loa
 from fastapi.testclient import TestClient
 from faulty_units import LEFT_OUT, REFUSED, TWO_STAGE
+from repository import EXAMPLES
 from rexs_reference import examples, needs_reference
 
 from lineofaction.gearbox.from_rexs.unit_answer import unit_of_rexs
@@ -65,7 +65,7 @@ def test_a_file_that_is_none_is_refused_in_one_line(tmp_path):
 
 
 @pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+def client(tmp_path_factory):
     folder = tmp_path_factory.mktemp("data")
     with TestClient(create_app(Settings(data_directory=folder))) as found:
         yield found
@@ -112,7 +112,6 @@ def test_the_reference_files_open(file, tmp_path):
     assert facts["scene"] is not file.name.endswith(".rexsj")
 
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 HAND = LEFT_OUT["hand of a wheel"][1](TWO_STAGE)
 
 

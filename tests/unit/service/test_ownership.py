@@ -4,13 +4,9 @@ import fcntl
 import os
 import signal
 import time
-from collections.abc import Iterator
-from pathlib import Path
-from typing import Any
 
 import pytest
 from own_process import python
-from postgres_server import PostgresServer
 from running_service import Bench, bench, lives, until
 from service_fakes import REGISTRY
 from sqlalchemy import text
@@ -22,7 +18,7 @@ from service.store.database import reading
 
 
 @pytest.fixture
-def settings(tmp_path: Path, database_url: str | None) -> Iterator[dict[str, Any]]:
+def settings(tmp_path, database_url):
     """Return the settings of servers on one table, each with a data directory of its own."""
     url = database_url or f"sqlite:///{tmp_path / 'shared.sqlite3'}"
     yield {"database_url": url, "results_url": (tmp_path / "results").as_uri()}
@@ -38,7 +34,6 @@ def test_a_second_server_is_refused_by_name_until_the_first_has_stopped(tmp_path
     assert "Stop that server" in str(fault.suggestion)
     reader = job_machinery(other, REGISTRY, works=False)  # upkeep goes on beside it
     reader.close()
-    assert first.scheduler is not None
     first.scheduler.start()
     first.scheduler.stop()
     job_machinery(other, REGISTRY).close()
@@ -61,7 +56,7 @@ def test_two_tables_of_one_database_have_an_owner_each(tmp_path, postgres):
 
 
 @pytest.fixture
-def server(tmp_path: Path, postgres: PostgresServer) -> Iterator[Bench]:
+def server(tmp_path, postgres):
     """A started server on PostgreSQL with a job that hangs."""
     made = bench(tmp_path / "server", REGISTRY, database_url=postgres.emptied_database())
     made.scheduler.start()
@@ -102,7 +97,7 @@ def test_who_has_lost_the_table_to_another_server_ends_its_work_and_starts_none(
     acquire, url = server.scheduler._owner.acquire, str(server.settings.database_address)
     free: list[bool] = []
 
-    def acquire_late() -> None:
+    def acquire_late():
         until(lambda: free != [])
         acquire()
 

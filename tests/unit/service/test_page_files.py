@@ -4,13 +4,12 @@ import json
 import math
 import re
 import tomllib
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from fastapi.testclient import TestClient
+from repository import ROOT
 
 from lineofaction.gearbox.convert.case import case_json, gear_pair
 from lineofaction.gearbox.convert.checked_case import check_case
@@ -25,13 +24,12 @@ from service.page.example_cases import examples
 from service.page.files import page_file
 from service.settings import Settings
 
-ROOT = Path(__file__).parents[3]
 STATIC = ROOT / "service" / "page" / "static"
 CASES = {example.name: validated(Case, example.content) for example in examples()}
 
 
 @pytest.fixture
-def client(tmp_path: Path) -> Iterator[TestClient]:
+def client(tmp_path):
     with TestClient(create_app(Settings(data_directory=tmp_path))) as found:
         yield found
 

@@ -30,7 +30,7 @@ def test_a_job_that_waits_says_behind_how_many(machine):
     first, urgent, low = entered(machine, "a"), entered(machine, "b", 2), entered(machine, "c", -1)
     shared = entered(machine, "a")
 
-    def ahead() -> list[int | None]:
+    def ahead():
         listed = {job.id: job.ahead for job in machine.submissions.page(9)}
         single = {name: machine.submissions.find(name).ahead for name in listed}
         assert single == listed

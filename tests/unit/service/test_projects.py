@@ -89,7 +89,7 @@ def test_a_result_of_another_project_answers_nobody_at_once(machine):
 
 def _ended(machine: Bench, project: str, job: Job) -> Job:
     jobs = SimpleNamespace(submissions=machine.submissions.within(project))
-    return Bench.ended(jobs, job)  # type: ignore[arg-type]
+    return Bench.ended(jobs, job)
 
 
 def test_jobs_are_found_listed_and_dismissed_in_their_project_alone(machine):
@@ -183,7 +183,7 @@ def test_a_job_reads_tables_of_its_project_alone(tmp_path):
     scene = validated(SceneInput, {**SCENE, "meshes": [{**of_table, "database_hash": KEY}]})
     claim = Claim("c", "simulate", "k", {"scene": scene.model_dump(mode="json")}, 1)
 
-    def table(project: str) -> Any:
+    def table(project):
         orders: list[WorkOrder] = []
         crew: Any = SimpleNamespace(
             begin=lambda order, *_: orders.append(order) or SimpleNamespace(log_fields={})

@@ -21,7 +21,7 @@ NUMBER = 20
 
 
 @pytest.fixture(scope="module", autouse=True)
-def migrated_once() -> None:
+def migrated_once():
     """Let migrations upgrade the tables of these versions."""
 
 

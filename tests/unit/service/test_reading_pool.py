@@ -4,7 +4,6 @@ import json
 import os
 import signal
 import time
-from collections.abc import Iterator
 from concurrent.futures import Future
 from pathlib import Path
 from typing import Any
@@ -51,7 +50,7 @@ def left(pool: QuestionPool) -> list[Path]:
 
 
 @pytest.fixture
-def pool(tmp_path: Path) -> Iterator[QuestionPool]:
+def pool(tmp_path):
     made = reading_pool(tmp_path)
     yield made
     made.stop()

@@ -2,7 +2,6 @@
 
 import hashlib
 import os
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -24,12 +23,12 @@ OTHER = hashlib.sha256(b"other").hexdigest()
 
 
 @pytest.fixture(params=["directory", "s3"])
-def place(request: pytest.FixtureRequest) -> str | None:
+def place(request):
     return None if request.param == "directory" else str(request.getfixturevalue("s3_url"))
 
 
 @pytest.fixture
-def store(tmp_path: Path, database_url: str | None, place: str | None) -> Iterator[ResultStore]:
+def store(tmp_path, database_url, place):
     """An empty store, its index in each database and its files in each place."""
     engine = open_database(database_url or tmp_path / "index.sqlite3")
     yield result_store(engine, tmp_path, place)
@@ -85,7 +84,7 @@ def test_the_first_result_of_a_key_stays(store, tmp_path):
 def test_of_results_put_at_the_same_time_one_stays(store, tmp_path):
     """Each has a file of its own, and the one that lost is gone."""
 
-    def put_one(number: int) -> None:
+    def put_one(number):
         file = tmp_path / f"made_{number}"
         file.write_bytes(b"%d" % number)
         store._put(KEY, "database", file)
@@ -114,7 +113,7 @@ def test_a_lost_file_counts_as_no_result(store, tmp_path):
 def test_a_failed_put_may_be_repeated(store, tmp_path, monkeypatch):
     """The bytes were placed, the index was not told: the file of the work is still there."""
 
-    def fail(*_: object) -> None:
+    def fail(*_):
         raise StoreUnavailable("in mid-put")
 
     with monkeypatch.context() as broken:
@@ -131,10 +130,10 @@ def test_a_copy_that_is_cut_off_leaves_no_result(tmp_path, monkeypatch):
     """On another file system the bytes are copied; the name comes when all are there."""
     store = stored_results(tmp_path)
 
-    def refuse(*_: object) -> None:
+    def refuse(*_):
         raise OSError("another file system")
 
-    def cut_off(_file: Path, target: Path) -> None:
+    def cut_off(_file, target):
         target.write_bytes(b"tab")
         raise OSError("no space left")
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import h5py
 import pytest
+from repository import ROOT
 from running_service import Bench, bench
 from service_fakes import FAKE, REGISTRY
 from sqlalchemy import update
@@ -20,7 +21,6 @@ from service.store.database import writing
 from service.store.maintenance import verify_store
 from service.store.results import results
 
-ROOT = Path(__file__).resolve().parents[3]
 PAGE = (ROOT / "docs" / "how-to" / "runbooks.md").read_text("utf-8")
 SECTIONS = {part.partition("\n")[0]: part for part in PAGE.split("\n## ")[1:]}
 SOURCE = "\n".join(
@@ -73,7 +73,7 @@ def test_what_a_runbook_names_exists(title):
 )
 def test_a_command_is_one_of_the_program(command):
     group, verb, *rest = command.split()
-    found = get_command(app).commands[group].commands[verb]  # type: ignore[attr-defined]
+    found = get_command(app).commands[group].commands[verb]
     assert found.make_context(verb, list(rest), resilient_parsing=False).command is found
 
 
@@ -142,7 +142,6 @@ def test_room_is_made_at_once(tmp_path):
 def test_a_damaged_result_is_named_and_then_no_more(tmp_path):
     machine = with_results(tmp_path / "data", "sound", "harmed")
     line = machine.store.find(machine.submit(text="harmed").key, "database")
-    assert line is not None
     (tmp_path / "data" / "results" / line.file).write_bytes(b"tabla")
     machine.close()
     first = follow("Result damaged", tmp_path)

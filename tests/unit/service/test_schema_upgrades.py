@@ -4,16 +4,13 @@ import hashlib
 import json
 import re
 import sqlite3
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from inspect import getsource as inspect_source
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
 
 import pytest
-from alembic.operations import Operations
 from command_line import loa
 from fastapi.testclient import TestClient
 from postgres_server import PostgresServer
@@ -59,7 +56,7 @@ IDENTIFIERS = [f"00000000-0000-4000-8000-00000000000{n}" for n in range(4)]
 
 
 @pytest.fixture(scope="module", autouse=True)
-def migrated_once() -> None:
+def migrated_once():
     """Let migrations make all tables: they are what is tested here."""
 
 
@@ -114,7 +111,7 @@ def test_a_table_of_before_gets_its_headline_when_it_is_listed(tmp_path, monkeyp
         old.commit()
     read: list[SteDatabase] = []
 
-    def noted(found: SteDatabase) -> dict[str, Any]:
+    def noted(found):
         read.append(found)
         return headline_json(found)
 
@@ -143,7 +140,7 @@ def test_a_table_that_cannot_be_read_is_listed_and_read_once(tmp_path, monkeypat
 
 
 @pytest.fixture
-def fresh(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Engine]:
+def fresh(tmp_path, request):
     server: PostgresServer | None = request.getfixturevalue("postgres") if request.param else None
     engine = database_engine(server.new_database() if server else tmp_path / "new.sqlite3")
     yield engine
@@ -214,7 +211,7 @@ def test_a_newer_schema_is_refused_and_left_alone(fresh):
 def test_a_step_that_fails_leaves_the_old_schema(tmp_path, monkeypatch):
     """All or nothing: the tables made before the failure are gone again."""
 
-    def fail(_op: Operations) -> None:
+    def fail(_op):
         raise RuntimeError("in mid-upgrade")
 
     monkeypatch.setattr(migrations, "STEPS", {**migrations.STEPS, REVISIONS[-1]: fail})

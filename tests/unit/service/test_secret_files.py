@@ -1,7 +1,6 @@
 """Secrets of the settings in files: one mechanism for all, one clear error where it cannot be used."""
 
 import os
-from pathlib import Path
 
 import pytest
 
@@ -20,7 +19,7 @@ _VALID = {
 
 
 @pytest.fixture
-def file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def file(tmp_path, monkeypatch):
     """The file of the database's URL, as an editor or `openssl rand` leaves it."""
     path = tmp_path / "url"
     path.write_text(URL + "\n", encoding="utf-8")

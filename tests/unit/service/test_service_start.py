@@ -94,7 +94,7 @@ def test_modules_are_loaded_one_after_the_other(tmp_path, monkeypatch):
     monkeypatch.setattr(sys, "being_loaded", order, raising=False)
     together = Barrier(2)
 
-    def ask(name: str) -> str:
+    def ask(name):
         together.wait()
         return str(on_demand(f"{name}:named")())
 

@@ -24,7 +24,6 @@ LOA = ("-m", "lineofaction.cli")
 def serving(folder: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
     """Serve on a free port; gives the process and its address."""
     process = python(*LOA, "serve", "--port", 0, "--data-directory", folder, stderr=subprocess.PIPE)
-    assert process.stdout is not None
     line = process.stdout.readline()
     assert line, process.communicate()
     yield process, line.rpartition(" ")[2].strip()
@@ -34,13 +33,13 @@ def serving(folder: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
 
 
 @pytest.fixture
-def server(tmp_path: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
+def server(tmp_path):
     with serving(tmp_path / "served") as found:
         yield found
 
 
 @pytest.fixture(scope="module")
-def lasting(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Path, str]]:
+def lasting(tmp_path_factory):
     """The data directory and the address of a server that all tests of the file may ask."""
     folder = tmp_path_factory.mktemp("service") / "served"
     with serving(folder) as (_, address):
@@ -98,7 +97,7 @@ def test_a_stopped_server_leaves_no_worker(server, tmp_path):
     assert json.loads(job.stdout)["process"] == "analyze"
     workers: list[int] = []
 
-    def found() -> bool:
+    def found():
         workers.extend(children(process.pid))
         return bool(workers)
 
@@ -132,7 +131,7 @@ def test_interrupting_is_clean(tmp_path):
     process = python(*LOA, "analyze", fifo, "-o", tmp_path / "ste.nc", stderr=subprocess.PIPE)
     writer: list[int] = []
 
-    def reads() -> bool:
+    def reads():
         assert process.poll() is None, process.communicate()
         try:
             writer.append(os.open(fifo, os.O_WRONLY | os.O_NONBLOCK))

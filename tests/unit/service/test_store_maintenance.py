@@ -4,8 +4,6 @@ import hashlib
 import json
 import os
 import threading
-from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from running_service import Bench, bench
@@ -28,7 +26,7 @@ KEYS = [hashlib.sha256(bytes([n])).hexdigest() for n in range(4)]
 
 
 @pytest.fixture(params=["directory", "s3"])
-def machine(tmp_path: Path, database_url: str | None, request: pytest.FixtureRequest) -> Iterator[Bench]:
+def machine(tmp_path, database_url, request):
     place = None if request.param == "directory" else str(request.getfixturevalue("s3_url"))
     found = bench(tmp_path / "data", REGISTRY, database_url=database_url, results_url=place)
     yield found
@@ -142,7 +140,7 @@ def test_a_result_that_is_asked_for_while_it_is_looked_at_stays(machine, monkeyp
     let_time_pass(machine)
     has = machine.store.files.has
 
-    def put_meanwhile(name: str) -> bool:
+    def put_meanwhile(name):
         monkeypatch.undo()
         put(machine, KEYS[0], b"table")
         return has(name)
@@ -157,7 +155,6 @@ def test_workspaces_and_logs_of_ended_work_go(machine, monkeypatch):
     ended, failed, running = (machine.submit(text=text) for text in ("ended", "failed", "running"))
     claims = [machine.claims.claim() for _ in range(3)]
     for claim in claims:
-        assert claim is not None
         (directory / "work" / claim.id).mkdir(parents=True)
         (directory / "log").mkdir(exist_ok=True)
         (directory / "log" / f"{claim.id}.log").write_text("said")
@@ -179,7 +176,7 @@ def test_collection_beside_writers_loses_nothing(machine):
     stop = threading.Event()
     names = set()
 
-    def collect() -> None:
+    def collect():
         while not stop.is_set():
             list(retention(machine).collect(0.5))
 

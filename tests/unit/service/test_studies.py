@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from study_service import prepared
 
-from fe_contact import SteDatabase, analyze
+from fe_contact import analyze
 from lineofaction.client import LineOfActionClient
 from lineofaction.client.offers import offers
 from lineofaction.gearbox.convert.answers import metadata_json, summary_json
@@ -149,7 +149,7 @@ TORQUES = [30.0, 60.0, 110.0, 230.0]
 
 
 @pytest.fixture(scope="module")
-def table() -> SteDatabase:
+def table():
     pair = gear_pair(Case.model_validate(CASE))
     return analyze(pair, torques=TORQUES, level="draft", positions=8, model="plane_strain")
 

@@ -42,14 +42,14 @@ NOTHING_STORED = SimpleNamespace(find=lambda *_: None)
 
 
 @pytest.fixture(autouse=True)
-def small_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
+def small_tasks(monkeypatch):
     """Cut small tables as large ones are."""
     monkeypatch.setattr(contact_lines, "TASK_SECONDS", 1e-4)
     monkeypatch.setattr(dispatch, "START_SECONDS", 0.0)
 
 
 @pytest.fixture(scope="module")
-def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def data(tmp_path_factory):
     return tmp_path_factory.mktemp("service")
 
 
@@ -58,7 +58,7 @@ def done(
 ) -> Path:
     """Do the work of a process as its worker would; return the file it made."""
     given = process.inputs.model_validate_json(json.dumps(inputs))
-    prepared = process.prepare(given, NOTHING_STORED)  # type: ignore[arg-type]
+    prepared = process.prepare(given, NOTHING_STORED)
     workspace = workspace or Path(mkdtemp(dir=data))
     order = WorkOrder(process.entry, prepared, "0" * 64, workspace, data, scheduler=scheduler)
     module, _, name = process.entry.partition(":")
@@ -103,7 +103,7 @@ class Recording:
 def test_these_jobs_give_their_tasks_to_the_cluster(process, further, task, tmp_path, monkeypatch):
     recording = Recording()
 
-    def connected(address: str, spent: RunCost) -> Any:
+    def connected(address, spent):
         assert address == ADDRESS
         return recording
 

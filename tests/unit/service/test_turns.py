@@ -20,7 +20,6 @@ def turns(**limits: int) -> Turns:
 
 def asked_next(line: Turns) -> str:
     found = line.next()
-    assert found is not None
     line.ended(found)
     return str(found.order.inputs["word"])
 
@@ -41,7 +40,6 @@ def test_a_key_has_one_answered_at_a_time():
     for key in "aab":
         line.enter(question(key, word=key))
     first, second = line.next(), line.next()
-    assert first is not None and second is not None
     assert (first.asker.key, second.asker.key) == ("a", "b")
     assert line.next() is None
     line.ended(first)
@@ -80,7 +78,6 @@ def test_the_answer_to_an_older_question_of_a_slider_is_obsolete():
     line = turns()
     line.enter(question("key", "slider"))
     running = line.next()
-    assert running is not None
     line.enter(question("key"))
     line.enter(question("key", "another"))
     assert not running.obsolete

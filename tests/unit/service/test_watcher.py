@@ -1,11 +1,10 @@
 """The watcher of jobs: all followers get every state at the cost of one, and an outage is outlasted."""
 
 import threading
-from collections.abc import Iterator
 from contextlib import ExitStack
 
 import pytest
-from running_service import Bench, bench, until
+from running_service import bench, until
 from service_fakes import REGISTRY
 from sqlalchemy import delete, event
 
@@ -17,7 +16,7 @@ from service.store.database import database_engine, writing
 
 
 @pytest.fixture
-def watcher(machine: Bench, monkeypatch: pytest.MonkeyPatch) -> Iterator[Watcher[Job]]:
+def watcher(machine, monkeypatch):
     """A watcher as of another process: it has connections of its own, and looks when it hears alone."""
     monkeypatch.setattr(watching, "NET_S", 1e6)
     engine = database_engine(machine.settings.database_address or machine.settings.data_directory / FILE)

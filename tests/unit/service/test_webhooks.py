@@ -45,7 +45,6 @@ def test_a_call_whose_maker_died_is_made_again_and_late_news_of_it_are_ignored(m
     made, job = Calls(machine.engine), succeeded(machine, "a")
     made.enter(job, {"success": "https://host.example/"})
     first, again = made.claim(), made.claim()
-    assert first is not None and again is not None
     assert (first.id, first.attempts, again.attempts) == (again.id, 1, 2)
     made.deliver(first, "late")
     assert [(call.state, call.message) for call in made.of(job)] == [("waiting", "")]
@@ -121,11 +120,11 @@ def test_the_address_that_was_looked_at_is_the_one_connected_to(monkeypatch):
     answers = iter(["93.184.216.34", "127.0.0.1"])
     connected: list[Any] = []
 
-    def resolved(*_args: object, **_more: object) -> list[Any]:
+    def resolved(*_args, **_more):
         return [(socket.AF_INET, socket.SOCK_STREAM, 0, "", (next(answers), 80))]
 
     class Recorded(socket.socket):
-        def connect(self, address: Any) -> None:
+        def connect(self, address):
             connected.append(address)
             raise ConnectionRefusedError
 

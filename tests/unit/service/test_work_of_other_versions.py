@@ -129,7 +129,7 @@ def test_work_of_one_name_in_both_versions_goes_on_for_who_submits_it_to_the_new
 
 
 def test_a_request_repeated_after_an_upgrade_is_the_same_job(machine):
-    def named(key: str) -> str:
+    def named(key):
         return machine.submissions.submit("fake", key, {}, stored=False, name="mine").id
 
     first = named("a" * 64)

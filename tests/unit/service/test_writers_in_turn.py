@@ -49,13 +49,13 @@ def test_writers_are_served_in_the_order_in_which_they_came(tmp_path):
     threads = []
     for number in range(WRITERS):
 
-        def work(number: int = number) -> None:
+        def work(number=number):
             served.append(number)
             time.sleep(0.005)
 
         threads.append(Thread(target=Writer(engine).write, args=(work,)))
         threads[-1].start()
-        until(lambda number=number: number_waiting(engine) == number + 1)  # type: ignore[misc]
+        until(lambda number=number: number_waiting(engine) == number + 1)
     assert len(opened) == 1 + WRITERS
     release.set()
     for thread in (first, *threads):
@@ -81,7 +81,7 @@ def test_one_whose_turn_does_not_come_is_told_that_the_service_is_busy(machine):
 def test_patience_is_one_in_the_queue_and_at_the_file():
     queue, left = WriterQueue(), list[float]()
 
-    def wait() -> None:
+    def wait():
         with queue.turn(60.0) as left_s:
             left.append(left_s)
 
@@ -97,7 +97,7 @@ def test_patience_is_one_in_the_queue_and_at_the_file():
 def test_one_that_gives_up_leaves_its_place_and_one_ahead_is_the_next():
     queue, served = WriterQueue(), list[str]()
 
-    def wait(name: str, ahead: bool) -> None:
+    def wait(name, ahead):
         with queue.turn(60.0, ahead=ahead):
             served.append(name)
 
@@ -107,7 +107,7 @@ def test_one_that_gives_up_leaves_its_place_and_one_ahead_is_the_next():
             pass
         for number, thread in enumerate(threads):
             thread.start()
-            until(lambda number=number: len(queue._waiting) == number + 1)  # type: ignore[misc]
+            until(lambda number=number: len(queue._waiting) == number + 1)
     for thread in threads:
         thread.join()
     assert served == ["ahead", "one", "other"]

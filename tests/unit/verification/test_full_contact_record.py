@@ -6,12 +6,10 @@ import numpy as np
 import pytest
 from analysis_requests import table_request
 
-from fe_contact import Gear, GearPair
+from fe_contact import Gear, GearPair, Status, TableAxes
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.studies.full_contact_record import FACE, PLANE, full_contact_records
 from fe_contact.errors import SolveError
-from fe_contact.options import TableAxes
-from fe_contact.types import Status
 from model_studies.progress import unreported
 from verification import full_contact_record as recording
 from verification.full_contact import FullContactPoint, FullContactTable, solve_full_contact
@@ -25,7 +23,7 @@ FORCES = [200.0, 500.0]
 def solved_table(
     torques: list[float], positions: list[float], failed: tuple[int, ...] = ()
 ) -> FullContactTable:
-    def point(number: int, position: float, torque: float) -> FullContactPoint:
+    def point(number, position, torque):
         if number in failed:
             return FullContactPoint.failed(Status.ITERATION_LIMIT, "cut back too often", 9, torque)
         lag = 1e-7 * torque
@@ -56,7 +54,7 @@ def test_all_loads_are_solved_at_equally_spaced_positions(monkeypatch):
 
 
 def test_misaligned_gears_are_solved_over_the_face(monkeypatch):
-    def solved(_pair, torques, positions, misalignments, **_):  # type: ignore[no-untyped-def]
+    def solved(_pair, torques, positions, misalignments, **_):
         return (solved_table(torques, positions),) * len(misalignments)
 
     monkeypatch.setattr(recording, "solve_full_contact_over_face", solved)

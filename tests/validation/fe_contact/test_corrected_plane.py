@@ -55,7 +55,7 @@ SCENES = {
 
 def solved(contact: PairContact, model: object, force: float) -> np.ndarray:
     """STE (P,) in m."""
-    solution = contact.solve(model, POSITION, np.array([force]))[1]  # type: ignore[arg-type]
+    solution = contact.solve(model, POSITION, np.array([force]))[1]
     assert solution.converged
     return solution.deflection[:, 0]
 

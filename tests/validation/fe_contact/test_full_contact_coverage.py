@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from benchmarks.full_contact_cases import full_contact_cases
-from benchmarks.full_contact_coverage import QUANTITIES, Assessed, assess, reference
+from benchmarks.full_contact_coverage import QUANTITIES, assess, reference
 from fe_contact import analyze
 
 SOURCE = "full finite-element contact by condensation, plane strain, its own convergence forgiven"
@@ -12,7 +12,7 @@ MIN_COVERAGE, LARGEST_RATIO = (95.0, 95.0, 90.0, 90.0, 90.0), 3.0
 
 
 @pytest.fixture(scope="module")
-def held_out() -> list[Assessed]:
+def held_out():
     cases = [case for case in full_contact_cases() if case.held_out]
     assert len({case.regime for case in cases}) >= 6
     return [assess(case, "standard") for case in cases]

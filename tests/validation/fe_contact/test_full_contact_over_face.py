@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmarks.full_contact_over_face import AssessedFace, assess, face_cases
+from benchmarks.full_contact_over_face import assess, face_cases
 from fe_contact import Gear, GearPair
 from verification.full_contact import Resolution, solve_full_contact, solve_full_contact_over_face
 
@@ -20,7 +20,7 @@ LIMIT = 0.15
         pytest.param(face_cases()[1:2], id="23/31"),
     ],
 )
-def assessed(request: pytest.FixtureRequest) -> list[AssessedFace]:
+def assessed(request):
     return [one for case in request.param for one in assess(case)]
 
 

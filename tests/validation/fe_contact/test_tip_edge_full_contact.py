@@ -34,7 +34,7 @@ def pointed_pair() -> GearPair:
     """14/84 teeth, the pinion 0.2 modules wide at its tip."""
     teeth = (14, 84)
 
-    def involute(angle: float) -> float:
+    def involute(angle):
         return math.tan(angle) - angle
 
     target = involute(PRESSURE_ANGLE) + 2.0 * math.tan(PRESSURE_ANGLE) * sum(SHIFTS) / sum(teeth)

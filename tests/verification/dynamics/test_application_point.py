@@ -12,12 +12,11 @@ import pytest
 from geared_scenes import BASE_RADIUS, RPM, gear_pair_scene, with_gear, with_mesh
 from sliced_face import rigid_share_database, sliced_database
 
+from dynamics import Scene, TimeLaw
 from dynamics.assembly.assemble import System, assemble
 from dynamics.integrators import static_equilibrium
-from dynamics.loads import TimeLaw
 from dynamics.mechanism.rotor import build_rotor
 from dynamics.motion.force_balance import force_balance
-from dynamics.scene import Scene
 from fe_contact.ste.load_levels import SMOOTHING
 
 PITCH = 2.0 * math.pi * BASE_RADIUS / 20

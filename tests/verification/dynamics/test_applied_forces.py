@@ -164,7 +164,7 @@ def test_work_is_accounted_for(course, turns_with):
         (30.0, -20.0, 5.0),
         (2.0, 1.0, 3.0),
         course("rotor"),
-        turns_with,  # type: ignore[arg-type]
+        turns_with,
     )
     scene = rotor(force)
     held = tuple(replace(bushing, axial_stiffness=STIFFNESS) for bushing in scene.bushings)

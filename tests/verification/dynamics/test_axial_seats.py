@@ -26,12 +26,12 @@ def displacements(number: int) -> np.ndarray:
 
 
 @pytest.fixture(scope="module")
-def fixed() -> LoadedBearing:
+def fixed():
     return LoadedBearing(ROW)
 
 
 @pytest.fixture(scope="module")
-def floating() -> LoadedBearing:
+def floating():
     return LoadedBearing(ROW, locating="none")
 
 
@@ -39,7 +39,7 @@ def unpressed(fixed: LoadedBearing, d: np.ndarray) -> np.ndarray:
     """Return the displacement with z where the locating bearing carries no axial force."""
     far = 2.0 * LEVER * float(np.hypot(d[3], d[4]))
 
-    def thrust(z: float) -> float:
+    def thrust(z):
         return float(fixed.evaluate((*d[:2], z, *d[3:]), ANGLE).force[2])
 
     return np.array([*d[:2], brentq(thrust, -far, far, xtol=1e-20, rtol=1e-15), *d[3:]])

@@ -10,11 +10,10 @@ import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene, spring_table, square_wave_table
 
+from dynamics import Housing, TimeLaw
 from dynamics.assembly.assemble import assemble
-from dynamics.joints import Housing
 from dynamics.linearize import HarmonicResponse, harmonic_response
-from dynamics.loads import AppliedForce, TimeLaw
-from dynamics.loads.load_course import Orders
+from dynamics.loads import AppliedForce, Orders
 
 NAMES = ("input.left", "input.right", "output.left", "output.right")
 ON = {"lateral": "on", "axial": "on", "tilt": "on", "housing_modes": "on", "gyroscopic": "off"}

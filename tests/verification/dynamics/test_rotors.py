@@ -7,12 +7,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from repository import EXAMPLES
 
 from dynamics.assembly.assemble import System, assemble
 from dynamics.bearings import Bushing
 from dynamics.integrators import static_equilibrium
 from dynamics.joints import FreeRotation, ImposedRotation
-from dynamics.linearize import ForcedResponse, forced_response, natural_modes
+from dynamics.linearize import forced_response, natural_modes
 from dynamics.loads import LoadTorque, TimeLaw, Unbalance
 from dynamics.motion.observation import observe
 from dynamics.periodic.period_map import periodic_problem
@@ -108,7 +109,7 @@ BY_ROSS = {
 
 
 @pytest.fixture(scope="module")
-def response() -> ForcedResponse:
+def response():
     """Return the response up to the first order of the mesh, in which both shafts' orders lie."""
     return forced_response(assemble(dynamic_scene(scene_of(EXAMPLE)[0], {})), SPEEDS, orders=1)
 
@@ -265,7 +266,6 @@ def test_gravity_sags_the_rotor_and_leaves_its_frequencies():
 # Textbook benchmarks as scene files: what their sources and independent computations say.
 
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 ROTATIONAL = (1475.75, 1930.35, 2658.32, 7462.80, 11775.27)
 TRANSLATIONAL = (743.16, 1102.42, 1896.02, 2276.38, 6986.30, 9647.91)
 

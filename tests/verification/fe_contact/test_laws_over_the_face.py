@@ -49,7 +49,7 @@ def test_the_moment_of_the_load_is_what_a_misalignment_works_on(hand):
     ste = table.static_transmission_error[:, 1, :, 0]
     by_tilt = (ste[:, 2] - ste[:, 0]) / (skew[2] - skew[0])
 
-    def of_moment(arm: np.ndarray) -> np.ndarray:
+    def of_moment(arm):
         moment = force[:, None] * arm[..., 0] / table.geometry.face_width
         return np.asarray((moment[:, 2, 1] - moment[:, 0, 1]) / (force[2] - force[0]))
 
@@ -71,7 +71,7 @@ def arm_of_pairs(table: SteDatabase) -> np.ndarray:
 def test_a_tilted_pair_has_the_ripple_of_gears_that_were_rotated_in_space(monkeypatch):
     """At 60 um, 3 mrad: gaps of the rigid tilted helicoids between the same bodies. A helix slope has not."""
 
-    def ripples() -> np.ndarray:
+    def ripples():
         table = draft(helical(), force=6000.0, misalignments=[-60e-6, 60e-6])
         return np.ptp(table.static_transmission_error[:, 0, :, 0], axis=0)
 

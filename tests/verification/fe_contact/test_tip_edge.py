@@ -55,7 +55,7 @@ def curves(case: ContactCase) -> np.ndarray:
 
 
 @pytest.fixture(scope="module", params=list(PAIRS))
-def sharp(request: pytest.FixtureRequest) -> tuple[str, ContactCase]:
+def sharp(request):
     make, model = PAIRS[request.param]
     return request.param, contact_case(make(FlankModification()), TORQUES, model=model)
 

@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene
 
-from dynamics.ablation import WARM_UP, Ablation, ablate, runs_of_ablation
+from dynamics import Outputs, ablate, simulate
+from dynamics.ablation import WARM_UP, runs_of_ablation
 from dynamics.errors import InputError
-from dynamics.scene import Outputs
-from dynamics.simulation import simulate
 from lineofaction.gearbox.studies.ablate.run import RUN
 
 SCENE = gear_pair_scene(duration=0.06)
@@ -18,7 +17,7 @@ ONLY = ["lateral", "axial", "tilt", "friction"]
 
 
 @pytest.fixture(scope="module")
-def made() -> Ablation:
+def made():
     return ablate(SCENE, only=ONLY)
 
 

@@ -31,7 +31,7 @@ def frequency(ka: float) -> float:
 
 
 @pytest.fixture(autouse=True, scope="module")
-def _library() -> None:
+def _library():
     pytest.importorskip("ngsolve", reason=WITH_LIBRARY)
 
 

@@ -216,8 +216,6 @@ def test_what_cannot_be_used_is_refused():
         Hull(hull.nodes, hull.triangles[1:]).require_closed()
     with pytest.raises(InputError, match="volume"):
         Hull(hull.nodes, hull.triangles[:, ::-1]).require_closed()
-    with pytest.raises(InputError, match="density"):
-        Air(density=-1.0)
 
 
 @pytest.mark.law

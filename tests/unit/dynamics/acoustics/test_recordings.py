@@ -248,6 +248,6 @@ def test_what_has_no_sound_is_refused():
         principal_direction(np.zeros((3, 100)), RATE)
     with pytest.raises(InputError, match="above 40"):
         audible(np.zeros(100), 30.0)
-    run.bearing_force = np.empty((0, 3, run.time.size))  # type: ignore[misc]
+    run.bearing_force = np.empty((0, 3, run.time.size))
     with pytest.raises(InputError, match=r"outputs\.bearing_forces = true"):
         force_recording(run, "left")

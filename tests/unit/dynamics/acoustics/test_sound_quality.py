@@ -25,7 +25,7 @@ def tone(level: float, frequency: float = 1000.0) -> Recording:
 
 
 @pytest.fixture(autouse=True, scope="module")
-def _library() -> None:
+def _library():
     pytest.importorskip("mosqito", reason=WITH_LIBRARY)
 
 

@@ -95,7 +95,6 @@ def test_a_matrix_holds_the_shafts_together_in_all_directions():
     ("make", "field"),
     [
         (lambda: Coupling("c", "a", "a", 1.0), "second"),
-        (lambda: Coupling("c", "a", "b", 0.0), "torsional_stiffness"),
         (lambda: Coupling("c", "a", "b", 1.0, stiffness=((1.0,),)), "stiffness"),
         (lambda: Coupling("c", "a", "b", 1.0, damping=tuple(map(tuple, -np.eye(6)))), "damping"),
         (

@@ -9,13 +9,7 @@ from sliced_face import sliced_database
 from two_stage_scenes import two_stages
 
 from dynamics.deflection import Deflection, deflect
-from dynamics.deflection.agreement import (
-    CLOSEST,
-    PASSES,
-    TOLERANCE,
-    _with_knots,
-    in_agreement,
-)
+from dynamics.deflection.agreement import CLOSEST, PASSES, TOLERANCE, _with_knots, in_agreement
 from dynamics.settings.load_case import LoadCase
 
 CASES = (LoadCase("drive"), LoadCase("less", factor=0.4), LoadCase("coast", direction="coast"))

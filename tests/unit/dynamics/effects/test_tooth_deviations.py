@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 from geared_scenes import Table, gear_pair_scene, repeated, spring_table, with_mesh
 
+from dynamics import Scene, forced_response
 from dynamics.assembly.assemble import assemble
 from dynamics.influence import estimate_influences
-from dynamics.linearize import forced_response
 from dynamics.meshes.nominal_table import nominal_table, table_as_made
-from dynamics.scene import Scene
 from fe_contact import Gear
 from fe_contact.geometry.flank_tolerances import run_out_tolerance
 

@@ -311,11 +311,11 @@ LATER = ("pieces in other files", "a mesh of another program", "geometry in plac
 
 
 @pytest.fixture
-def opened(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+def opened(monkeypatch):
     files: list[str] = []
     plain = builtins.open
 
-    def recorded(file: Any, *options: Any, **others: Any) -> Any:
+    def recorded(file, *options, **others):
         files.append(str(file))
         return plain(file, *options, **others)
 
@@ -332,7 +332,7 @@ def test_it_is_refused_unread(tmp_path, opened, name):
     file.write_bytes(content(canary))
     caught: list[Exception] = []
 
-    def read() -> None:
+    def read():
         with pytest.raises(InputError) as refusal:
             read_mesh(file, "mm")
         caught.append(refusal.value)
@@ -419,7 +419,7 @@ def test_no_facet_of_a_coarse_surface_is_a_line():
 
 
 @pytest.fixture
-def thin_wall() -> DrawnSurface:
+def thin_wall():
     """A closed case with a wall of 2 mm."""
     outer, inner = box((0.2, 0.1, 0.06), (40, 20, 12)), box((0.196, 0.096, 0.056), (41, 21, 13))
     on_outside, facets = np.unique(outer.surface[:, :3], return_inverse=True)

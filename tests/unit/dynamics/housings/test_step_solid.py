@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from dynamics.errors import InputError, SolveError
-from dynamics.housings import StepSolid, step_solid
+from dynamics.housings import step_solid
 
 WRITE = """
 import sys, gmsh
@@ -46,7 +46,7 @@ def write(file: Path, *options: str) -> Path:
 
 
 @pytest.fixture(scope="module")
-def solid(tmp_path_factory: pytest.TempPathFactory) -> StepSolid:
+def solid(tmp_path_factory):
     return step_solid(write(tmp_path_factory.mktemp("step") / "block.step"))
 
 
@@ -85,10 +85,10 @@ def test_a_turned_file_has_the_same_bores(solid, tmp_path):
     assert turned.volume == pytest.approx(solid.volume, rel=1e-9)
     assert turned.surface == pytest.approx(solid.surface, rel=1e-6)
 
-    def sizes(of: StepSolid) -> np.ndarray:
+    def sizes(of):
         return np.array(sorted((bore.diameter, bore.length) for bore in of.bores))
 
-    def distances(of: StepSolid) -> np.ndarray:
+    def distances(of):
         middle = np.array([bore.position for bore in sorted(of.bores, key=lambda bore: bore.diameter)])
         return np.linalg.norm(middle[:, None] - middle, axis=-1)
 

@@ -1,23 +1,19 @@
 """Sizes of effects in dB: of nothing 0, and what runs with and without them show."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 from geared_scenes import RPM, gear_pair_scene, with_gear
 
-from dynamics.ablation import ablate
+from dynamics import Outputs, Scene, TimeLaw, ablate, forced_response
 from dynamics.acoustics import a_weighting
-from dynamics.assembly.assemble import System, assemble
+from dynamics.assembly.assemble import assemble
 from dynamics.influence import decide_effects, estimate_influences, neglected_check, response_influences
 from dynamics.influence.level_change import MAX, BearingForces, level_change
-from dynamics.influence.linear_figures import LinearFigures, linear_figures
-from dynamics.influence.operating_conditions import OperatingCondition, conditions_at
-from dynamics.linearize import forced_response
-from dynamics.loads import TimeLaw
-from dynamics.scene import Outputs, Scene
+from dynamics.influence.linear_figures import linear_figures
+from dynamics.influence.operating_conditions import conditions_at
 
 LINES = {1.0: 4.0, 2.0: 9.0, 3.0: 1e-9}
 
@@ -111,7 +107,7 @@ def test_a_response_costs_its_lines_and_the_systems_without_an_effect(monkeypatc
     system, speed = assemble(helical()), np.linspace(10.0, 500.0, 200)
     solved: list[int] = []
 
-    def counted(own: System, conditions: Sequence[OperatingCondition]) -> LinearFigures:
+    def counted(own, conditions):
         solved.append(sum(condition.speed.size for condition in conditions))
         return linear_figures(own, conditions)
 

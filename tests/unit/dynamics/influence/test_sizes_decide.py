@@ -8,19 +8,16 @@ from flexible_scenes import flexible_pair
 from geared_scenes import RPM, gear_pair_scene, square_wave_table, with_gear
 from planetary_scenes import driven_scene, published_set
 
-from dynamics.ablation import ablate
+from dynamics import Integration, Outputs, Scene, TimeLaw, ablate, simulate
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.influence import decide_effects, estimate_influences, neglected_check
 from dynamics.influence.content_key import content_key
-from dynamics.influence.neglected_check import Decision
 from dynamics.linearize import partial_fractions
 from dynamics.linearize.parametric_response import parametric_response
 from dynamics.linearize.steady_vibration import excited
-from dynamics.loads import TimeLaw
-from dynamics.scene import Integration, Outputs, Scene
 from dynamics.shafts import BeamSection
-from dynamics.simulation import simulate, to_file
+from dynamics.simulation import to_file
 
 QUICK = Outputs(energy_audit=False, receipt="minimal")
 
@@ -84,7 +81,7 @@ def test_sizes_are_computed_once_for_one_content(monkeypatch):
     scene, count = helical(), [0]
     computed = neglected_check.linear_figures
 
-    def counted(*parts: object) -> object:
+    def counted(*parts):
         count[0] += 1
         return computed(*parts)
 
@@ -112,7 +109,7 @@ def test_an_ablation_decides_once_for_the_scene_itself(monkeypatch):
     """Toggled scenes decide nothing anew: each differs from the scene by one effect."""
     decision: list[float | None] = []
 
-    def recorded(scene: Scene) -> Decision:
+    def recorded(scene):
         decision.append(scene.level_tolerance)
         return decide_effects(scene)
 
@@ -146,7 +143,7 @@ class Unknown:
     name, unit = "anything", "dB"
 
     def squares(self, forces: object) -> np.ndarray:
-        return np.asarray(0.5 * np.sum(np.abs(forces.bearing_force[:, :3]) ** 2, axis=(0, 1)))  # type: ignore[attr-defined]
+        return np.asarray(0.5 * np.sum(np.abs(forces.bearing_force[:, :3]) ** 2, axis=(0, 1)))
 
 
 def test_what_has_no_known_content_is_not_kept():

@@ -10,20 +10,16 @@ from planetary_scenes import planetary_scene, published_set
 from scipy.linalg import expm
 from scipy.sparse.csgraph import connected_components
 
+from dynamics import Integration, Outputs, RollingContact, TimeLaw, simulate, simulate_to_file
 from dynamics.arrays.modal_freedoms import MIN, TOGETHER, modal_freedoms_of
 from dynamics.arrays.sparse_rows import joined_by_chains, sparse_matrices
 from dynamics.assembly import bearing_rest
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import SolveError
-from dynamics.forces import RollingContact
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.linearize import linearize
-from dynamics.loads import AppliedForce, TimeLaw
-from dynamics.loads.load_course import Orders
+from dynamics.loads import AppliedForce, Orders
 from dynamics.motion.observation import local_state, observe
-from dynamics.scene import Integration
-from dynamics.settings import Outputs
-from dynamics.simulation import simulate, simulate_to_file
 from dynamics.types import RunStatus, StaticStatus
 
 # Static equilibrium: deflections by hand, and what happens without one.

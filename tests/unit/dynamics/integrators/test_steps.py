@@ -7,19 +7,16 @@ import numpy as np
 import pytest
 from geared_scenes import RPM, gear_pair_scene, spring_table, square_wave_table
 
+from dynamics import Integration, Outputs, TimeLaw, simulate
 from dynamics.assembly.assemble import assemble
 from dynamics.integrators import integrate, march, static_equilibrium
 from dynamics.integrators import tableaus as t
 from dynamics.integrators.advance import Control, next_level
-from dynamics.integrators.integrate import Trajectory
 from dynamics.integrators.method_choice import EVALUATIONS, LIMIT, choose_method
 from dynamics.integrators.start_value import Trail
 from dynamics.integrators.workspace import Count, geometric_steps
-from dynamics.loads import TimeLaw
 from dynamics.motion.observation import observe
 from dynamics.results.histories import filtered
-from dynamics.scene import Integration, Outputs
-from dynamics.simulation import simulate
 
 # Order conditions of the Runge-Kutta methods (Butcher), and the implicit method's stability at infinity.
 
@@ -226,12 +223,12 @@ def made():
 
 
 @pytest.fixture(scope="module")
-def stored(made) -> Trajectory:
+def stored(made):
     return integrate(made, static_equilibrium(made), made.scene.integration)
 
 
 @pytest.fixture(scope="module")
-def points(made) -> Trajectory:
+def points(made):
     """Every point of the inner grid: the steps do not know how they are sampled."""
     every = replace(made.sampling, rate=made.sampling.inner_rate, stop_band=0.0, taps=3)
     return integrate(replace(made, sampling=every), static_equilibrium(made), made.scene.integration)

@@ -7,12 +7,10 @@ import numpy as np
 import pytest
 from geared_scenes import RPM, Table, gear_pair_scene, spring_table, with_mesh
 
+from dynamics import Outputs, Scene, TimeLaw, forced_response, simulate
 from dynamics.assembly.assemble import assemble
-from dynamics.linearize import HarmonicResponse, forced_response, harmonic_response
-from dynamics.loads import TimeLaw
+from dynamics.linearize import HarmonicResponse, harmonic_response
 from dynamics.orders import resample_to_position, spectrum
-from dynamics.scene import Outputs, Scene
-from dynamics.simulation import simulate
 from dynamics.types import FloatArray
 
 Response = Callable[..., HarmonicResponse]

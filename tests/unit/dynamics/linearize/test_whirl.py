@@ -18,9 +18,8 @@ from housed_pair import ON, housed_pair
 from planetary_scenes import driven_scene, planetary_scene, published_set
 from two_stage_scenes import two_stages
 
+from dynamics import Bushing, Coupling, Inertia, Integration, Outputs, Shaft, TimeLaw, simulate
 from dynamics.assembly.assemble import assemble
-from dynamics.bearings import Bushing
-from dynamics.joints import Coupling
 from dynamics.linearize import (
     harmonic_response,
     linearize,
@@ -35,10 +34,6 @@ from dynamics.linearize.operating_speeds import law_speeds
 from dynamics.linearize.parametric_response import parametric_response
 from dynamics.linearize.steady_vibration import excited, gyroscopic_terms, swept_vibration
 from dynamics.linearize.whirl_modes import terms_at
-from dynamics.loads import TimeLaw
-from dynamics.scene import Integration, Outputs
-from dynamics.shafts import Inertia, Shaft
-from dynamics.simulation import simulate
 
 # Whirl: closed forms of a disc on bearings, the same from a fixed and from a rotating frame.
 

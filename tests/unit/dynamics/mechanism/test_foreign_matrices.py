@@ -44,7 +44,7 @@ def _npy(header: str, data: bytes = b"") -> bytes:
 def _archive(content: bytes, megabytes: int = 0) -> Content:
     """Pack a content with so many of zeros behind it."""
 
-    def packed(_canary: Path) -> bytes:
+    def packed(_canary):
         stream = io.BytesIO()
         with (
             zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive,

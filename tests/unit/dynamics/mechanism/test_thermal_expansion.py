@@ -276,25 +276,33 @@ def test_off_is_the_scene_as_drawn():
 # What cannot be.
 
 
-def test_flanks_that_bind_are_refused():
-    with pytest.raises(InputError, match=r"meshes\[0\].coast.backlash.*at temperature"):
-        warmed_meshes(warm_pair(gears=400.0, housing=20.0))
+TIGHT = replace(DEEP_GROOVE, inner_groove=0.505, outer_groove=0.51)
 
 
-def test_a_table_that_does_not_reach_is_refused():
-    with pytest.raises(InputError, match=r"meshes\[0\].center_distance_change"):
-        warmed_meshes(warm_pair(table=distant(spring_table(4e8)), housing=400.0))
-
-
-def test_grooves_that_hold_nothing_are_refused():
-    with pytest.raises(InputError, match=r"rolling_bearings\[0\].ball.clearance"):
-        warmed_bearings(
-            warm_pair(
-                rings=(-200.0, 900.0),
-                fits=None,
-                rows=(replace(DEEP_GROOVE, inner_groove=0.505, outer_groove=0.51),) * 2,
-            )
-        )
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (
+            lambda: warmed_meshes(warm_pair(gears=400.0, housing=20.0)),
+            r"meshes\[0\].coast.backlash.*at temperature",
+        ),
+        (
+            lambda: warmed_meshes(warm_pair(table=distant(spring_table(4e8)), housing=400.0)),
+            r"meshes\[0\].center_distance_change",
+        ),
+        (
+            lambda: warmed_bearings(warm_pair(rings=(-200.0, 900.0), fits=None, rows=(TIGHT, TIGHT))),
+            r"rolling_bearings\[0\].ball.clearance",
+        ),
+        (lambda: warm_pair(rings=(70.0, None)), r"rolling_bearings\[0\].outer_temperature"),
+        (lambda: warm_pair(temperatures=None), r"shafts\[0\].temperature.*left out without"),
+        (lambda: Temperatures(Material(70e9, 0.3, 2700.0), 60.0), r"housing_material\.thermal_expansion"),
+    ],
+    ids=["flanks that bind", "table too short", "tight grooves", "ring", "no housing", "material"],
+)
+def test_what_cannot_be_warmed_is_refused_by_name(make, words):
+    with pytest.raises(InputError, match=words):
+        make()
 
 
 @pytest.mark.parametrize("kind", ["shafts", "gears"])
@@ -303,21 +311,6 @@ def test_a_part_without_a_temperature_is_named(kind):
     first, *rest = getattr(scene, kind)
     with pytest.raises(InputError, match=rf"{kind}\[0\].temperature = None: must be given"):
         replace(scene, **{kind: (replace(first, temperature=None), *rest)})
-
-
-def test_a_ring_without_a_temperature_is_named():
-    with pytest.raises(InputError, match=r"rolling_bearings\[0\].outer_temperature"):
-        warm_pair(rings=(70.0, None))
-
-
-def test_temperatures_without_a_housing_are_refused():
-    with pytest.raises(InputError, match=r"shafts\[0\].temperature.*left out without"):
-        warm_pair(temperatures=None)
-
-
-def test_a_material_without_an_expansion_is_named():
-    with pytest.raises(InputError, match=r"housing_material\.thermal_expansion"):
-        Temperatures(Material(70e9, 0.3, 2700.0), 60.0)
 
 
 @pytest.mark.parametrize(

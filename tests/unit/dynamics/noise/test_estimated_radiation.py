@@ -4,19 +4,8 @@ import numpy as np
 import pytest
 from sounding_scene import AIR, housing, radiation, response
 
-from dynamics.acoustics import (
-    ElementalRadiators,
-    monopoles_efficiency,
-    outer_hull,
-    sphere_efficiency,
-)
-from dynamics.noise import (
-    EstimatedRadiation,
-    HousingRadiation,
-    estimated_radiation,
-    panel_sound,
-    radiated_sound,
-)
+from dynamics.acoustics import ElementalRadiators, monopoles_efficiency, outer_hull, sphere_efficiency
+from dynamics.noise import HousingRadiation, estimated_radiation, panel_sound, radiated_sound
 from dynamics.noise.estimated_radiation import allowed_levels
 
 
@@ -67,7 +56,7 @@ def test_monopoles_alone_count_where_a_small_body_hardly_radiates():
 
 
 @pytest.fixture(scope="module")
-def estimate() -> EstimatedRadiation:
+def estimate():
     return estimated_radiation(housing(), radiation(), AIR)
 
 

@@ -1,9 +1,7 @@
 """Boundary elements at the loudest lines: they hold there alone, narrow the band, keep to their budget."""
 
 import sys
-from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -31,7 +29,7 @@ HERTZ = 700.0
 
 
 @pytest.fixture(scope="module")
-def estimate() -> EstimatedRadiation:
+def estimate():
     return estimated_radiation(housing(), radiation(), AIR)
 
 
@@ -98,8 +96,8 @@ def test_panels_between_the_line_and_the_octave_below_are_those_of_the_finer_oct
     used: list[float] = []
     panels_module = sys.modules["dynamics.noise.panel_sound"]
 
-    def noted(call: Any, at: int, heard: list[float]) -> Callable[..., Any]:
-        def called(*arguments: Any) -> Any:
+    def noted(call, at, heard):
+        def called(*arguments):
             heard.append(arguments[at])
             return call(*arguments)
 

@@ -11,17 +11,11 @@ from sounding_housings import part_of_scene, rigid_housing
 from sounding_scene import ON, SPEEDS, housing, oscillating, radiation, response, sound
 from surface_motions import normal_displacement
 
-from dynamics.acoustics import (
-    Air,
-    ElementalRadiators,
-    EquivalentRadiatedPower,
-    OrderPower,
-    monopoles_efficiency,
-)
+from dynamics.acoustics import Air, ElementalRadiators, EquivalentRadiatedPower, monopoles_efficiency
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.linearize import forced_response
-from dynamics.noise import RadiatedSound, housing_radiation, radiated_sound
+from dynamics.noise import housing_radiation, radiated_sound
 
 AIR = Air()
 
@@ -81,16 +75,6 @@ def test_air_acts_from_one_motion_on_another_as_the_other_way_round():
     assert second @ force[0] == pytest.approx(first @ force[1], rel=1e-9)
 
 
-def test_a_frequency_of_1_khz_is_not_weighted():
-    tone = OrderPower(np.array([[1000.0]]), np.array([[1e-6]]))
-    assert tone.weighted_level == pytest.approx(tone.level, abs=1e-9)
-
-
-def test_third_octaves_add_up_to_the_total():
-    orders = sound().orders
-    np.testing.assert_allclose(orders.third_octaves()[1].sum(axis=0), orders.power.sum(axis=0), rtol=1e-12)
-
-
 @pytest.mark.law
 def test_a_rigid_sphere_on_springs_radiates_as_theory_says():
     body, driven, plane, ka = oscillating(5.0, 5.0 * (2.0 * np.pi * 250.0) ** 2)
@@ -116,14 +100,6 @@ def test_without_mass_to_speak_of_the_hull_follows_its_springs():
     velocity = 3.0 * 2.0 * np.pi * driven.frequency / stiffness
     area = normal_displacement(body.surface)[1].sum()
     np.testing.assert_allclose(found.power, AIR.impedance * area * velocity**2 / 6.0, rtol=0.03)
-
-
-def test_a_result_comes_back_from_its_file_as_it_was(tmp_path):
-    sound().to_netcdf(tmp_path / "sound.nc")
-    again = RadiatedSound.from_netcdf(tmp_path / "sound.nc")
-    for name in RadiatedSound.arrays():
-        np.testing.assert_array_equal(getattr(again, name), getattr(sound(), name))
-    assert (again.housing, again.bearing, again.metadata) == (("housing",), PAIR, sound().metadata)
 
 
 def test_what_does_not_belong_together_is_refused():

@@ -11,8 +11,7 @@ from sounding_housings import smooth_motion, with_surface
 
 from dynamics.acoustics import Air, ElementalRadiators, outer_hull
 from dynamics.housings import ReducedHousing
-from dynamics.noise import HousingRadiation, housing_radiation
-from dynamics.noise.coarse_hull import radiating_hull
+from dynamics.noise import HousingRadiation, housing_radiation, radiating_hull
 from dynamics.noise.housing_radiation import USUAL, Octave, expected_knots, octave_ranges, radiation_cost
 from dynamics.work_cost import Cost
 

@@ -16,7 +16,7 @@ PLACES = np.array([[0.0, 0.1, 0.2], [0.3, 0.4, 0.5], [0.0, 5.0, 5.0]])
 
 
 @pytest.fixture(autouse=True, scope="module")
-def _library() -> None:
+def _library():
     pytest.importorskip("ngsolve", reason="boundary elements need the extra boundary-elements")
 
 

@@ -10,15 +10,7 @@ from hulls import box, sphere
 from reduced_housings import PAIR, bare_housing
 from sounding_housings import rigid_housing, smooth_motion, with_surface
 from sounding_scene import response
-from varied_housing import (
-    FINE,
-    MESH,
-    blind_levels,
-    covered,
-    meshed,
-    sound_model,
-    undamped_elsewhere,
-)
+from varied_housing import FINE, MESH, blind_levels, covered, meshed, sound_model, undamped_elsewhere
 
 from dynamics.acoustics import Air, ElementalRadiators, Hull, Range, outer_hull
 from dynamics.acoustics.air import directions
@@ -27,6 +19,7 @@ from dynamics.housings import reduced_housing
 from dynamics.noise import (
     GUESSES,
     DesignFigure,
+    Sensitivity,
     estimated_radiation,
     forced_power,
     housing_radiation,
@@ -37,14 +30,8 @@ from dynamics.noise import (
     sound_limit,
 )
 from dynamics.noise.housing_recordings import sound_paths
-from dynamics.noise.sensitivities import Sensitivity, _ranked
-from dynamics.noise.sound_band import (
-    USUAL_RANGES,
-    _peak_error,
-    _speed_step_error,
-    largest_level,
-    mean_power,
-)
+from dynamics.noise.sensitivities import _ranked
+from dynamics.noise.sound_band import USUAL_RANGES, _peak_error, _speed_step_error, largest_level, mean_power
 from dynamics.vibration import seat_forces
 
 # Sound pressure at a microphone: closed forms, its sound power, superposition, distance, delay.
@@ -264,7 +251,7 @@ def test_damping_of_a_resonance_costs_a_decibel_for_an_eighth():
     near = coarse[int(np.argmax(forced_power(model, coarse, 1)[1].power[0]))]
     fine = np.linspace(0.995 * near, 1.005 * near, 60)
 
-    def level(factor: float) -> float:
+    def level(factor):
         varied = GUESSES["housing_damping"].varied(model, factor)
         return largest_level(fine, forced_power(varied, fine, 1)[1])
 

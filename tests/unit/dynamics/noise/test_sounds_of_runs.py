@@ -16,11 +16,10 @@ from sounding_housings import part_of_scene, rigid_housing, smooth_motion, with_
 from sounding_scene import ON, SPEEDS, housing, oscillating, radiation, response, sound
 from swept_runs import BEARINGS, RATE, drawn_amplitudes, order_forces, swept_run
 
+from dynamics import Outputs, RunResult, TimeLaw, forced_response, simulate
 from dynamics.acoustics import Air, ElementalRadiators, EquivalentRadiatedPower, a_weighting
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
-from dynamics.linearize import forced_response
-from dynamics.loads import TimeLaw
 from dynamics.noise import (
     RadiatedSound,
     SoundOverTime,
@@ -36,9 +35,6 @@ from dynamics.noise import (
     velocity_recording,
 )
 from dynamics.orders import bearing_orders
-from dynamics.results import RunResult
-from dynamics.scene import Outputs
-from dynamics.simulation import simulate
 from dynamics.vibration import (
     analyze_vibration,
     housing_motion,

@@ -75,7 +75,7 @@ def test_a_power_that_follows_the_speed_is_averaged_over_it_whatever_the_blocks(
 
 
 def test_two_signals_share_the_speeds_that_both_pass():
-    def blocks(low: float, high: float) -> Waterfall:
+    def blocks(low, high):
         frequency = np.linspace(high, low, 9)
         zeros = np.zeros((9, 3))
         return Waterfall(np.arange(3.0), np.arange(9.0), frequency, zeros, zeros[:, 0], "N", 1.5)

@@ -9,22 +9,12 @@ import pytest
 from geared_scenes import RPM, gear_pair_scene, spring_table, square_wave_table, with_gear, with_mesh
 from sliced_face import sliced_database
 
+from dynamics import CoastFlank, Integration, Outputs, TimeLaw, simulate, steady_states
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError, ResultError
 from dynamics.linearize import harmonic_response
-from dynamics.loads import TimeLaw
-from dynamics.meshes import CoastFlank
-from dynamics.periodic import (
-    OrbitStatus,
-    SteadyStates,
-    find_orbit,
-    periodic_problem,
-    steady_states,
-    sweep,
-)
+from dynamics.periodic import OrbitStatus, SteadyStates, find_orbit, periodic_problem, sweep
 from dynamics.periodic.steady_states import BRANCH, DOWN, UP
-from dynamics.scene import Integration, Outputs
-from dynamics.simulation import simulate
 
 SPEEDS = np.array([11600.0, 11900.0, 12300.0, 12700.0]) * RPM
 
@@ -36,7 +26,7 @@ def light_pair(sense=1.0):
 
 
 @pytest.fixture(scope="module")
-def light() -> SteadyStates:
+def light():
     return steady_states(assemble(light_pair()), SPEEDS)
 
 

@@ -6,9 +6,7 @@ import numpy as np
 import pytest
 from geared_scenes import NOMINAL_FORCE, RPM, gear_pair_scene, square_wave_table
 
-from dynamics.loads import TimeLaw
-from dynamics.results import RunResult
-from dynamics.simulation import simulate, simulate_to_file
+from dynamics import RunResult, TimeLaw, simulate, simulate_to_file
 
 HANDOVER = 0.22
 """Half of the part of a base pitch that two pairs share, where the stiffness steps."""

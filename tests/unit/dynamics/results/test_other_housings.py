@@ -6,9 +6,8 @@ from dataclasses import replace
 import numpy as np
 from geared_scenes import gear_pair_scene
 
-from dynamics.joints import Housing
+from dynamics import Housing, simulate
 from dynamics.results.other_housings import other_housings
-from dynamics.simulation import simulate
 from dynamics.types import FloatArray
 
 

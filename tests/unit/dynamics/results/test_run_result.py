@@ -9,19 +9,11 @@ from planetary_scenes import planetary_scene, published_set
 
 from bounds import engineering
 from bounds.brief import MAX_LINES, WIDTH
+from dynamics import Integration, Outputs, RunResult, TimeLaw, simulate
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError, ResultError
-from dynamics.loads import TimeLaw
-from dynamics.results import RunResult
-from dynamics.results.mesh_figures import (
-    ContactState,
-    contact_shares,
-    dynamic_factor,
-    planet_load_sharing,
-)
+from dynamics.results.mesh_figures import ContactState, contact_shares, dynamic_factor, planet_load_sharing
 from dynamics.results.order_fit import order_amplitudes, orders_seen, unwrapped
-from dynamics.scene import Integration, Outputs
-from dynamics.simulation import simulate
 
 # Series of a result belong together; files give them back bit by bit.
 

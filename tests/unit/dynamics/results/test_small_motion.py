@@ -8,15 +8,12 @@ import pytest
 from drawn_trains import PITCH, Train
 from geared_scenes import square_wave_table
 
+from dynamics import Bushing, LoadTorque, Outputs, Scene, TimeLaw, simulate
 from dynamics.assembly.assemble import assemble
-from dynamics.bearings import BallBearing, Bushing, RollingBearing
+from dynamics.bearings import BallBearing, RollingBearing
 from dynamics.errors import SolveError
-from dynamics.loads import LoadTorque, TimeLaw
 from dynamics.motion.sampled_states import States
 from dynamics.results.small_motion import SmallMotionCheck
-from dynamics.scene import Scene
-from dynamics.settings import Outputs
-from dynamics.simulation import simulate
 
 
 def pair_on(stiffness: float, **changes) -> Scene:

@@ -9,17 +9,9 @@ from scipy.linalg import eigh
 from scipy.optimize import brentq
 from scipy.special import iv, jv, kv, yv
 
+from dynamics import Inertia, Shaft, hollow_cylinder
 from dynamics.errors import InputError
-from dynamics.shafts import (
-    BeamSection,
-    Disc,
-    Inertia,
-    PointOfApplication,
-    Shaft,
-    elastic_shaft,
-    hollow_cylinder,
-    timoshenko_beam,
-)
+from dynamics.shafts import BeamSection, Disc, PointOfApplication, elastic_shaft, timoshenko_beam
 
 # Elastic coordinates of a shaft: closed forms, orthogonality to rigid motion, and the stated errors.
 
@@ -151,11 +143,6 @@ def test_impossible_sizes_are_refused(sizes):
         hollow_cylinder(*sizes)
 
 
-def test_negative_inertia_is_refused():
-    with pytest.raises(InputError, match=r"^polar"):
-        Inertia(1.0, -1e-9, 0.0)
-
-
 # Conical sections of shafts: closed forms of a cantilever cone, its body, its frequency, bad input.
 
 
@@ -234,7 +221,7 @@ def clamped_frequency(r: float) -> float:
     Z the Bessel functions J, Y, I, K; y = y' = 0 at x = 1, y'' = (x^4 y'')' = 0 at x = r.
     """
 
-    def determinant(p: float) -> float:
+    def determinant(p):
         base, tip = 2.0 * math.sqrt(p), 2.0 * math.sqrt(p * r)
         rows = [[f(2, base), s * f(3, base), f(4, tip), t * f(3, tip)] for f, s, t in KINDS]
         return float(np.linalg.det(rows))
@@ -263,10 +250,10 @@ def test_many_steps_come_to_the_cone():
         PointOfApplication(LENGTH, True, True, True, True),
     )
 
-    def first(sections: tuple[BeamSection, ...]) -> float:
+    def first(sections):
         return float(elastic_shaft(sections, (), ends, 4e3, 0.0).bending.frequency[0])
 
-    def stepped(count: int) -> tuple[BeamSection, ...]:
+    def stepped(count):
         middles = (np.arange(count) + 0.5) / count
         return tuple(BeamSection(LENGTH / count, DIAMETER * (1.0 - 0.4 * x)) for x in middles)
 
@@ -288,7 +275,6 @@ def test_a_shaft_of_two_cones_weighs_what_they_do_and_lies_on_their_centroid():
     [
         ("end_bore_diameter", {"end_bore_diameter": 0.05}),
         ("end_bore_diameter", {"bore_diameter": 0.03, "end_outer_diameter": 0.02}),
-        ("end_outer_diameter", {"end_outer_diameter": 0.0}),
     ],
 )
 def test_what_is_no_cone_is_named(field, sizes):

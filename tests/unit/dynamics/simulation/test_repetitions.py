@@ -7,16 +7,12 @@ import pytest
 from geared_scenes import RPM, gear_pair_scene, spring_table, with_gear, with_mesh
 from sliced_face import sliced_database
 
+from dynamics import CoastFlank, Outputs, RunResult, Scene, TimeLaw, simulate, simulate_to_file
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import SolveError
 from dynamics.influence import decide_effects
 from dynamics.integrators import march
 from dynamics.integrators.start_value import added_rows
-from dynamics.loads import TimeLaw
-from dynamics.meshes import CoastFlank, MeshTable
-from dynamics.results import RunResult
-from dynamics.scene import Outputs, Scene
-from dynamics.simulation import simulate, simulate_to_file
 from dynamics.simulation.violations import needed_effects
 from dynamics.types import Json
 
@@ -77,7 +73,6 @@ def test_rows_are_matched_in_their_order():
     before = assemble(coasting())
     after = assemble(replace(coasting(), effects={"gyroscopic": "on", "backlash": "on"}))
     rows = added_rows(before, after)
-    assert rows is not None
     np.testing.assert_array_equal(after.arrays.direction[rows], before.arrays.direction)
     assert rows.tolist() == [0, *range(2, after.arrays.direction.shape[0])]
     assert added_rows(after, before) is None
@@ -106,7 +101,7 @@ def test_what_a_tolerance_neglected_is_on_after_flanks_parted():
 
 
 @pytest.fixture(scope="module")
-def table() -> MeshTable:
+def table():
     knots = (-60e-6, -30e-6, -10e-6, 0.0, 10e-6, 30e-6, 60e-6)
     return sliced_database(knots, (-1e-4, 0.0, 1e-4), positions=12).force_table()
 

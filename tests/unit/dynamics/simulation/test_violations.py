@@ -7,12 +7,9 @@ import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene, spring_table, square_wave_table, with_mesh
 
+from dynamics import CoastFlank, Outputs, RunResult, Scene, TimeLaw, simulate, simulate_to_file
 from dynamics.errors import InputError, SolveError
-from dynamics.loads import TimeLaw
-from dynamics.meshes import CoastFlank
-from dynamics.results import RunResult
-from dynamics.scene import Outputs, Scene
-from dynamics.simulation import interrupted_run, simulate, simulate_to_file
+from dynamics.simulation import interrupted_run
 from dynamics.simulation.violations import needed_effects
 from dynamics.types import Json, RunStatus
 
@@ -74,7 +71,7 @@ def test_a_streamed_run_is_repeated_too_and_may_be_interrupted_in_between(tmp_pa
     stop = threading.Event()
     runs: list[float] = []
 
-    def progress(fraction: float, what: str) -> None:
+    def progress(fraction, what):
         if runs and fraction < runs[-1]:
             stop.set()  # the second run has begun
         runs.append(fraction)
@@ -102,7 +99,7 @@ def test_forces_beyond_the_table_are_noticed():
 
 
 def test_a_bearing_that_lets_go_is_noticed():
-    def checks(result: RunResult) -> list[Json]:
+    def checks(result):
         found = result.effect_ledger["checks"]
         return [one for one in found if one["assumption"] == "linear bearing stays loaded"]
 

@@ -2,16 +2,12 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from geared_scenes import RPM, gear_pair_scene, with_gear
 
+from dynamics import Outputs, RunResult, Scene, TimeLaw, simulate
 from dynamics.influence import decide_effects, neglected_check
-from dynamics.loads import TimeLaw
-from dynamics.results import RunResult
-from dynamics.scene import Outputs, Scene
-from dynamics.simulation import simulate
 from dynamics.study import (
     Design,
     Factor,
@@ -112,7 +108,7 @@ def test_sizes_are_estimated_at_the_points_of_the_decision_alone(monkeypatch):
     estimated: list[Scene] = []
     estimate = neglected_check._estimated
 
-    def counted(scene: Scene, *others: Any) -> object:
+    def counted(scene, *others):
         estimated.append(scene)
         return estimate(scene, *others)
 
@@ -134,7 +130,7 @@ def test_a_run_with_a_part_that_the_decision_never_had_decides_by_itself():
         alone = decide_effects(scene)
         assert (decision.automatic == alone.automatic) == (angle >= 0.012)
     made = study(braced, design)  # a task keeps its decision
-    assert made.metadata["effects"] == task.effects.to_json()  # type: ignore[union-attr]
+    assert made.metadata["effects"] == task.effects.to_json()
 
 
 def test_points_of_a_decision_are_the_middle_and_the_ends_of_every_factor():

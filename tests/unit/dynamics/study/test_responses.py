@@ -5,11 +5,9 @@ import pytest
 from geared_scenes import gear_pair_scene
 from planetary_scenes import planetary_scene, published_set
 
+from dynamics import Outputs, RunResult, simulate
 from dynamics.errors import InputError
-from dynamics.results import RunResult
 from dynamics.results.mesh_figures import contact_shares, planet_load_sharing
-from dynamics.scene import Outputs
-from dynamics.simulation import simulate
 from dynamics.study import Response, responses_of
 
 
@@ -19,7 +17,7 @@ def value(run: RunResult, response: Response, start: float = 0.0) -> float:
 
 
 @pytest.fixture(scope="module")
-def run() -> RunResult:
+def run():
     return simulate(gear_pair_scene(duration=0.1))
 
 

@@ -1,9 +1,8 @@
 """A study of scenes: its figures are those of single runs, whoever does them and whatever fails."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,11 +16,8 @@ from geared_scenes import (
     with_mesh,
 )
 
+from dynamics import RunResult, Scene, TimeLaw, simulate
 from dynamics.errors import InputError, SolveError
-from dynamics.loads import TimeLaw
-from dynamics.results import RunResult
-from dynamics.scene import Scene
-from dynamics.simulation import simulate
 from dynamics.study import (
     Design,
     Levels,
@@ -37,7 +33,7 @@ from dynamics.study import (
     with_effects,
 )
 from model_studies import LeftOut
-from model_studies.workers import ByExecutor, Remembering, Workers
+from model_studies.workers import ByExecutor, Remembering
 
 RESPONSES = (
     Response("bearing_force", "input.left", order=1),
@@ -87,7 +83,7 @@ GRID = Design({TORQUE: Levels((50.0, 100.0, 150.0)), SPEED: Levels((60.0, 90.0))
 
 
 @pytest.fixture(scope="module")
-def found() -> Study:
+def found():
     return study(task(GRID), GRID, keep_worst=2)
 
 
@@ -122,7 +118,7 @@ def test_every_run_of_a_batch_is_the_run_alone_bit_by_bit():
 
 
 def test_a_study_describes_no_run(monkeypatch):
-    def described(*_: object) -> None:
+    def described(*_):
         raise AssertionError("modes of a run whose responses alone are taken")
 
     monkeypatch.setattr("dynamics.simulation.documents.natural_modes", described)
@@ -203,14 +199,14 @@ def test_an_interrupted_study_goes_on_where_it_was(tmp_path):
         allowed: int
         done: list[int]
 
-        def run(self, function: Any, shared: Any, items: Sequence[Any]) -> Iterator[Any]:
+        def run(self, function, shared, items):
             for item in items:
                 if len(self.done) == self.allowed:
                     raise EndsInMidRun
                 self.done.append(len(item))
                 yield function(shared, item)
 
-    def study_by(workers: Workers) -> Study:
+    def study_by(workers):
         return study(with_effects(task(design), design, workers), design, workers)
 
     first, second = Counting(5, []), Counting(99, [])
@@ -253,7 +249,7 @@ def test_worst_cases_are_kept_as_full_runs(found, tmp_path):
 
 
 def test_a_kept_run_that_its_checks_refuse_does_not_end_the_study(found, tmp_path, monkeypatch):
-    def refuse(_scene: Scene, _file: Path, **_: object) -> None:
+    def refuse(_scene, _file, **_):
         raise SolveError("more than 1 % of the work is unaccounted for")
 
     monkeypatch.setattr("dynamics.study.run_study.simulate_to_file", refuse)

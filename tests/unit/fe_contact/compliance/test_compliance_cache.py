@@ -6,7 +6,6 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from threading import Barrier
-from typing import Any
 
 import numpy as np
 import pytest
@@ -15,10 +14,10 @@ from spur_gears import gear as make_gear
 
 import fe_contact.compliance.cyclic_compliance as cyclic
 import fe_contact.compliance.flank_compliance_2d as flow
+from fe_contact import FlankModification, Gear, Material, RunOut
 from fe_contact.cache_reads import COMPLIANCE_READS
 from fe_contact.compliance import (
     FlankCompliance,
-    FlankCompliance3D,
     PlaneHypothesis,
     cache,
     condensation_cost,
@@ -28,22 +27,19 @@ from fe_contact.compliance import (
     flank_compliances_3d,
     predict_cost,
 )
-from fe_contact.geometry import FlankModification, Gear
-from fe_contact.geometry.tooth_deviations import RunOut
-from fe_contact.material import Material
 from fe_contact.mesh import ClampedBore, PlaneStrain, SectorRecipe, quadratic_mesh
 from host import lock
 
 
 @pytest.fixture
-def counted(monkeypatch: pytest.MonkeyPatch) -> list[Gear]:
+def counted(monkeypatch):
     """Collect the gears that were computed."""
     computed: list[Gear] = []
     genuine = flow.compute_flank_compliance
 
-    def counting(gear: Gear, *arguments: object) -> FlankCompliance:
+    def counting(gear, *arguments):
         computed.append(gear)
-        return genuine(gear, *arguments)  # type: ignore[arg-type]
+        return genuine(gear, *arguments)
 
     monkeypatch.setattr(flow, "compute_flank_compliance", counting)
     return computed
@@ -80,7 +76,7 @@ def test_who_wants_a_body_that_is_being_condensed_waits_for_it(tmp_path, monkeyp
     gear, all_missed = make_gear(), Barrier(4)
     recipe, read = coarse_plane(gear), cache.read_compliance
 
-    def missed(*arguments: Any) -> Any:
+    def missed(*arguments):
         result = read(*arguments)
         all_missed.wait(60.0)
         return result
@@ -100,7 +96,7 @@ def test_a_process_that_does_not_come_back_is_not_waited_for(tmp_path, monkeypat
     recipe, strain = coarse_plane(gear), PlaneHypothesis.PLANE_STRAIN
     key = flow.compliance_key(gear, recipe, strain, flow.condensed_teeth(gear, recipe, 1))
 
-    def counting(descriptor: int) -> None:
+    def counting(descriptor):
         tries.append(descriptor)
         lock(descriptor)
 
@@ -118,7 +114,7 @@ def test_a_process_that_does_not_come_back_is_not_waited_for(tmp_path, monkeypat
 def test_an_interruption_while_it_waits_is_told_as_such(tmp_path, monkeypatch, counted):
     gear, descriptors = make_gear(), []
 
-    def interrupted(descriptor: int) -> None:
+    def interrupted(descriptor):
         descriptors.append(descriptor)
         raise KeyboardInterrupt
 
@@ -131,7 +127,7 @@ def test_an_interruption_while_it_waits_is_told_as_such(tmp_path, monkeypatch, c
 
 
 def test_a_failure_where_nothing_can_be_locked_is_that_of_the_computation(tmp_path):
-    def failing() -> FlankCompliance:
+    def failing():
         raise ZeroDivisionError
 
     file = tmp_path / "no directory"
@@ -244,9 +240,9 @@ def count_runs(monkeypatch: pytest.MonkeyPatch) -> list[Gear]:
     computed: list[Gear] = []
     genuine = cyclic.compute_flank_compliance_3d
 
-    def counting(gear: Gear, *arguments: object, **reports: object) -> FlankCompliance3D:
+    def counting(gear, *arguments, **reports):
         computed.append(gear)
-        return genuine(gear, *arguments, **reports)  # type: ignore[arg-type]
+        return genuine(gear, *arguments, **reports)
 
     monkeypatch.setattr(cyclic, "compute_flank_compliance_3d", counting)
     return computed
@@ -297,7 +293,7 @@ def test_all_that_decides_the_result_in_three_dimensions_is_in_the_key():
         {"teeth": 10},
         {"material": Material(poissons_ratio=0.29)},
     ):
-        keys.append(cyclic.compliance_key_3d(replace(SPUR, **change), recipe, 2, clamped))  # type: ignore[arg-type]
+        keys.append(cyclic.compliance_key_3d(replace(SPUR, **change), recipe, 2, clamped))
     assert len(set(keys)) == len(keys)
     hands = [cyclic.compliance_key_3d(replace(SPUR, helix_angle=a), recipe, 2, clamped) for a in (0.1, -0.1)]
     assert hands[0] == hands[1]
@@ -353,7 +349,7 @@ def test_one_process_meshes_a_pair_and_the_coarse_meshes_that_follow(tmp_path, m
     sizes: list[int] = []
     genuine = quadratic_mesh.ask_gmsh
 
-    def counted(request: dict[str, Any], *rest: Any) -> dict[str, Any]:
+    def counted(request, *rest):
         sizes.append(len(request["regions"]))
         return genuine(request, *rest)
 

@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from fe_contact import Gear, Material
 from fe_contact.compliance import (
     FiniteWidthCompliance,
     PlaneHypothesis,
@@ -17,8 +18,6 @@ from fe_contact.compliance.finite_width import even_load, shape_functions, under
 from fe_contact.contact.face_patch import FaceGrid, face_loads
 from fe_contact.contact.patch import load_vector
 from fe_contact.errors import InputError
-from fe_contact.geometry import Gear
-from fe_contact.material import Material
 from fe_contact.mesh import MeshRecipe, SectorRecipe
 
 
@@ -42,12 +41,12 @@ def self_compliance(found: FiniteWidthCompliance) -> float:
 
 
 @pytest.fixture(scope="module")
-def gear() -> Gear:
+def gear():
     return Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 
 
 @pytest.fixture(scope="module")
-def usual(gear: Gear) -> FiniteWidthCompliance:
+def usual(gear):
     return beyond(gear)
 
 

@@ -11,18 +11,15 @@ from compliance_gears import HELICAL, SPUR, WEBBED, coarse, relative, whole_gear
 import fe_contact.compliance.condensed_gear as gear_module
 import fe_contact.compliance.cyclic_compliance as flow
 import fe_contact.compliance.sector_stiffness as stiffness_module
-from fe_contact.compliance import (
-    flank_compliance_3d,
-    flank_compliances_3d,
-)
+from fe_contact import Material, RingGear
+from fe_contact.compliance import ComplianceChecks, flank_compliance_3d, flank_compliances_3d
 from fe_contact.compliance.condensed_gear import pressure_forces
 from fe_contact.compliance.factorization import factorise
-from fe_contact.compliance.flank import ComplianceChecks, refuse_broken_laws
+from fe_contact.compliance.flank import refuse_broken_laws
 from fe_contact.compliance.gear_checks import least_eigenvalue
 from fe_contact.compliance.sector_stiffness import twist
 from fe_contact.errors import InputError, SolveError
-from fe_contact.geometry import RingGear, Toothing
-from fe_contact.material import Material
+from fe_contact.geometry import Toothing
 from fe_contact.mesh import ClampedBore, SectorRecipe
 
 GEARS = pytest.mark.parametrize("gear", [SPUR, HELICAL], ids=["spur", "helical"])
@@ -181,8 +178,8 @@ def test_checks_see_a_wrong_ring(monkeypatch):
     genuine = gear_module.close_ring
     spoil: Callable[..., object]
 
-    def spoiled(*arguments: object) -> object:
-        return spoil(genuine(*arguments))  # type: ignore[arg-type]
+    def spoiled(*arguments):
+        return spoil(genuine(*arguments))
 
     monkeypatch.setattr(gear_module, "close_ring", spoiled)
     for law, change in {
@@ -193,7 +190,7 @@ def test_checks_see_a_wrong_ring(monkeypatch):
         spoil = change
         with pytest.raises(SolveError) as refusal:
             flank_compliance_3d(HELICAL, coarse(HELICAL), reach=1)
-        checks = refusal.value.partial.checks  # type: ignore[attr-defined]
+        checks = refusal.value.partial.checks
         assert getattr(checks, law) > 1e-7, law
 
 
@@ -214,7 +211,7 @@ def test_least_eigenvalue_and_pressure_are_those_of_closed_forms():
     grid_s, grid_z = np.broadcast_arrays(s, planes[:, None])
     for p, q in ((0, 0), (1, 0), (0, 1), (1, 1), (2, 0), (0, 2)):
 
-        def integral(low: float, high: float, power: int) -> float:
+        def integral(low, high, power):
             return float((high ** (power + 1) - low ** (power + 1)) / (power + 1))
 
         exact = integral(0, 1, p) * integral(-1, 0, q) + 2.0 * integral(1, 3, p) * integral(0, 2, q)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fe_contact.compliance import front_memory
-from fe_contact.compliance.elimination_tree import EliminationTree, Front, bisected_tree
+from fe_contact.compliance.elimination_tree import EliminationTree, bisected_tree
 from fe_contact.compliance.front_assembly import add_elements, add_updates, pack
 from fe_contact.compliance.front_memory import FrontMemory
 from fe_contact.compliance.sector_stiffness import ElementStiffness
@@ -31,7 +31,7 @@ def test_updates_wait_apart_and_fill_the_memory_that_the_tree_names():
     tree, _, _ = sheet()
     memory, waiting, most = FrontMemory(tree), 0, 0
 
-    def walk(front: Front) -> None:
+    def walk(front):
         """Write a number of its own into each update; its parent finds it as it was."""
         nonlocal waiting, most
         updates = []
@@ -51,7 +51,6 @@ def test_all_factors_lie_in_one_piece_of_the_named_size():
     tree, freedoms, stiffness = sheet()
     _, condensation = condense(tree, freedoms, stiffness)
     owner = condensation.factors[0].factor.base
-    assert owner is not None
     assert owner.size == tree.factor_entries
     assert all(part.factor.base is owner and part.coupling.base is owner for part in condensation.factors)
 

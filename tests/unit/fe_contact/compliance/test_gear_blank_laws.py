@@ -9,21 +9,20 @@ import pytest
 from compliance_gears import coarse, coarse_plane, moved
 
 import fe_contact.compliance.cyclic_compliance as flow
+from fe_contact import STEEL, Gear, GearBlank
 from fe_contact.compliance import (
     FlankCompliance,
     FlankCompliance3D,
     PlaneHypothesis,
     flank_compliance,
     flank_compliance_3d,
+    unit_root_stress_3d,
 )
 from fe_contact.compliance.condensed_gear import condensed_gear, probe_loads
 from fe_contact.compliance.condensed_sector import freedoms
 from fe_contact.compliance.flank_compliance_2d import compliance_key, condensed_ring
 from fe_contact.compliance.ring_checks import uniform_pressure
-from fe_contact.compliance.unit_root_stress import unit_root_stress_3d
-from fe_contact.geometry import Gear, GearBlank
 from fe_contact.geometry.web_compliance import torsion_compliance
-from fe_contact.material import STEEL
 from fe_contact.mesh import ClampedBore, mesh_gear, quad_sector
 from model_studies.stage_clock import StageClock
 
@@ -87,7 +86,6 @@ def test_torsion_of_web_and_hub_is_that_of_tubes_in_the_plane():
     """A moment at the rim's inside turns it against hub and bore by (1/r_i^2 - 1/r_o^2) / (4 pi G b)."""
     gear, recipe = with_blank(), coarse_plane(SOLID)
     mesh, web = mesh_gear(gear, recipe), gear.web
-    assert web is not None
     ring = condensed_ring(gear, mesh, PlaneHypothesis.PLANE_STRESS)
     radius = np.linalg.norm(mesh.points, axis=1)
     rim, hub = (np.flatnonzero(np.abs(radius - r) < 1e-9) for r in (web.outer_radius, web.inner_radius))
@@ -147,7 +145,6 @@ def test_a_web_off_the_middle_tilts_the_rim_and_its_mirror_image_the_other_way()
 def test_a_left_hand_gear_keeps_its_web_on_its_side():
     left = replace(SOLID, helix_angle=-math.radians(20.0), blank=replace(BLANK, web_offset=6e-3))
     found = solid_3d(left)
-    assert left.web is not None
     for face in (left.web.low, left.web.high):
         assert np.abs(found.z - face).min() < 1e-15
     alone = flank_compliance_3d(left, six_layers(left))

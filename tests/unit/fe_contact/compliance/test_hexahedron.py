@@ -25,12 +25,12 @@ RECIPE = replace(SectorRecipe.draft(GEAR), layers=8, merge_rows=(-1, -3))
 
 
 @pytest.fixture(scope="module")
-def section() -> QuadSector:
+def section():
     return quad_sector(GEAR, RECIPE)
 
 
 @pytest.fixture(scope="module")
-def nodes(section: QuadSector) -> np.ndarray:
+def nodes(section):
     """Nodes (m, 20, 3) of one strongly turned layer."""
     return layer_nodes(section.points[section.grid.quads], 5e-3, 0.1)
 
@@ -118,7 +118,7 @@ class FreeBore:
     seat = BoreSeat()
 
     def constrained(self, grid: object, z: np.ndarray) -> np.ndarray:
-        return np.zeros((len(z), grid.nodes, 3), dtype=bool)  # type: ignore[attr-defined]
+        return np.zeros((len(z), grid.nodes, 3), dtype=bool)
 
 
 def test_constant_strain_is_exact_in_a_merged_helical_sector(section):

@@ -12,36 +12,29 @@ from scipy.sparse.linalg import splu
 
 import fe_contact.compliance.root_stress_3d as face_module
 import fe_contact.compliance.sector_stiffness as stiffness_module
-from fe_contact.compliance import PlaneHypothesis
-from fe_contact.compliance.condensed_gear import pressure_forces
-from fe_contact.compliance.condensed_sector import freedoms, inward_loads
-from fe_contact.compliance.factorization import factorise
-from fe_contact.compliance.plane_elasticity import stiffness_matrix
-from fe_contact.compliance.root_stress import UnitRootStress, refuse_broken_stress
-from fe_contact.compliance.root_stress_3d import compute_root_stress_3d, root_functionals
-from fe_contact.compliance.root_surface_3d import quad_root
-from fe_contact.compliance.unit_root_stress import (
-    edge_stress,
-    triangle_root,
+from fe_contact import Gear, Material, RingGear
+from fe_contact.compliance import (
+    PlaneHypothesis,
+    UnitRootStress,
     unit_root_stress,
     unit_root_stress_3d,
     unit_root_stresses,
     unit_root_stresses_3d,
 )
+from fe_contact.compliance.condensed_gear import pressure_forces
+from fe_contact.compliance.condensed_sector import freedoms, inward_loads
+from fe_contact.compliance.factorization import factorise
+from fe_contact.compliance.plane_elasticity import stiffness_matrix
+from fe_contact.compliance.root_stress import refuse_broken_stress
+from fe_contact.compliance.root_stress_3d import compute_root_stress_3d, root_functionals
+from fe_contact.compliance.root_surface_3d import quad_root
+from fe_contact.compliance.unit_root_stress import edge_stress, triangle_root
 from fe_contact.contact.face_patch import FaceGrid, face_loads
 from fe_contact.contact.patch import load_vector
 from fe_contact.errors import SolveError
-from fe_contact.geometry import Gear, RingGear, Toothing, tooth_profile
+from fe_contact.geometry import Toothing, tooth_profile
 from fe_contact.geometry.root_tangent import critical_section, tangent_angle
-from fe_contact.material import Material
-from fe_contact.mesh import (
-    ClampedBore,
-    MeshRecipe,
-    PlaneStrain,
-    SectorRecipe,
-    mesh_gear,
-    quad_sector,
-)
+from fe_contact.mesh import ClampedBore, MeshRecipe, PlaneStrain, SectorRecipe, mesh_gear, quad_sector
 
 GEARS = pytest.mark.parametrize("gear", [SPUR, HELICAL], ids=["spur", "helical"])
 PLANE = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
@@ -299,8 +292,8 @@ def test_a_broken_law_is_refused_by_name(name):
 def test_checks_see_a_wrong_ring(monkeypatch):
     genuine = face_module.loaded_cuts
 
-    def spoiled(*arguments: object) -> object:
-        cuts = genuine(*arguments)  # type: ignore[arg-type]
+    def spoiled(*arguments):
+        cuts = genuine(*arguments)
         return replace(cuts, near={m: cuts.near[m] * (1.0 + 1e-3) for m in cuts.near})
 
     monkeypatch.setattr(face_module, "loaded_cuts", spoiled)

@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 from compliance_gears import coarse_plane
 
-from fe_contact import AnalysisOptions, GearPair, TableAxes, analyze
+from fe_contact import AnalysisOptions, Gear, GearBlank, GearPair, TableAxes, analyze
 from fe_contact.compliance import PlaneHypothesis, flank_compliance, flank_compliance_3d
 from fe_contact.compliance.deformed_section import deformed_sections
 from fe_contact.compliance.ring_checks import uniform_pressure
 from fe_contact.errors import InfeasibleGeometry, InputError
-from fe_contact.geometry import Gear, GearBlank
 
 WHOLE = Gear(teeth=21, normal_module=4e-3, face_width=24e-3, bore_diameter=50e-3)
 
@@ -50,7 +49,7 @@ def test_cut_planes_and_bore_do_not_move():
 
 @pytest.mark.filterwarnings("ignore::bounds.PlausibilityWarning")
 def test_a_pair_with_a_sector_deflects_less_and_is_another_result():
-    def mean(gear: Gear) -> float:
+    def mean(gear):
         pair = GearPair(WHOLE, gear)
         options = AnalysisOptions(level="draft", model="plane_strain", positions=8, receipt="minimal")
         return float(analyze(pair, TableAxes(torques=[100.0]), options).static_transmission_error.mean())

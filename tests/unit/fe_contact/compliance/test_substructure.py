@@ -10,13 +10,12 @@ import scipy.sparse as sp
 from analysis_requests import table_request
 from scipy.sparse.linalg import splu
 
-from fe_contact import Gear, GearPair
+from fe_contact import STEEL, Gear, GearPair
 from fe_contact.analysis.request.request_check import check_request
-from fe_contact.compliance import flank_compliance_3d
+from fe_contact.compliance import ComplianceChecks, flank_compliance_3d
 from fe_contact.compliance.cyclic_ring import close_ring, hold_sector
 from fe_contact.compliance.elimination_tree import EliminationTree, bisected_tree
 from fe_contact.compliance.factorization import factorise, fill_reducing_order
-from fe_contact.compliance.flank import ComplianceChecks
 from fe_contact.compliance.rounding import (
     EPSILON,
     LARGEST_ROUNDING,
@@ -27,7 +26,6 @@ from fe_contact.compliance.rounding import (
 from fe_contact.compliance.sector_stiffness import ElementStiffness
 from fe_contact.compliance.substructure import condense
 from fe_contact.errors import InputError, SolveError
-from fe_contact.material import STEEL
 from fe_contact.mesh import SectorRecipe
 
 RANDOM = np.random.default_rng(7)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numba import typeof
 
-from fe_contact import Gear, GearPair
+from fe_contact import Gear, GearPair, Status
 from fe_contact.contact import (
     Candidates,
     ContactModel,
@@ -28,7 +28,6 @@ from fe_contact.contact.patch import Patches
 from fe_contact.contact.point_problem import PointProblem, State, point_problems, problem_at
 from fe_contact.contact.strip import Gap, gap_table
 from fe_contact.effects.influence.estimated_curve import Springs
-from fe_contact.types import Status
 
 MODULUS = 115e9
 HALF_PLANE = 1.0 / (math.pi * MODULUS)
@@ -266,7 +265,7 @@ def candidates(slices: int, corner: bool = True) -> Candidates:
 
 
 @pytest.fixture(scope="module")
-def springs() -> ContactProblem:
+def springs():
     return Springs(PAIR)._springs(MODEL)
 
 

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from fe_contact import Gear, GearPair, analyze
-from fe_contact.contact import PatchRule, Slices, contact_candidates, teeth_in_reach
-from fe_contact.contact.model import ContactModel
+from fe_contact.contact import ContactModel, PatchRule, Slices, contact_candidates, teeth_in_reach
 
 RULE = PatchRule(half_width=3e-4, edge_length=2e-4)
 COMMON = {"normal_module": 1e-3, "face_width": 10e-3, "bore_diameter": 15e-3}

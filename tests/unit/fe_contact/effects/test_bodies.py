@@ -73,11 +73,11 @@ def test_called_for_by_a_web_only_and_contributes_nothing_else():
 
 @pytest.mark.law
 def test_off_is_the_solid_pair_and_on_for_it_changes_no_bit():
-    solid = analyze(SOLID, **COARSE, model="plane_strain")  # type: ignore[arg-type]
+    solid = analyze(SOLID, **COARSE, model="plane_strain")
     for pair, choice in ((SOLID, "on"), (WEBBED, "off")):
-        found = analyze(pair, **COARSE, model="plane_strain", effects={"thin_rim": choice})  # type: ignore[arg-type]
+        found = analyze(pair, **COARSE, model="plane_strain", effects={"thin_rim": choice})
         assert np.array_equal(found.static_transmission_error, solid.static_transmission_error)
-    webbed = analyze(WEBBED, **COARSE, model="plane_strain")  # type: ignore[arg-type]
+    webbed = analyze(WEBBED, **COARSE, model="plane_strain")
     change = webbed.mean(torque=100.0).value - solid.mean(torque=100.0).value
     minimum = 100.0 / PINION.base_radius * web_compliance(WHEEL)
     assert minimum < change < 6.0 * minimum
@@ -97,7 +97,7 @@ def test_a_web_acts_across_the_face_and_off_the_middle_not_in_the_plane():
 
 def model(**options: object):
     asked = {"torques": [100.0], "level": "draft"} | options
-    return check_request(PAIR, *table_request(**asked))  # type: ignore[arg-type]
+    return check_request(PAIR, *table_request(**asked))
 
 
 def test_an_aligned_spur_pair_is_corrected_and_nothing_else():
@@ -138,7 +138,7 @@ def test_an_explicit_model_decides(options, across, corrected):
 
 
 def test_the_estimate_falls_with_width_and_vanishes_with_poissons_ratio():
-    def excess(width: float, ratio: float) -> float:
+    def excess(width, ratio):
         gear = dataclasses.replace(GEAR, face_width=width, material=Material(210e9, ratio))
         return finite_width_excess(GearPair(gear, gear, 80e-3))[0]
 

@@ -6,20 +6,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from fe_contact.contact.model import ContactModel
+from fe_contact import FlankModification, Gear, GearPair, PitchDeviation, RunOut, Shaft, ToothFlank, Wave
+from fe_contact.contact import ContactModel
 from fe_contact.effects import EFFECTS, ContactScene, Effect, Verdict, compose
 from fe_contact.effects.effect import across_face
 from fe_contact.errors import InputError
-from fe_contact.geometry import (
-    FlankModification,
-    Gear,
-    GearPair,
-    PitchDeviation,
-    RunOut,
-    Shaft,
-    ToothFlank,
-    Wave,
-)
 
 NAMES = [effect.name for effect in EFFECTS]
 EVERYTHING_ON = dict.fromkeys(NAMES, "on")

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from analysis_requests import table_request
 
-from fe_contact import FlankModification, Gear, GearPair
+from fe_contact import FlankModification, Gear, GearPair, Shaft, TableAxes
 from fe_contact.analysis.pairs.pair_contact import pair_contact
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.compliance import flank_compliance
@@ -20,9 +20,8 @@ from fe_contact.effects.influence.estimated_curve import Springs
 from fe_contact.effects.influence.slice_compliance import slice_compliance
 from fe_contact.effects.influence.tooth_bending import half_plane, tooth_bending
 from fe_contact.hertz import contact_modulus, half_width, relative_radius
-from fe_contact.options import TableAxes
 from fe_contact.planning.plan import make_plan
-from fe_contact.shaft import Shaft, Shafts
+from fe_contact.shaft import Shafts
 from fe_contact.types import FloatArray
 
 M = 3e-3
@@ -35,7 +34,7 @@ HELICAL = GearPair(replace(GEAR, helix_angle=0.35), replace(GEAR, helix_angle=-0
 
 def influence(pair: GearPair, name: str, **asked: object) -> EstimatedInfluence:
     """Estimate one effect of a request at one load."""
-    checked = check_request(pair, *table_request(**{"normal_forces": [2000.0]} | asked))  # type: ignore[arg-type]
+    checked = check_request(pair, *table_request(**{"normal_forces": [2000.0]} | asked))
     found = estimate_influence(checked.request.scene, checked.decision, name)
     assert found is not None
     return found

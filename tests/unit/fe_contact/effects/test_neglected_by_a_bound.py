@@ -1,7 +1,6 @@
 """An effect is left out by a bound: by the pair's moduli and bodies, and by the largest gap anywhere."""
 
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -24,7 +23,7 @@ TOLERANCE = {"torques": [20.0, 200.0], "tolerance": 0.02}
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 
@@ -50,7 +49,7 @@ def test_plastic_on_steel_is_planned_as_its_run_shows_it(cache):
 
 
 def test_the_deflection_that_closes_a_gap_is_inverse_to_the_moduli():
-    def deflection(modulus: float) -> float:
+    def deflection(modulus):
         gears = replace(gear(), material=Material(modulus, 0.3))
         words = reason(GearPair(gears, gears), torques=[100.0])
         return float(words.removeprefix("deflections up to ").partition(" ")[0])
@@ -101,7 +100,6 @@ def test_what_is_neglected_changes_less_than_its_bound_and_the_tolerance(seed):
         scene, decision = checked.assessing(name)
         influence = estimate_influence(scene, decision, name)
         extent = scene.effect(name).extent(scene)
-        assert influence is not None
         assert np.all(np.abs(influence.mean) <= extent.reach + 1e-12)
         assert np.all(np.abs(influence.peak_to_peak) <= extent.span + 1e-12)
         bounds.append(largest_part(extent, influence.full.mean, influence.full.peak_to_peak, allowed))

@@ -100,7 +100,7 @@ def test_without_an_allowance_nothing_tells_the_two_cases_apart(kind, seed):
 
 
 def test_two_shapes_have_two_compliances_and_one_shape_has_one():
-    def key(gear: Toothing) -> str:
+    def key(gear):
         return compliance_key(gear, coarse_plane(gear), PlaneHypothesis.PLANE_STRAIN, 5)
 
     gear = make_gear(thickness_allowance=1e-4)

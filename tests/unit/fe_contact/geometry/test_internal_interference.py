@@ -7,11 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fe_contact import Gear, InternalGearPair, RingGear
 from fe_contact.errors import InfeasibleGeometry
-from fe_contact.geometry import Gear, gear_pair
-from fe_contact.geometry.flank_profile import ToothProfile, tooth_profile
-from fe_contact.geometry.gear_pair import InternalGearPair
-from fe_contact.geometry.ring_gear import RingGear
+from fe_contact.geometry import ToothProfile, gear_pair, tooth_profile
 from fe_contact.geometry.tip_interference import (
     flank_angle,
     pinion_edge_path,
@@ -41,7 +39,7 @@ def make_pair(
 
 
 @pytest.fixture
-def unchecked(monkeypatch: pytest.MonkeyPatch) -> None:
+def unchecked(monkeypatch):
     """Let pairs be made that cannot run."""
     monkeypatch.setattr(gear_pair, "refuse_infeasible_pair", lambda pair: None)
 
@@ -235,7 +233,7 @@ def radially_blocked(pair: InternalGearPair) -> bool:
 @pytest.mark.parametrize(("shortening", "blocked"), [(0.05e-3, True), (-0.05e-3, False)])
 @pytest.mark.parametrize("allowance", [0.0, 1e-4])
 def test_trimming_interference_is_found_by_withdrawing_the_pinion(shortening, blocked, allowance):
-    def at_tip(diameter: float) -> InternalGearPair:
+    def at_tip(diameter):
         return make_pair((68, 80), {"thickness_allowance": allowance}, {"tip_diameter": diameter})
 
     low, high = 0.3130, 0.3180

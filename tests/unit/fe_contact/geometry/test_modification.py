@@ -9,17 +9,9 @@ import pytest
 from spur_gears import GEAR, make_gear
 
 from bounds import DEPTHS, Direction, Kind
+from fe_contact import FlankGrid, FlankModification, Gear, GearPair, PitchDeviation, RingGear, ToothFlank
 from fe_contact.errors import InputError
 from fe_contact.flank.modification import FLANK_FIELDS, fields_of
-from fe_contact.geometry import (
-    FlankGrid,
-    FlankModification,
-    Gear,
-    GearPair,
-    PitchDeviation,
-    RingGear,
-    ToothFlank,
-)
 
 
 def over_profile(gear: Gear, count: int = 201) -> np.ndarray:
@@ -78,7 +70,7 @@ def test_a_form_of_all_teeth_is_that_of_each(form):
     roll, face = over_profile(gear, 201)[:, None], np.linspace(-12.5e-3, 12.5e-3, 201)
     hollow = FlankModification(**{form: -3e-6})
     removed = hollow.material_removed(gear, roll, face)
-    tooth = ToothFlank(1, **{form: -3e-6})  # type: ignore[arg-type]
+    tooth = ToothFlank(1, **{form: -3e-6})
     assert removed == pytest.approx(-tooth.excess(gear, roll, face), rel=1e-12, abs=1e-20)
     assert removed.max() == pytest.approx(1e-6) and removed.min() == pytest.approx(-2e-6)
     even = 0.5 * (removed[1:, 1:] + removed[:-1, :-1])
@@ -223,7 +215,7 @@ def test_what_is_quadratic_in_either_direction_is_reproduced(shape):
 
 
 def test_a_smooth_flank_is_met_at_third_order():
-    def worst(count: int) -> float:
+    def worst(count):
         roll, face = np.linspace(4e-3, 19e-3, count), np.linspace(-12.5e-3, 12.5e-3, count)
         nodes = FlankGrid(roll, face, 1e-5 * np.sin(300.0 * roll)[:, None] * np.cos(150.0 * face))
         x, y = inside(83)

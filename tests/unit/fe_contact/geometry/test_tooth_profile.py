@@ -248,7 +248,7 @@ def clearance_to_tool_rounding(gear: Gear, point: np.ndarray) -> float:
     half_tooth = 0.25 * math.pi * gear.normal_module + shift * math.tan(alpha) - 0.5 * ground
     center_x = half_tooth + (depth - rho) * math.tan(alpha) + rho / math.cos(alpha)
 
-    def distance(turn: Any) -> Any:
+    def distance(turn):
         across = point[0] * np.cos(turn) - point[1] * np.sin(turn) + reference * turn
         up = point[0] * np.sin(turn) + point[1] * np.cos(turn) - reference
         return np.hypot(across * math.cos(beta) - center_x, up + depth - rho)

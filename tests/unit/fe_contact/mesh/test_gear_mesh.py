@@ -2,7 +2,6 @@
 
 import math
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +10,6 @@ from fe_contact.errors import MeshError
 from fe_contact.geometry import Gear, Toothing, ToothProfile, tooth_profile
 from fe_contact.mesh import GearMesh, MeshRecipe, gear_mesh, mesh_gear, mesh_quality, quadratic_mesh
 from fe_contact.mesh.quadratic_mesh import rotated
-from fe_contact.types import Json
 from host import ChildOutOfMemory
 
 GearAndMesh = tuple[Toothing, GearMesh]
@@ -150,7 +148,7 @@ def test_sectors_meshed_ahead_are_those_of_each_gear_to_the_last_bit(monkeypatch
     processes: list[object] = []
     genuine = quadratic_mesh.ask_gmsh
 
-    def counted(request: Json, *rest: Any) -> Json:
+    def counted(request, *rest):
         processes.append(request)
         return genuine(request, *rest)
 
@@ -166,7 +164,7 @@ def test_sectors_meshed_ahead_are_those_of_each_gear_to_the_last_bit(monkeypatch
 
 
 def test_sections_that_no_mesh_is_made_of_ahead_are_left_to_gears(monkeypatch):
-    def refused(*_: object) -> Json:
+    def refused(*_):
         raise MeshError("no mesh")
 
     gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
@@ -182,7 +180,7 @@ def test_sections_that_no_mesh_is_made_of_ahead_are_left_to_gears(monkeypatch):
 def test_a_mesher_without_memory_is_not_started_again(monkeypatch):
     starts: list[object] = []
 
-    def devoured(*request: object) -> Json:
+    def devoured(*request):
         starts.append(request)
         raise MeshError("gmsh worker: ran out of memory") from ChildOutOfMemory("ran out of memory")
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import meshlane
 import numpy as np
 import pytest
+from repository import ROOT
 from spur_gears import GEAR
 
 from fe_contact.compliance.cache import content_hash
@@ -86,7 +87,6 @@ def test_what_cannot_be_meshed_well_is_refused_by_element_and_limit():
         with_mid_side_nodes([Outline((Piece("all", nodes),))], straight)
 
 
-ROOT = Path(__file__).parents[4]
 STANDARD = MeshRecipe.standard(GEAR)
 
 

@@ -100,7 +100,7 @@ def test_the_section_has_the_area_of_the_gear(subject):
     ring = quads[:, [0, 4, 1, 5, 2, 6, 3, 7]]
     a, m, b = (section.points[ring[:, (np.arange(4) * 2 + i) % 8]] for i in range(3))
 
-    def cross(p: np.ndarray, q: np.ndarray) -> float:
+    def cross(p, q):
         return float(np.sum(p[..., 0] * q[..., 1] - p[..., 1] * q[..., 0]))
 
     assert (4 * cross(a, m) + 4 * cross(m, b) - cross(a, b)) / 6.0 == pytest.approx(

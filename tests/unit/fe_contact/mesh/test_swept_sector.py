@@ -191,7 +191,7 @@ def test_the_web_takes_away_what_the_drawing_takes_away(rows):
     section = quad_sector(WEBBED, recipe)
     areas = section_areas(section.points, section.grid.quads)
     solid, webbed = (swept_sector(section.grid, 40e-3, recipe, web=web) for web in (None, WEBBED.web))
-    ring = math.pi * (WEBBED.web.outer_radius**2 - 25e-3**2) / 30  # type: ignore[union-attr]
+    ring = math.pi * (WEBBED.web.outer_radius**2 - 25e-3**2) / 30
     missing = volume(solid, areas) - volume(webbed, areas)
     assert missing == pytest.approx(ring * (40e-3 - 9e-3), rel=1e-5)
     assert webbed.elements.min() >= 0
@@ -205,12 +205,12 @@ def test_rows_of_elements_end_at_rim_and_hub_of_a_web_of_any_width():
     grid = (section := quad_sector(WEBBED, WEB_DRAFT)).grid
     low, high = grid.web_rows
     radii = np.linalg.norm(section.points[grid.number[:, 0][: 2 * grid.body_rows + 1]], axis=1)
-    assert radii[2 * (grid.body_rows + high)] == pytest.approx(WEBBED.web.outer_radius, rel=1e-12)  # type: ignore[union-attr]
+    assert radii[2 * (grid.body_rows + high)] == pytest.approx(WEBBED.web.outer_radius, rel=1e-12)
     assert radii[2 * (grid.body_rows + low)] == pytest.approx(25e-3, rel=1e-12)
     assert radii[0] == pytest.approx(15e-3, rel=1e-12)
     assert quad_sector(SOLID, WEB_DRAFT).grid.web_rows == (0, 0)
     grid = quad_sector(WEBBED, WEB_DRAFT).grid
-    full = replace(WEBBED.web, low=-20e-3, high=20e-3)  # type: ignore[type-var]
+    full = replace(WEBBED.web, low=-20e-3, high=20e-3)
     solid, webbed = (swept_sector(grid, 40e-3, WEB_DRAFT, web=web) for web in (None, full))
     assert webbed.size == solid.size
     assert len(webbed.elements) == len(solid.elements)
@@ -225,11 +225,9 @@ def test_plane_elements_are_as_thick_as_their_ring(hub, real):
     gear = replace(SOLID, blank=replace(BLANK, hub_diameter=hub, web_offset=0.0))
     recipe = replace(MeshRecipe.standard(gear), flank_size=0.4e-3, real_teeth=real)
     mesh = mesh_gear(gear, recipe)
-    assert mesh.hub is not None
     points = mesh.hub.points[mesh.hub.triangles]
     radius = np.linalg.norm(points[:, :3].mean(axis=1), axis=1)
     web = gear.web
-    assert web is not None
     inside = (radius < web.outer_radius) & (radius > web.inner_radius)
     assert mesh.hub.thickness[inside] == pytest.approx(9.0 / 40.0, rel=1e-12)
     assert (mesh.hub.thickness[~inside] == 1.0).all()

@@ -7,13 +7,11 @@ import numpy as np
 import pytest
 from spur_gears import LONG_RELIEFS
 
-from fe_contact import Gear, GearPair
+from fe_contact import AnalysisOptions, Gear, GearPair, Limits, Run, Scatter
 from fe_contact.microgeometry.confirmed_figures import REMAINING, confirmed_figures
 from fe_contact.microgeometry.design_study import DesignSpace, design_study
 from fe_contact.microgeometry.evaluator import Evaluator
-from fe_contact.microgeometry.objective import Limits
-from fe_contact.microgeometry.scatter import NO_SCATTER, Scatter
-from fe_contact.options import AnalysisOptions, Run
+from fe_contact.microgeometry.scatter import NO_SCATTER
 from model_studies.stage_clock import StageClock
 
 ON_FLANKS = "pressure", "face_load_factor"

@@ -8,15 +8,10 @@ import pytest
 from analysis_requests import design_request
 from spur_gears import PAIR
 
-from fe_contact import GearPair
+from fe_contact import DesignVariable, GearPair, Limits, Optimization, Run, Search, optimize
 from fe_contact.microgeometry.evaluator import Evaluator
-from fe_contact.microgeometry.objective import Limits, WeightedMean, Worst
-from fe_contact.microgeometry.optimization import Optimization
-from fe_contact.microgeometry.optimize import optimize
-from fe_contact.microgeometry.search import Search
+from fe_contact.microgeometry.objective import WeightedMean, Worst
 from fe_contact.microgeometry.search_methods import Cancel, DifferentialEvolution, never
-from fe_contact.microgeometry.variables import DesignVariable
-from fe_contact.options import Run
 
 FREE = (
     DesignVariable("pinion.profile_crowning", 0.0, 2e-5),
@@ -26,11 +21,11 @@ SEARCH = Search(DifferentialEvolution(), evaluations=60, positions=24, explorati
 
 
 @pytest.fixture
-def solved(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+def solved(monkeypatch):
     """Contact solves of designs, counted."""
     count, evaluate = [0], Evaluator.evaluate
 
-    def counted(self: Evaluator, values: Any) -> Any:
+    def counted(self, values):
         count[0] += 1
         return evaluate(self, values)
 
@@ -50,7 +45,7 @@ def test_a_stopped_search_goes_on_where_it_was(tmp_path, solved):
     whole, solved[0] = solved[0], 0
     asked = [0]
 
-    def cancel() -> bool:
+    def cancel():
         asked[0] += 1
         return asked[0] > 40
 

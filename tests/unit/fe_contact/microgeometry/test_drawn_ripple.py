@@ -26,13 +26,13 @@ CORNERS = {"corner_contact": "on"}
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 
 def bodies_of(pair: GearPair, cache: Path) -> CondensedPair:
     choice = {"level": "draft", "model": "plane_strain", "receipt": "minimal", "positions": 64}
-    table = analyze(pair, torques=[TORQUE], cache=cache, effects=CORNERS, **choice)  # type: ignore[arg-type]
+    table = analyze(pair, torques=[TORQUE], cache=cache, effects=CORNERS, **choice)
     found = condensed_pair(pair, table, CORNERS, cache)
     assert found is not None
     return found

@@ -7,16 +7,13 @@ import pytest
 from analysis_requests import design_request
 from spur_gears import LONG_RELIEFS
 
-from fe_contact import analyze
+from fe_contact import DesignVariable, Estimate, Search, analyze, optimize
 from fe_contact.errors import InputError
 from fe_contact.microgeometry.conclusion import level_change
 from fe_contact.microgeometry.objective import HarmonicAmplitude, Worst
 from fe_contact.microgeometry.optimization import Outcome
-from fe_contact.microgeometry.optimize import optimize
-from fe_contact.microgeometry.search import Search
 from fe_contact.microgeometry.search_methods import NelderMead
-from fe_contact.microgeometry.variables import DesignVariable, modified
-from fe_contact.types import Estimate
+from fe_contact.microgeometry.variables import modified
 
 TORQUE, HARMONIC = 200.0, 2
 DRAFT: dict[str, Any] = {"level": "draft", "model": "plane_strain"}

@@ -252,7 +252,7 @@ def test_equal_misalignments_give_the_bits_of_one_for_all():
 
 
 @pytest.fixture(scope="module")
-def found() -> Optimization:
+def found():
     torques, skews, weights = [150.0, 300.0, 300.0], [4e-6, -6e-6, 12e-6], WeightedMean((1.0, 2.0, 3.0))
     return optimized(HELICAL, torques, skews, objective=weights, map_torques=[200.0])
 

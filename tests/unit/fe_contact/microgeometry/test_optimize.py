@@ -20,7 +20,6 @@ from fe_contact.microgeometry.search import Search
 from fe_contact.microgeometry.search_methods import NelderMead
 from fe_contact.microgeometry.variables import DesignVariable, modified
 from fe_contact.options import AnalysisOptions, Run
-from fe_contact.types import FloatArray
 from model_studies.stage_clock import StageClock
 
 TORQUE = 200.0
@@ -45,7 +44,7 @@ def searched(
 
 
 @pytest.fixture(scope="module")
-def found() -> Optimization:
+def found():
     return searched(search=FEW)
 
 
@@ -204,7 +203,7 @@ def test_bounds_that_leave_the_start_out_are_told():
 def test_an_interrupted_search_gives_the_best_so_far_in_full(found):
     asked = [0]
 
-    def cancel() -> bool:
+    def cancel():
         asked[0] += 1
         return asked[0] > 61  # once before the start
 
@@ -227,7 +226,7 @@ def test_few_positions_explore_as_well_as_many(found):
 def test_objectives_differ_over_loads():
     torques = [80.0, 240.0]
 
-    def best(objective: Any) -> FloatArray:
+    def best(objective):
         both: dict[str, Any] = {"objective": objective, "map_torques": torques}
         result = optimize(design_request(LONG_RELIEFS, torques, AMOUNTS, search=QUICK, **both, **DRAFT))
         return result.optimum.harris_map.expected

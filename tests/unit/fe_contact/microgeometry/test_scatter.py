@@ -8,16 +8,15 @@ import numpy as np
 import pytest
 from spur_gears import PAIR
 
-from fe_contact import Gear, GearPair, analyze
+from fe_contact import AnalysisOptions, Gear, GearPair, Run, Scatter, analyze
 from fe_contact.errors import InputError
 from fe_contact.geometry.flank_tolerances import helix_slope_tolerance, profile_slope_tolerance, rounded
 from fe_contact.microgeometry.design_loads import DesignLoads, misalignment_axis, snapped_to_axis
 from fe_contact.microgeometry.design_study import DesignSpace, design_study
 from fe_contact.microgeometry.evaluator import Evaluator
-from fe_contact.microgeometry.scatter import GaussHermite, Scatter, SobolSample
+from fe_contact.microgeometry.scatter import GaussHermite, SobolSample
 from fe_contact.microgeometry.tolerances import iso1328_tolerances
 from fe_contact.microgeometry.variables import modified
-from fe_contact.options import AnalysisOptions, Run
 from model_studies.stage_clock import StageClock
 
 SLOPE, CROWNING = "pinion.profile_slope", "wheel.profile_crowning"

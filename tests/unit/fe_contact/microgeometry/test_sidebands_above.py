@@ -26,7 +26,7 @@ from fe_contact.microgeometry.drawn_teeth import (
     iso1328_tooth_tolerances,
 )
 from fe_contact.microgeometry.evaluator import Evaluator
-from fe_contact.microgeometry.order_limit import OrderLimit, PairsAbove
+from fe_contact.microgeometry.order_limit import OrderLimit
 from fe_contact.microgeometry.scatter import ONE_NODE
 from fe_contact.microgeometry.sidebands_above import MadePairs, ToothPassing, lines_of_pairs
 from fe_contact.microgeometry.tolerance_study import (
@@ -52,7 +52,7 @@ KINDS = [name for name in TEETH.widths if name != RUN_OUT]
 
 
 @pytest.fixture(scope="module")
-def designed() -> Evaluator:
+def designed():
     request = ToleranceRequest(PAIR, TORQUES, ALIKE, Sampling(positions=POSITIONS), OPTIONS, 0.0)
     study = design_study(request.space, TORQUES, [], StageClock(), Run(), request.checked)
     return replace(study.evaluator, nodes=ONE_NODE)
@@ -220,7 +220,7 @@ def study_of(limit: OrderLimit, teeth: ToothTolerances = TEETH) -> ToleranceStud
 
 
 @pytest.fixture(scope="module")
-def above() -> PairsAbove:
+def above():
     found = study_of(SIDEBAND).above
     assert found is not None
     return found
@@ -253,7 +253,6 @@ def test_what_decides_of_an_order_is_what_makes_it(above):
         and above.cured[0] > above.cured.min()
     )
     turning = study_of(OrderLimit(0, 4e-6, "pinion", 1)).above
-    assert turning is not None
     assert turning.decides == turning.cure == 0 and turning.total[0] > 0.9
     eccentric = np.abs(TEETH.drawn(500, 3, after=1).by_axis[RUN_OUT])
     # pitches that accumulate have a part in it

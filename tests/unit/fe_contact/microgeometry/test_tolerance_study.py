@@ -14,13 +14,7 @@ from fe_contact.errors import InputError
 from fe_contact.microgeometry.order_limit import Causes, ModeledPairs, OrderLimit, as_spread
 from fe_contact.microgeometry.sweep import Sweep, sweep
 from fe_contact.microgeometry.sweep_request import SweepAxis, SweepRequest
-from fe_contact.microgeometry.tolerance_study import (
-    Sampling,
-    ToleranceRequest,
-    ToleranceStudy,
-    estimated_quantile,
-    scatter,
-)
+from fe_contact.microgeometry.tolerance_study import Sampling, ToleranceRequest, estimated_quantile, scatter
 from fe_contact.microgeometry.tolerances import Tolerances
 from fe_contact.microgeometry.variables import modified
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run
@@ -35,7 +29,7 @@ SLOPES = Tolerances(0.0, {"pinion.profile_slope": 10e-6, "wheel.profile_slope": 
 
 
 @pytest.fixture(scope="module")
-def found() -> ToleranceStudy:
+def found():
     return scatter(
         PAIR, TORQUES, SLOPES, Sampling(samples=120, seed=3, positions=16), AnalysisOptions(**DRAFT)
     )
@@ -140,7 +134,6 @@ def test_a_limit_counts_pairs_and_finds_what_decides():
     sampling = Sampling(samples=2000, seed=3, positions=16, exact=60)
     options = AnalysisOptions(**DRAFT)
     above = scatter(PAIR, TORQUES, SLOPES, sampling, options, limit=limit).above
-    assert above is not None
     np.testing.assert_array_equal(above.share, (above.amplitude > limit.amplitude).mean(axis=0))
     assert np.all((above.low <= above.share) & (above.share <= above.high))
     assert 0.0 < above.share[above.load] == above.share.max() < 1.0
@@ -156,7 +149,6 @@ def test_a_limit_counts_pairs_and_finds_what_decides():
     # with the tolerance of a class finer, drawn anew
     finer = Tolerances(0.0, dict(SLOPES.modification) | {"pinion.profile_slope": 10e-6 / np.sqrt(2.0)})
     other = scatter(PAIR, TORQUES, finer, sampling, options, limit=limit).above
-    assert other is not None
     assert other.share[above.load] == pytest.approx(above.cured[0], abs=0.02)
 
 
@@ -236,7 +228,7 @@ def request(pair: GearPair, axes: tuple[SweepAxis, ...] = AXES, **options: Any) 
 
 
 @pytest.fixture(scope="module")
-def swept() -> Sweep:
+def swept():
     return sweep(request(LONG_RELIEFS))
 
 

@@ -101,7 +101,7 @@ def test_what_slices_cannot_tell_has_no_size():
 
 
 def test_positions_follow_a_tolerance_that_is_smaller_than_usual():
-    def search(tolerance: float, helix: float):
+    def search(tolerance, helix):
         bound = {} if helix else {"effects": {"finite_width": "on"}}
         return decide(
             check_request(pair(helix), *table_request(torques=[40.0], tolerance=tolerance, **bound))

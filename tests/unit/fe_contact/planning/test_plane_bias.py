@@ -25,7 +25,7 @@ def table(pair: GearPair, cache: Path, **how: object) -> SteDatabase:
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 
@@ -88,7 +88,6 @@ def test_the_mean_over_the_face_covers_resolved_contact_without_a_band_of_the_bi
     plain = table(pair_of(first, second, width, FlankModification()), cache, model="plane_strain")
     for force in plain.force:
         curve = plain.curve(force=force)
-        assert curve.over_face is not None
         mean, stated = curve.mean.value, curve.over_face.mean
         assert stated.value - stated.error <= minimum * mean and maximum * mean <= stated.value + stated.error
         assert stated.error < 0.008 * mean

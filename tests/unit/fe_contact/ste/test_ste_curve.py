@@ -7,6 +7,7 @@ import h5netcdf
 import numpy as np
 import pytest
 
+from fe_contact import Status, SteDatabase
 from fe_contact.errors import DatabaseError, InputError, SolveError
 from fe_contact.ste.curve_errors import AT_NODES, METHOD, SOURCES
 from fe_contact.ste.curve_quantities import (
@@ -18,8 +19,6 @@ from fe_contact.ste.curve_quantities import (
     peak_excess,
     quantity_changes,
 )
-from fe_contact.ste.database import SteDatabase
-from fe_contact.types import Status
 
 AMPLITUDES = np.array([2e-6, 5e-7, 3e-7])
 PHASES = np.array([0.4, 2.0, 5.0])
@@ -244,7 +243,7 @@ def test_what_differs_from_pitch_to_pitch_is_beside_the_mesh_orders():
 
 
 @pytest.fixture
-def assessed(spur: SteDatabase) -> SteDatabase:
+def assessed(spur):
     """The fake table with errors of every source: source number in nm, times the load's number."""
     shape = spur.static_transmission_error.shape[1:]
     errors = np.zeros((len(SOURCES), QUANTITIES, *shape))

@@ -35,7 +35,7 @@ def table_of(pair: GearPair) -> SteDatabase:
 
 
 @pytest.fixture(scope="module")
-def early() -> SteDatabase:
+def early():
     return table_of(helical({EARLY: 3e-6}, {}))
 
 

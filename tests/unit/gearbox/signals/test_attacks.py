@@ -23,7 +23,7 @@ Attack = Callable[[Path], Path]
 
 
 def _text(name: str, text: str) -> Attack:
-    def write(folder: Path) -> Path:
+    def write(folder):
         file = folder / name
         file.write_text(text)
         return file
@@ -32,7 +32,7 @@ def _text(name: str, text: str) -> Attack:
 
 
 def _h5(change: Callable[[Any, Path], None]) -> Attack:
-    def write(folder: Path) -> Path:
+    def write(folder):
         file = folder / "a.h5"
         with h5py.File(file, "w") as content:
             content["time_s"] = TIME

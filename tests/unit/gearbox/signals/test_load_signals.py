@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 from recordings import MDF, Signal, h5py, pyuff
+from repository import EXAMPLES
 
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import SceneInput, read_model
 from lineofaction.gearbox.schemas.files import READERS, SENT, written_out
 from lineofaction.gearbox.schemas.named_files import in_folder
 
-EXAMPLES = Path(__file__).parents[4] / "examples"
 TIME = 3.0 + np.arange(2001) / 1000.0
 SPEED = 100.0 + 40.0 * (TIME - 3.0)  # rad/s
 TORQUE = 80.0 - 5.0 * (TIME - 3.0)

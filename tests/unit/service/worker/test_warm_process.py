@@ -3,7 +3,6 @@
 import os
 import signal
 import time
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -15,12 +14,12 @@ from service.worker.worker import WORK
 
 
 @pytest.fixture(scope="module", autouse=True)
-def warm_once() -> None:
+def warm_once():
     """Share no warm process: what becomes of one is what is tested here."""
 
 
 @pytest.fixture
-def machine(tmp_path: Path) -> Iterator[Bench]:
+def machine(tmp_path):
     made = bench(tmp_path, REGISTRY)
     made.scheduler.start()
     yield made
@@ -31,7 +30,6 @@ def warm_process(machine: Bench) -> int:
     """Return the process id of the warm process, once it is warm."""
     launcher = machine.scheduler._crew._launcher
     until(lambda: launcher.warm)
-    assert launcher._server is not None
     return launcher._server._process.pid
 
 

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from calculix import (
     Loading,
-    PlacedPair,
     flank_sides,
     input_deck,
     numbered_bodies,
@@ -19,10 +18,9 @@ from calculix import (
 )
 from spur_gears import GEAR
 
-from fe_contact import GearPair
-from fe_contact.types import Status
+from fe_contact import GearPair, Status
+from verification.full_contact import Resolution
 from verification.full_contact.condensation.placed_mesh import placed_bodies
-from verification.full_contact.condensation.resolution import Resolution
 from verification.full_contact.condensation.sites import Range, contact_sites
 
 
@@ -73,7 +71,7 @@ PRINTED = """
 
 
 @pytest.fixture(scope="module")
-def placed() -> PlacedPair:
+def placed():
     pair, coarse = GearPair(GEAR, GEAR, 80e-3), Resolution(1.5)
     sites = contact_sites(pair, 0.3, Range((1e5, 1e5), 1e-6), coarse)
     return placed_pair(pair, placed_bodies(pair, 0.3, sites, coarse), 0.0)
@@ -88,7 +86,6 @@ def test_the_deck_has_short_fields_and_surfaces_for_every_pair(placed):
     assert deck.count("*CONTACT PAIR") == len(placed.meetings) == 2
     for number, (_, tooth) in enumerate(placed.meetings):
         surface = re.search(rf"NAME=GEAR2FLANK{number}, TYPE=ELEMENT\n((?:\d+,S\d\n)+)", deck)
-        assert surface is not None
         assert len(surface.group(1).split()) == len(flank_sides(placed.gears[1], tooth))
     assert "\n1.000000000000e+09\n" in deck  # 1e18 Pa/m in N/mm^3
 

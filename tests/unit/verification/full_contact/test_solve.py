@@ -7,10 +7,8 @@ import numpy as np
 import pytest
 from spur_gears import GEAR, PAIR
 
-from fe_contact import FlankModification, Gear, GearPair, InternalGearPair, RingGear
+from fe_contact import FlankModification, Gear, GearBlank, GearPair, InternalGearPair, Material, RingGear
 from fe_contact.errors import InputError, MeshError
-from fe_contact.geometry import GearBlank
-from fe_contact.material import Material
 from verification.full_contact import FullContactTable, Resolution, refusal, solve_full_contact
 from verification.full_contact.condensation import placed_mesh
 from verification.full_contact.condensation import solve as solved_position
@@ -154,7 +152,7 @@ def test_what_it_cannot_hold_is_refused_by_reason():
 
 
 def test_a_position_without_a_mesh_says_why(monkeypatch):
-    def fail(*_: object) -> None:
+    def fail(*_):
         raise MeshError("gmsh: no")
 
     monkeypatch.setattr(solved_position, "placed_bodies", fail)

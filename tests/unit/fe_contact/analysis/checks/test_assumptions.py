@@ -32,12 +32,12 @@ TINY = {"torques": [100.0], "misalignments": [0.02e-6], "positions": 16, "tolera
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 
 def table(pair: GearPair, cache: Path, **asked: object) -> SteDatabase:
-    return analyze(pair, cache=cache, **asked)  # type: ignore[arg-type]
+    return analyze(pair, cache=cache, **asked)
 
 
 def assumption(found: SteDatabase, effect: str) -> Json:
@@ -58,7 +58,7 @@ def same(one: SteDatabase, other: SteDatabase) -> None:
 
 
 def test_an_automatic_effect_that_is_needed_is_switched_on_and_the_table_repeated(cache):
-    assert not check_request(CLEAR, *table_request(**SKEWED)).model.corner_contact  # type: ignore[arg-type]
+    assert not check_request(CLEAR, *table_request(**SKEWED)).model.corner_contact
     repeated, explicit = (
         table(CLEAR, cache, **SKEWED, effects=effects) for effects in ({}, {"corner_contact": "on"})
     )
@@ -130,7 +130,7 @@ def test_an_effect_below_the_tolerance_is_neglected_and_its_model_with_it(cache)
     ],
 )
 def test_it_is_kept_without_a_tolerance_by_name_or_where_it_matters(more):
-    checked = check_request(PAIR, *table_request(**TINY | more))  # type: ignore[arg-type]
+    checked = check_request(PAIR, *table_request(**TINY | more))
     assert checked.decision["misalignment"] == "on"
     assert checked.model.across_face
 
@@ -213,7 +213,7 @@ def test_positions_that_pass_a_handover_by_miss_no_edge(cache):
     asked = {"torques": [100.0], "level": "draft", "effects": {"corner_contact": "off"}, "cache": cache}
     bends = []
     for positions in (8, 13, 256):
-        found = analyze(pair, positions=positions, **asked)  # type: ignore[arg-type]
+        found = analyze(pair, positions=positions, **asked)
         curve = found.static_transmission_error[:, 0, 0, 0]
         bends.append(edges(found.metadata.receipt)["change"] * np.ptp(curve))
     assert bends[0] == pytest.approx(bends[2], rel=0.02)

@@ -7,12 +7,11 @@ import pytest
 from analysis_requests import table_request
 from spur_gears import GEAR
 
-from fe_contact import FlankModification, GearPair, PitchDeviation, Shaft, analyze
+from fe_contact import AnalysisOptions, FlankModification, GearPair, PitchDeviation, Shaft, TableAxes, analyze
 from fe_contact.analysis.checks.effect_ledger import effect_ledger
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.run_plan import plan_run
 from fe_contact.effects import EFFECTS
-from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.types import Json
 
 FULL = replace(
@@ -30,7 +29,7 @@ FIELDS = {
 
 def ledger(pair: GearPair, **asked: object) -> dict[str, Json]:
     """Entries by name, before anything is computed."""
-    checked = check_request(pair, *table_request(**{"torques": [100.0], "positions": 16} | asked))  # type: ignore[arg-type]
+    checked = check_request(pair, *table_request(**{"torques": [100.0], "positions": 16} | asked))
     return {entry["name"]: entry for entry in effect_ledger(checked, None)}
 
 

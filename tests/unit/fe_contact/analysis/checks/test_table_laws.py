@@ -35,7 +35,7 @@ UNEVEN = replace(GEAR, pitch_deviation=PitchDeviation(5e-6 * np.sin(np.arange(20
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 
@@ -45,7 +45,7 @@ def solved(pair: GearPair, cache: Path, **asked: Any) -> SolvedTable:
 
 
 @pytest.fixture(scope="module")
-def relieved(cache: Path) -> SolvedTable:
+def relieved(cache):
     return solved(GearPair(RELIEVED, GEAR), cache, **THREE_LOADS)
 
 
@@ -67,7 +67,7 @@ def _into(
 ) -> Callable[[dict[str, np.ndarray], np.ndarray], None]:
     """Return a fault at one position and the middle load of an array of the table."""
 
-    def plant(arrays: dict[str, np.ndarray], _force: np.ndarray) -> None:
+    def plant(arrays, _force):
         place = arrays[name][SPOT] if name == "no_load_transmission_error" else arrays[name][SPOT, 1]
         place[...] = change(place)
 
@@ -190,12 +190,12 @@ def test_a_run_whose_table_breaks_a_law_fails_with_it(relieved, cache, monkeypat
             THREE_LOADS if tolerance is None else {"torques": THREE_LOADS["torques"], "tolerance": tolerance}
         )
         with pytest.raises(SolveError, match="breaks a law of mechanics") as refused:
-            analyze(GearPair(RELIEVED, GEAR), cache=cache, **asked)  # type: ignore[arg-type]
+            analyze(GearPair(RELIEVED, GEAR), cache=cache, **asked)
         assert refused.value.partial is broken.table
 
 
 def test_the_receipt_says_how_near_each_law_is_to_its_bound(cache):
-    laws = analyze(PAIR, cache=cache, **THREE_LOADS).metadata.receipt["laws"]  # type: ignore[arg-type]
+    laws = analyze(PAIR, cache=cache, **THREE_LOADS).metadata.receipt["laws"]
     assert len(laws) >= 10
     assert all(0.0 <= law["ratio"] <= 1.0 for law in laws)
     ratio = {law["law"]: law["ratio"] for law in laws}
@@ -275,7 +275,7 @@ def test_a_light_load_forgives_the_accuracy_of_the_gaps_and_no_more(cache):
     """Under some newtons an error of the gaps of 1 nm is a per cent of the deflection."""
     made = solved(GearPair(RELIEVED, GEAR), cache, torques=[0.1], level="draft", positions=16)
 
-    def lifted(height: float) -> SolvedTable:
+    def lifted(height):
         rigid = made.table.no_load_transmission_error + height
         return replace(made, table=replace(made.table, no_load_transmission_error=rigid))
 

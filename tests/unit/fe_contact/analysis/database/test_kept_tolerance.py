@@ -9,9 +9,9 @@ from analysis_requests import table_request
 
 from fe_contact import AllowedError, Gear, GearPair, InternalGearPair, RingGear, SteDatabase, analyze
 from fe_contact.analysis.database import refined_table
-from fe_contact.analysis.database.compute_database import _Computed, compute_database, compute_pass
+from fe_contact.analysis.database.compute_database import compute_database, compute_pass
 from fe_contact.analysis.estimates import validation_loads
-from fe_contact.analysis.request.model_choice import Decision, decide
+from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.errors import MeshError, SolveError
 from fe_contact.options import AnalysisOptions, Run, TableAxes
@@ -24,7 +24,7 @@ PLANE = {"torques": [2.0, 5.0], "model": "plane_strain"}
 
 
 @pytest.fixture(autouse=True)
-def nothing_but_discretization(monkeypatch) -> None:
+def nothing_but_discretization(monkeypatch):
     """No refinement mends what the method and plane strain leave out: it would end every run here."""
     none = (0.0, 0.0, 0.0)
     monkeypatch.setattr(model_error, "FLOOR", none)
@@ -33,10 +33,10 @@ def nothing_but_discretization(monkeypatch) -> None:
 
 
 @pytest.fixture
-def from_draft(monkeypatch) -> None:
+def from_draft(monkeypatch):
     """Begin with the draft, whatever is expected of it: what follows is about what is measured."""
 
-    def drafted(checked, cache=None, **_) -> Decision:
+    def drafted(checked, cache=None, **_):
         first = decide(checked, cache)
         return first.refined("draft", first.mesh.slices, first.plan.nodes, "the coarsest")
 
@@ -168,7 +168,7 @@ def test_passes_share_condensed_bodies(from_draft, monkeypatch):
     computed: list[list[str]] = []
     predicted: list[float] = []
 
-    def counted(checked, case, run, decision, clock) -> _Computed:
+    def counted(checked, case, run, decision, clock):
         done = compute_pass(checked, case, run, decision, clock)
         computed.append(sorted(file.name for file in run.cache.glob("compliance-*")))
         predicted.append(receipt(done.table)["prediction"]["cpu_seconds"])
@@ -220,7 +220,7 @@ def test_a_pass_that_fails_or_is_interrupted_keeps_the_table_before_it(from_draf
 def fail_from(monkeypatch, number: int, error: BaseException) -> None:
     begun: list[int] = []
 
-    def failing(*arguments, **more) -> _Computed:
+    def failing(*arguments, **more):
         begun.append(1)
         if len(begun) >= number:
             raise error

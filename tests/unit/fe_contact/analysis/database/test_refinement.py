@@ -48,7 +48,7 @@ def told(made: Refinement | str) -> object:
 
 
 @pytest.fixture(scope="module")
-def helical() -> Decision:
+def helical():
     return ran(pair(0.3), "standard", 15)
 
 

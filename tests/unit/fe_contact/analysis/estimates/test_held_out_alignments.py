@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 from analysis_requests import table_request
 
-from fe_contact import FlankModification, Gear, GearPair, SteDatabase, analyze
+from fe_contact import FlankModification, Gear, GearPair, Run, SteDatabase, analyze
 from fe_contact.analysis import tables
 from fe_contact.analysis.checks.table_laws import check_laws
 from fe_contact.analysis.database import compute_database
 from fe_contact.analysis.estimates import inserted_places, validation_alignments
 from fe_contact.analysis.request.request_check import check_request, checked_request
 from fe_contact.errors import DatabaseError
-from fe_contact.options import Run
 from fe_contact.ste.fields import DIMENSIONS
 
 DISTANCE = "center_distance_change"
@@ -154,11 +153,11 @@ def test_a_study_that_reads_nodes_alone_gets_nothing_between_them(cache):
 
 
 def test_misalignments_are_inserted_until_every_interval_meets_the_tolerance(tmp_path):
-    def gear(hand: float) -> Gear:
+    def gear(hand):
         flank = FlankModification(helix_crowning=4e-6)
         return Gear(24, 2e-3, 15e-3, 24e-3, helix_angle=hand * 0.3, modification=flank)
 
-    def helical(skews, force) -> SteDatabase:
+    def helical(skews, force):
         pair = GearPair(gear(1.0), gear(-1.0), 48e-3 / np.cos(0.3))
         wish = {"tolerance": 0.05, "model": "3d", "cache": tmp_path}
         return analyze(pair, normal_forces=force, misalignments=skews, **wish)

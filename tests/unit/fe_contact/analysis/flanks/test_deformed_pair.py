@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from analysis_requests import point_request, table_request
 
-from fe_contact import Gear, GearPair, deformed_pairs
+from fe_contact import Gear, GearPair, InternalGearPair, OperatingPoint, RingGear, Run, deformed_pairs
 from fe_contact.analysis.flanks.deformed_pair import mesh_angles
 from fe_contact.analysis.flanks.solved_operating_point import solve_operating_point
 from fe_contact.analysis.request.request_check import check_request
@@ -23,15 +23,14 @@ from fe_contact.contact import (
     plane_flank_forces,
 )
 from fe_contact.errors import InputError
-from fe_contact.geometry import InternalGearPair, RingGear, Toothing, tooth_profile
-from fe_contact.options import OperatingPoint, Run
+from fe_contact.geometry import Toothing, tooth_profile
 from model_studies.stage_clock import StageClock
 
 pytestmark = pytest.mark.usefixtures("coarse_sectors")
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 
@@ -91,7 +90,7 @@ def test_the_work_of_the_forces_is_that_of_the_contact(cache):
             else:
                 assert contact.plane is not None
                 both = plane_flank_forces(candidates, force, p, contact.plane)
-                flanks, width = contact.plane, candidates.slices.width  # type: ignore[assignment]
+                flanks, width = contact.plane, candidates.slices.width
             work = width * sum(
                 float(f @ flank.block(tooth, other) @ g)
                 for flank, forces in zip(flanks, both, strict=True)
@@ -189,7 +188,7 @@ def flank_point(gear: Toothing, tooth: int, angle: float, roll: float, along: fl
 
 
 @pytest.fixture(scope="module")
-def found(cache: Path) -> Any:
+def found(cache):
     return deformed_pairs(
         helical_pair(),
         *point_request(normal_force=2000.0, misalignment=15e-6, level="draft"),

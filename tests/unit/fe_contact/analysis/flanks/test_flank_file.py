@@ -1,7 +1,6 @@
 """Flank results on disk: every bit comes back, what follows is there for others, damage is refused."""
 
 from dataclasses import fields
-from pathlib import Path
 
 import h5netcdf
 import numpy as np
@@ -15,13 +14,13 @@ from fe_contact.ste import Metadata
 
 
 @pytest.fixture(scope="module")
-def found() -> LoadDistribution:
+def found():
     asked = {"torque": 100.0, "center_distance_change": 5e-5, "level": "draft", "model": "plane_strain"}
     return flank_results(PAIR, *point_request(**asked), at=np.arange(8) / 8, case={"name": "spur"})
 
 
 @pytest.fixture
-def file(found: LoadDistribution, tmp_path: Path) -> Path:
+def file(found, tmp_path):
     found.to_netcdf(tmp_path / "flanks.nc")
     return tmp_path / "flanks.nc"
 
@@ -40,7 +39,7 @@ def test_every_bit_comes_back_and_what_follows_is_there_for_others(found, file):
 
     with xarray.open_dataset(file, engine="h5netcdf") as table:
         for gear in ("pinion", "wheel"):
-            pattern = contact_pattern(found, gear)  # type: ignore[arg-type]
+            pattern = contact_pattern(found, gear)
             assert np.array_equal(table[f"contact_pattern_{gear}"], pattern.pressure)
             assert np.array_equal(table[f"pattern_roll_length_{gear}"], pattern.roll_length)
         assert np.array_equal(table["line_load"], found.line_load)

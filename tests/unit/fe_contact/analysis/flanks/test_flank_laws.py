@@ -50,7 +50,7 @@ def solved(pair: GearPair, model: str, misalignment: float) -> Solved:
 
 
 @pytest.fixture(scope="module")
-def relieved(coarse_sectors: None) -> Solved:
+def relieved(coarse_sectors):
     return solved(spur(), "3d", 20e-6)
 
 
@@ -63,7 +63,7 @@ class Break:
 
 
 def at_spot(name: str, change: Callable[[np.ndarray], np.ndarray]) -> Callable[..., LoadDistribution]:
-    def plant(flanks: LoadDistribution) -> LoadDistribution:
+    def plant(flanks):
         values = np.array(getattr(flanks, name))
         values[SPOT] = change(values[SPOT])
         return replace(flanks, **{name: values})
@@ -144,8 +144,8 @@ def test_sound_results_take_little_of_the_room_of_balances(pair, model, misalign
 def test_flank_results_that_break_a_law_are_none(monkeypatch):
     original = flank_analysis.load_distribution
 
-    def faulty(*args: object, **kwargs: object) -> LoadDistribution:
-        return BREAKS["forces beyond the torque"].plant(original(*args, **kwargs))  # type: ignore[arg-type]
+    def faulty(*args, **kwargs):
+        return BREAKS["forces beyond the torque"].plant(original(*args, **kwargs))
 
     monkeypatch.setattr(flank_analysis, "load_distribution", faulty)
     point, options = OperatingPoint(torque=90.0), AnalysisOptions(level="draft", model="plane_strain")

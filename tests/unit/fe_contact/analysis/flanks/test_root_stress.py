@@ -10,7 +10,7 @@ from analysis_requests import point_request, table_request
 from numpy.typing import ArrayLike
 from spur_gears import GEAR
 
-from fe_contact import Gear, GearPair, RootStress, root_stress
+from fe_contact import Gear, GearPair, InternalGearPair, RingGear, RootStress, Run, root_stress
 from fe_contact.analysis.flanks import root_stress as root_module
 from fe_contact.analysis.flanks.root_meshes import finer_root
 from fe_contact.analysis.flanks.root_stress import pair_histories, stress_seconds, unit_stresses
@@ -19,10 +19,8 @@ from fe_contact.analysis.flanks.solved_operating_point import solve_operating_po
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
 from fe_contact.compliance import unit_root_stress, unit_root_stress_3d
-from fe_contact.geometry import InternalGearPair, RingGear
 from fe_contact.mesh import MeshRecipe, SectorRecipe
 from fe_contact.microgeometry.root_influence import RootInfluence
-from fe_contact.options import Run
 from model_studies.stage_clock import StageClock
 
 FORCE = 2000.0
@@ -33,7 +31,7 @@ NO_CORNERS = {"corner_contact": "off"}
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 

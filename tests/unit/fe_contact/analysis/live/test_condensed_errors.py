@@ -6,13 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fe_contact import Gear, GearPair, analyze
+from fe_contact import FlankModification, Gear, GearPair, SteDatabase, analyze
 from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.analysis.live.stored_bodies import condensed_pair
 from fe_contact.analysis.pairs.pair_contact import PairContact
-from fe_contact.geometry import FlankModification
 from fe_contact.geometry.finite_width import finite_width_excess
-from fe_contact.ste import SteDatabase
 from fe_contact.ste.curve_errors import AT_NODES, SOURCES
 from fe_contact.ste.curve_quantities import FIRST_HARMONIC, MEAN, PEAK_TO_PEAK
 from fe_contact.types import FloatArray
@@ -34,12 +32,12 @@ def with_flank(modification: FlankModification) -> GearPair:
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 
 @pytest.fixture(scope="module")
-def pair(cache: Path) -> CondensedPair:
+def pair(cache):
     """Return the corrected plane, analyzed with a full receipt."""
     return condensed(analyze(PAIR, torques=TORQUES, level="draft", positions=64, cache=cache), cache)
 
@@ -64,10 +62,10 @@ def figures(table: SteDatabase) -> tuple[FloatArray, FloatArray]:
 def test_errors_of_the_discretization_are_those_of_an_analysis_of_its_own(cache, model):
     count = 64 if model == "3d" else 192
     wish = {"torques": TORQUES, "level": "draft", "model": model, "cache": cache, "effects": CORNERS}
-    bodies = condensed(analyze(PAIR, positions=16, **wish), cache)  # type: ignore[arg-type]
+    bodies = condensed(analyze(PAIR, positions=16, **wish), cache)
     quick, whole = (
         bodies.table(with_flank(SHORT), TORQUES),
-        analyze(with_flank(SHORT), positions=count, **wish),  # type: ignore[arg-type]
+        analyze(with_flank(SHORT), positions=count, **wish),
     )
     for name in ("discretisation", "slices", "finite_width", "contact_solver"):
         source = AT_NODES.index(name)

@@ -39,12 +39,12 @@ def table_of(pair: GearPair, cache: Path, model: str = "plane_strain", **wish: o
         receipt="minimal",
         cache=cache,
         effects={"corner_contact": "on"},
-        **wish,  # type: ignore[arg-type]
+        **wish,
     )
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 

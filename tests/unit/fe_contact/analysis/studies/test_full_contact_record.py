@@ -8,11 +8,9 @@ import pytest
 from analysis_requests import table_request
 
 from bounds import written
-from fe_contact import FlankModification, Gear, GearPair
-from fe_contact.analysis.request.request import Checked
+from fe_contact import AnalysisOptions, FlankModification, Gear, GearPair, SteDatabase, TableAxes, frontier
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.studies.closed_form_fidelity import THIN_SLICES
-from fe_contact.analysis.studies.frontier import frontier
 from fe_contact.analysis.studies.full_contact_record import (
     FACE,
     NO_RECORD,
@@ -24,8 +22,6 @@ from fe_contact.analysis.studies.full_contact_record import (
     solved_in,
 )
 from fe_contact.errors import InputError
-from fe_contact.options import AnalysisOptions, TableAxes
-from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.studies.frontier.run import RUN
 
 GEAR = Gear(teeth=20, normal_module=2e-3, face_width=8e-3, bore_diameter=20e-3)
@@ -36,12 +32,12 @@ FIDELITIES = ["iso6336", "thin_slices"]
 
 
 @pytest.fixture(scope="module")
-def checked() -> Checked:
+def checked():
     return check_request(PAIR, TableAxes(normal_forces=FORCES), AnalysisOptions(positions=32))
 
 
 @pytest.fixture(scope="module")
-def table(checked: Checked) -> SteDatabase:
+def table(checked):
     """Of thin slices, which take no mesh."""
     return THIN_SLICES.run(checked)
 

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 from spur_gears import GEAR, PAIR
 
-from fe_contact import GearPair
+from fe_contact import STEEL, GearPair
 from fe_contact.errors import InputError
-from fe_contact.material import STEEL
 from verification.full_contact import (
     FullContactTable,
     HelicalMesh,
@@ -26,11 +25,7 @@ from verification.full_contact.helical.flank_bodies import (
     meshed_section,
     section_compliance,
 )
-from verification.full_contact.helical.twisted_stiffness import (
-    outward,
-    section_stiffness,
-    twisted_stiffness,
-)
+from verification.full_contact.helical.twisted_stiffness import outward, section_stiffness, twisted_stiffness
 from verification.full_contact.over_face.extruded_stiffness import X, Y, Z, extruded_stiffness
 from verification.full_contact.over_face.layers import Layers
 

@@ -14,7 +14,7 @@ from fe_contact.types import FloatArray
 from verification.full_contact.condensation.active_set import ContactSystem, solve_active_set
 from verification.full_contact.condensation.condensed_body import condensed_body, dissected, freedoms
 from verification.full_contact.condensation.flank_curve import FlankCurve
-from verification.full_contact.condensation.weak_gap import WeakGap, weak_gap
+from verification.full_contact.condensation.weak_gap import weak_gap
 from verification.full_contact.over_face.extruded_body import ExtrudedBody, extruded_body
 from verification.full_contact.over_face.extruded_stiffness import X, Z, extruded_stiffness
 from verification.full_contact.over_face.face_gap import FaceGap, face_gap
@@ -49,7 +49,7 @@ def pressed(slave: int, layers: int = 3, skew: float = 0.0) -> tuple[FaceGap, Co
     bodies = blocks(layers)
     curves = [FlankCurve(body.points[body.columns[0]]) for body in bodies]
 
-    def section(z: float) -> tuple[WeakGap, float]:
+    def section(z):
         assert 0.0 < abs(z) < 0.5 * FACE
         away = FlankCurve(curves[1].nodes + np.array([skew * (z / FACE + 0.5) ** 2, 0.0]))
         return weak_gap((curves[0], away), (curves[0], away)[slave], slave, towards), 0.0
