@@ -26,7 +26,7 @@ class HousingModes(RotorEffect):
     """The amplitudes of all modes of a housing, as freedoms in addition to those of the shafts in it."""
 
     name = "housing_modes"
-    at_rest = False
+    in_statics = False
     compulsory = True
     adds = (HOUSING_AMPLITUDES,)
     cost = "a freedom per row of the housing's matrices, a force element per bearing in it, implicit steps"
@@ -37,12 +37,12 @@ class HousingModes(RotorEffect):
         All shafts in a housing have its verdict. A shaft in two housings has the effect if one of them calls
         for it. The effect changes no static motion.
         """
-        none = Verdict(False, False, "no bearing of it sits in a housing with mass", 0.0)
+        unhoused = Verdict(False, False, "no bearing of it sits in a housing with mass", 0.0)
         return [
             max(
                 (_verdict(rotor, housing) for housing in _housings_of(rotor.mechanism, rotor.index)),
                 key=lambda verdict: verdict.on,
-                default=none,
+                default=unhoused,
             )
             for rotor in rotors
         ]

@@ -12,15 +12,7 @@ from fe_contact.microgeometry.sweep import SweptQuantity
 from fe_contact.microgeometry.sweep_request import TORQUE
 from lineofaction.gearbox.studies.sweep.run import QUANTITIES, SweepResult
 from lineofaction.report.drawing import palette
-from lineofaction.report.drawing.figure import (
-    Axis,
-    Figure,
-    HeatMap,
-    Line,
-    Panel,
-    Table,
-    ordered_lines,
-)
+from lineofaction.report.drawing.figure import Axis, Figure, HeatMap, Line, Panel, Table, ordered_lines
 from lineofaction.report.drawing.page import Headline, Page, Section
 from lineofaction.report.presentation import Presentation
 

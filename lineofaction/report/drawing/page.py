@@ -177,7 +177,7 @@ def _library() -> str:
 
 
 def _margins(page: Page) -> str:
-    """Return the margin texts of every printed page, apart from its number."""
+    """Return the margin texts of every printed page, without its number."""
     corner = page.block.corner if page.block else ""
     texts = {"top-left": page.title, "top-right": corner, "bottom-left": "lineofaction"}
     plain = {corner_name: re.sub(r"[^\w .,:;()/+-]", " ", text) for corner_name, text in texts.items()}

@@ -449,11 +449,11 @@ def _alarms(flanks: LoadDistribution, database: SteDatabase | None) -> tuple[str
     if database is None:
         return ()
     computed, stored = flanks.scene.geometry, database.geometry
-    same = computed.teeth == stored.teeth
+    same_pair = computed.teeth == stored.teeth
     for name in ("base_pitch", "face_width"):
         size = getattr(stored, name)
-        same &= abs(getattr(computed, name) - size) <= 1e-9 * size
-    return () if same else ("The flank results and the STE database are of different gear pairs.",)
+        same_pair &= abs(getattr(computed, name) - size) <= 1e-9 * size
+    return () if same_pair else ("The flank results and the STE database are of different gear pairs.",)
 
 
 def _point(flanks: LoadDistribution) -> str:
