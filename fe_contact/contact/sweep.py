@@ -2,17 +2,27 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from fe_contact.contact.newton import CONVERGED, solve_point
-from fe_contact.contact.point_problem import PointProblems, point_problems, problem_on, row_bodies
+from fe_contact.contact.newton import CONVERGED, ITERATION_LIMIT, solve_point
+from fe_contact.contact.point_problem import (
+    PointProblem,
+    PointProblems,
+    point_problems,
+    problem_on,
+    row_bodies,
+)
 from fe_contact.contact.problem import ContactProblem
 from fe_contact.contact.solution_start import Start
 from fe_contact.types import BoolArray, FloatArray, IntArray, Status
-from host.loops import njit
+from host.loops import inner, njit
+
+MOST_STEPS = 16
+"""Most steps from one load to the next where Newton's method finds no solution in one."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +112,8 @@ def _sweep(
     """Fill the result arrays, started from the `first` forces, or each load from the two below it.
 
     Forces of a much smaller load press on too few points: where no solution is found from them, the search
-    begins again from zero forces, for which `solve_point` guesses a start. Positions p, p + rows, p + 2 rows
+    begins again from zero forces, for which `solve_point` guesses a start, and then rises to the load by
+    steps. Positions p, p + rows, p + 2 rows
     and so on have the same compliance of the bodies; they are solved one after another, so that it is
     prepared once.
     """
@@ -113,12 +124,14 @@ def _sweep(
             point, touching = problem_on(every, bodies, p)
             start, last = np.zeros(touching.size), np.zeros(touching.size)
             for k in range(loads.size):
+                below = 0.0  # load whose forces are `last`
                 if first.shape[0] > 0:
                     start = first[p, k][touching]
                 elif k > 0:  # extrapolate linearly from the two loads below, the lowest of which is 0
-                    below = loads[k - 2] if k > 1 else 0.0
-                    part = (loads[k] - loads[k - 1]) / (loads[k - 1] - below)
+                    before = loads[k - 2] if k > 1 else 0.0
+                    part = (loads[k] - loads[k - 1]) / (loads[k - 1] - before)
                     start, last = start + part * (start - last), start
+                    below = loads[k - 1] if last.any() else 0.0
                 guessed = not start.any()
                 # `solve_point` overwrites `start` with the forces of the solution, and fills the residuals
                 d, t, code, count, over = solve_point(point, loads[k], start, residuals[p, k])
@@ -126,9 +139,36 @@ def _sweep(
                     start = np.zeros(touching.size)
                     d, t, code, further, over = solve_point(point, loads[k], start, residuals[p, k])
                     count += further
+                if code != CONVERGED:
+                    start = last.copy()
+                    d, t, code, further, over = _by_steps(point, below, loads[k], start, residuals[p, k])
+                    count += further
                 status[p, k], iterations[p, k], beyond[p, k] = code, count, over
                 if code == CONVERGED:
                     deflection[p, k], tangent[p, k] = d, t
                     force[p, k][touching] = start
                 else:
                     start = np.zeros(touching.size)
+
+
+@inner(error_model="numpy")
+def _by_steps(
+    point: PointProblem, below: float, load: float, force: FloatArray, residual: FloatArray
+) -> tuple[float, float, int, int, bool]:
+    """Solve a point by steps from the load `below`, whose forces (m,) are in `force`, to `load`, in N.
+
+    At zero load all forces are zero. The forces of each step are the start of the next one; steps are
+    halved until all converge, up to `MOST_STEPS`. Returns what `solve_point` does, with all iterations.
+    """
+    first, iterations, steps = force.copy(), 0, 2
+    d, t, code, over = math.nan, math.nan, ITERATION_LIMIT, False
+    while code != CONVERGED and steps <= MOST_STEPS:
+        force[:] = first
+        for step in range(1, steps + 1):
+            level = load if step == steps else below + (load - below) * step / steps
+            d, t, code, count, over = solve_point(point, level, force, residual)
+            iterations += count
+            if code != CONVERGED:
+                break
+        steps *= 2
+    return d, t, code, iterations, over
