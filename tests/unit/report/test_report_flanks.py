@@ -27,8 +27,7 @@ from lineofaction.report.flank.flank import (
 
 
 def panels(figure: object) -> tuple[Panel, ...]:
-    content = figure.content
-    return content
+    return figure.content
 
 
 def test_the_pattern_passes_through_the_pressures_that_were_computed(flanks):
