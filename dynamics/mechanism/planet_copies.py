@@ -56,7 +56,7 @@ def with_planets(
         raise InputError("pin_errors", len(pin_errors), f"one for each of the {number} planets")
     _check_teeth(scene, solve_kinematics(scene), shaft, turns)
     planet = scene.shaft(shaft)
-    bearings = planet_parts(scene, shaft)[1]
+    _, bearings = planet_parts(scene, shaft)
     copied = {name: [numbered(name, index) for index in range(1, number)] for name in bearings}
     error_by_planet = {numbered(shaft, index): error for index, error in enumerate(pin_errors or ())}
     laws: dict[str, Any] = {kind: _on_copies(getattr(scene, kind), copied) for kind in BEARING_PARTS}

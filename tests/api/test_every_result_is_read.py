@@ -270,7 +270,7 @@ def read(home: Path, http: TestClient, process: str, count: int, folder: Path) -
 @pytest.mark.drawn
 @pytest.mark.parametrize("process", PROCESSES)
 def test_a_few_of_every_kind_are_read(home, http, process, tmp_path, monkeypatch):
-    def undrawn(_figure, across=1):
+    def undrawn(_figure, across=1, *, half=False):
         content = BytesIO()
         Image.new("RGB", (across, 1)).save(content, "PNG")
         return content.getvalue()

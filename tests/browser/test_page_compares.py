@@ -24,7 +24,7 @@ from running_service import until
 
 IN_THE_PLANE = "20/20, module 1 mm, up to 1 N m"
 """The small case in the list of jobs, which has those of other tests too."""
-ORDINATE = ", error less its mean, µm"
+ORDINATE = ", STE less mean, µm"
 
 
 @pytest.fixture(scope="module")

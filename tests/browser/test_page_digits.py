@@ -11,8 +11,9 @@ WRITTEN = """async (pairs) => {
 CHANGES = """async (pairs) => {
   const { changeOf } = await import("/page/digits.js");
   const part = (value, from) => 100 * (value / from - 1);
-  const changed = (value, from, error) => ({ subject: "", value: part(value, from), error, unit: "%" });
-  return pairs.map((pair) => changeOf(changed(...pair)).text);
+  const changed = (value, from, error, coming) => (
+    { subject: "", value: part(value, from), error, unit: "%", coming });
+  return pairs.map((pair) => changeOf(changed(...pair)).text ?? "");
 }"""
 PAIRS = [(9.7861, 0.0347), (9.7861, 0.0996), (1.31, 0.0125), (-3.0, 2.0), (0.001, 0.4), (5.0, 1e-4)]
 
@@ -27,3 +28,5 @@ def test_a_change_below_what_answers_resolve_is_none(scripts):
     assert scripts.evaluate(CHANGES, pairs) == ["no change", "no change", "+0.2 %", "−20 %"]
     pairs = [(0.8, 1.0, 4.94), (0.8, 1.0, 30.0)]
     assert scripts.evaluate(CHANGES, pairs) == ["−20.0 ± 4.9 %", "no change (± 30 %)"]
+    pairs = [(1.0 + 2e-14, 1.0, None, True), (0.8, 1.0, None, True)]  # while the error is computed
+    assert scripts.evaluate(CHANGES, pairs) == ["", "−20 ± … %"]

@@ -25,7 +25,7 @@ def test_the_first_example_stands_there_with_its_errors_when_the_page_opens(brow
     assert [url for url in visit.requests if "/execution" in url] == [], "no job"
     assert page.locator(".design-note").count() == 0
     expect(page.locator("#live-ripple figcaption")).to_contain_text(
-        "Gray, once it is analyzed here: as analyzed"
+        "Gray, after Analyze: the pair as analyzed"
     )
     expect(page.locator(".made-band")).to_be_hidden()
     assert not (told := found_inaccessible(page)), json.dumps(told, indent=1)

@@ -129,6 +129,14 @@ def test_a_scene_file_is_opened_and_what_it_names_by_file_is_refused(visit):
     assert visit.complaints == []
 
 
+def test_a_scene_is_opened_where_cases_are(visit):
+    page = visit.page
+    page.locator("#import-file").set_input_files(EXAMPLE)
+    expect(page.get_by_label("Scene, TOML")).to_have_value(EXAMPLE.read_text(encoding="utf-8"))
+    expect(page.locator("#scene-tables")).to_be_visible()
+    expect(page.get_by_text("This case cannot be computed")).to_have_count(0)
+
+
 def test_files_chosen_with_a_scene_go_with_it(visit):
     page = visit.page
     scene, case = (EXAMPLE.with_name(f"{name}.toml") for name in ("palermo_scene", "palermo_spur_20_20"))

@@ -26,7 +26,7 @@ STUDIES = {
     "root-stress": ("Tooth-root stress", "Compute the root stress", {}, ["root_stress"]),
     "optimize": (
         "Optimize the flanks", "Search better flanks",
-        {"Most tip relief": "10", "Largest number of designs": "30"}, ["harris_map"],
+        {"Largest tip relief": "10", "Largest number of designs": "30"}, ["harris_map"],
     ),
     "scatter": (
         "Tolerances", "Draw pairs within tolerances", {"Class": "8", "Pairs": "50"}, ["scatter"],

@@ -64,7 +64,7 @@ def test_a_case_and_the_library_mean_the_same(figure):
     assert figure.boundary_value(figure.default) == getattr(case.pair.wheel, figure.field)
 
 
-LATER = [figure for figure in FIGURES if figure.what.later]
+LATER = [figure for figure in FIGURES if figure.what.omit_default]
 
 
 def test_a_case_is_written_without_later_figures_that_it_does_not_use():

@@ -126,11 +126,13 @@ def test_the_figure_has_a_line_per_pair_and_model_in_four_panels():
 def test_a_sentence_says_why_the_center_distance_changes_the_ripple():
     """As the paper has it: closer by 0.2 %, 72 % less with corner contact, 1.77 to 1.89 pairs."""
     sentences = [line for line in PAGE.text([study()]) if isinstance(line, str)]
-    assert sentences[1] == (
-        "pair a with corner contact: -0.1 % of center distance lowers the ripple by 50 %, since the contact "
-        "ratio under load rises from 1.77 to 1.89: one pair alone carries over 11 % of a base pitch in place "
-        "of 23 %."
-    )
+    assert sentences == [
+        "Without and with corner contact: -0.1 % of center distance lowers the ripple by 50 %, since the "
+        "contact ratio under load rises from 1.77 to 1.89: one pair alone carries over 11 % of a base pitch "
+        "in place of 23 %."
+    ]
+    several = PAGE.page([study(), study("pair b", 2.0)]).sections[0].text
+    assert several.startswith("pair a without and with corner contact: -0.1 % of center distance")
     known = study()
     for pairs, said in (
         (np.array([1.77, 1.77]), "though the contact ratio under load stays at 1.77: the shape of the curve"),
@@ -254,5 +256,5 @@ def test_a_study_is_on_the_report_page(tmp_path):
 def test_its_headlines_are_the_largest_ripples():
     skew, distance = PAGE.page((study(), study("pair b", 2.0))).headlines
     assert (skew.name, skew.value) == ("largest peak-to-peak STE over misalignment", "10.00 µm")
-    assert skew.remark == "± 0.20 µm at 30 µm, pair b: +150.0 % of the undeviated pair's"
+    assert skew.remark == "± 0.20 µm at 30 µm, 1000 N, pair b: +150.0 % of the undeviated pair's"
     assert (distance.value, distance.remark[:15]) == ("4.00 µm", "± 0.40 µm at 0 ")

@@ -98,7 +98,7 @@ def test_orders_and_answers_of_any_size_pass(child):
 def test_a_child_that_ends_by_itself_says_how(child):
     child.send(Frame("leave", b"3"))
     until(lambda: child.receive(0.1) == [] and child.closed)
-    assert child.has_exited(within_s=60.0)
+    assert child.exits_within(60.0)
     assert not child.send(Frame("echo"))
     ended = child.end()
     assert ended is not None and ended.code == 3
@@ -108,7 +108,7 @@ def test_a_child_that_ends_by_itself_says_how(child):
 def test_a_kill_from_outside_is_told_from_that_of_its_starter(child):
     answers(child, 0)
     os.kill(child.pid, signal.SIGKILL)
-    assert child.has_exited(within_s=60.0)
+    assert child.exits_within(60.0)
     ended = child.end()
     assert ended is not None and ended.code == -signal.SIGKILL
     assert child.killed_from_outside == (memory_kills() is not None)
@@ -128,7 +128,7 @@ def test_a_kill_that_may_be_for_memory_is_none_from_outside(tmp_path, monkeypatc
     with (tmp_path / "log").open("wb") as log:
         made = Child(partial(start_child, WORK), log.fileno(), tmp_path)
     os.kill(made.pid, signal.SIGKILL)
-    assert made.has_exited(within_s=60.0)
+    assert made.exits_within(60.0)
     assert made.end() is not None
     assert not made.killed_from_outside
 

@@ -21,7 +21,16 @@ from lineofaction.gearbox.schemas.report import ReportInput
 from lineofaction.report import document
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.attaching import attached
-from lineofaction.report.drawing.figure import Axis, Bars, Figure, Line, Panel, counts, panel_rows
+from lineofaction.report.drawing.figure import (
+    Axis,
+    Bars,
+    Figure,
+    Line,
+    Panel,
+    counts,
+    half_figures,
+    panel_rows,
+)
 from lineofaction.report.drawing.image import panel_sheet, png, still
 from lineofaction.report.drawing.interactive import plotly_figure
 from lineofaction.report.drawing.page import Headline, Page, Section, html
@@ -76,7 +85,7 @@ def test_a_verdict_is_one_sentence_with_value_error_and_limit():
 def test_every_document_names_date_program_hash_author_and_main_result():
     page = titled(replace(PAGE, records={"ste.nc": {"content_hash": "3f2a"}}), None)
     rows = dict(page.block.rows)
-    assert set(rows) == {"author", "date", "made with", "hash"}
+    assert set(rows) == {"date", "made with", "hash"}
     assert page.block.verdicts == ("Mean STE at 120 N m is 16.65 ± 0.088 µm; no requirement is stated.",)
     other = titled(replace(PAGE, records={"ste.nc": {"content_hash": "3f2b"}}), None).block
     assert other is not None and dict(other.rows)["hash"] != rows["hash"]
@@ -163,6 +172,23 @@ def test_narrow_panels_stand_side_by_side():
     assert left.get_position().x1 < right.get_position().x0
 
 
+def test_small_figures_share_the_width_of_a_page():
+    """Alone: of one panel; of two panels beside such a figure; never with long labels or three panels."""
+    panels = {
+        "one": [curve()],
+        "two": [curve()] * 2,
+        "three": [curve()] * 3,
+        "long": [curve("12.5 N m: mean 9 µm")],
+    }
+    named = {name: replace(figure(*drawn), key=name) for name, drawn in panels.items()}
+    last = replace(named["one"], key="last")
+    assert half_figures([*named.values(), last]) == {"one", "two", "last"}
+    assert half_figures([named["two"], named["three"]]) == set()
+    single, double = (Image.open(BytesIO(png(named[name], half=True))) for name in ("one", "two"))
+    assert single.width == double.width == Image.open(BytesIO(png(named["one"]))).width // 2
+    assert double.height > single.height
+
+
 def test_a_still_picture_has_the_size_of_its_sheet_in_a_third_of_the_bytes():
     whole = png(figure(curve(), curve()), across=2)
     small = still(whole)
@@ -174,7 +200,7 @@ def test_a_page_and_its_images_draw_a_column_of_panels_once(monkeypatch, tmp_pat
     column, row = figure(drawing(0.3), curve()), replace(figure(curve(), curve()), key="row")
     calls: list[tuple[str, int]] = []
 
-    def counted(drawn, across=1):
+    def counted(drawn, across=1, *, half=False):
         calls.append((drawn.key, across))
         return png(drawn, across)
 

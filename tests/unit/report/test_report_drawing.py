@@ -124,7 +124,7 @@ def test_an_image_grows_with_its_panels(count):
     assert image.startswith(b"\x89PNG")
     width, height = struct.unpack(">II", image[16:24])
     assert width == 1350
-    assert height == pytest.approx(150 * (2.0 * count + 0.9), abs=1)
+    assert height == pytest.approx(150 * (1.7 * count + 0.9), abs=1)
 
 
 def _ticks(x: list[float], y: list[float]) -> tuple[list[str], list[str]]:

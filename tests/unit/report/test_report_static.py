@@ -152,23 +152,25 @@ def test_a_single_load_is_drawn_without_a_map(database):
 
 
 def test_ripple_over_torque_is_that_of_the_curves(database):
-    ripple, linear, level = ripple_over_torque(database).content
-    (line,) = ripple.lines
-    solid = [{drawn.name: drawn for drawn in panel.lines if not drawn.label} for panel in (linear, level)]
-    dotted = [[drawn for drawn in panel.lines if drawn.label] for panel in (linear, level)]
+    """Lines have loads between the requested ones, as the table interpolates; points are the requested."""
+    ripple, *amplitudes = ripple_over_torque(database).content
+    line, points = ripple.lines
+    requested = database.torque[list(drawn_loads(database))]
+    assert points.markers and np.array_equal(points.x, requested)
+    assert line.x.size == 8 * (requested.size - 1) + 1 and np.array_equal(line.x[::8], requested)
+    dotted = [[drawn for drawn in panel.lines if drawn.label] for panel in amplitudes]
     assert [[drawn.label for drawn in lines] for lines in dotted] == [list("12345678")] * 2
-    for k, load in enumerate(drawn_loads(database)):
-        curve = database.curve(force=float(database.force[load]))
+    for k, torque in enumerate(line.x):
+        curve = database.curve(torque=float(torque))
         assert line.y[k] == pytest.approx(1e6 * curve.peak_to_peak.value)
         assert line.band[k] == pytest.approx(1e6 * curve.peak_to_peak.error)
-        for one, *lines in zip(curve.harmonics, *dotted, strict=False):
-            values = 1e6 * one.value, 20.0 * math.log10(1e6 * one.value)
-            for value, drawn, sure in zip(values, lines, solid, strict=True):
-                assert drawn.y[k] == pytest.approx(value)
-                if drawn.name in sure:
-                    assert math.isnan(sure[drawn.name].y[k]) == (one.error >= one.value)
-                else:
-                    assert one.error >= one.value
+        for panel, lines, decibels in zip(amplitudes, dotted, (False, True), strict=True):
+            for tone, drawn in zip(curve.harmonics, lines, strict=False):
+                size = 1e6 * tone.value
+                assert drawn.y[k] == pytest.approx(20.0 * math.log10(size) if decibels else size)
+                sure = [other for other in panel.lines if other.name == drawn.name and other is not drawn]
+                known = [other.y[other.x == torque] for other in sure if torque in other.x]
+                assert np.isfinite(known).any() == (tone.error < tone.value)
     assert "ripple" in [f.key for s in static_results(database) for f in s.figures]
 
 
