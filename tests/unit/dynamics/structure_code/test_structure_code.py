@@ -22,7 +22,7 @@ from dynamics.loads import AppliedForce, TimeLaw, Unbalance
 from dynamics.meshes.gear_mesh import CoastFlank
 from dynamics.scene import Integration
 from dynamics.structure_code.arithmetic import CALLS
-from dynamics.structure_code.arrays import Known
+from dynamics.structure_code.known_parts import Known
 from dynamics.structure_code.machine_code import CodeStore
 from dynamics.structure_code.module import Module
 from dynamics.structure_code.structure import structure_key
