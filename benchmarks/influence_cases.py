@@ -6,16 +6,7 @@ import math
 from dataclasses import replace
 
 from benchmarks.pair_cases import M, PairCase, face_cases, plane_cases
-from fe_contact import (
-    BoreSeat,
-    FlankModification,
-    GearBlank,
-    GearPair,
-    PitchDeviation,
-    RunOut,
-    Shaft,
-    Wave,
-)
+from fe_contact import BoreSeat, FlankModification, GearBlank, GearPair, PitchDeviation, RunOut, Shaft, Wave
 from fe_contact.geometry import ParallelAxes
 
 LOADS = (0.3, 1.0)

@@ -37,7 +37,7 @@ class RefusedValue(Exception):
     def __init__(self, field: str, value: object, bound: Wording, suggestion: Wording = "") -> None:
         value = value.item() if isinstance(value, np.generic) else value  # a number, to whoever reads it
         self.field, self.value = field, value
-        self.bound = Text.of(bound) if isinstance(bound, str) else bound
+        self.bound = Text.of(bound) if isinstance(bound, str) else bound  # ranges and choices word themselves
         self.suggestion = suggestion if isinstance(suggestion, Text) else Text.of(suggestion)
         super().__init__(self.worded(Reader()))
 
@@ -150,7 +150,8 @@ class Checks:
             elif limits is not None and limits.integer:
                 self.integer(field, value, int(limits.low or 0), int(limits.high or 0))
             elif limits is not None:
-                self.in_bound(field, value, limits, declaration.remedy if declaration.unit else "")
+                remedy = declaration.remedy if declaration.unit else ""  # an example in the unit
+                self.in_bound(field, value, limits, remedy)
 
     def increasing(
         self, field: str, values: Sequence[float] | FloatArray, suggestion: Wording = ""

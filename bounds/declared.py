@@ -97,7 +97,7 @@ class Declared:
     part: type | None = None
     """Dataclass of a part. The field's value is None, or the dataclass's default, where the part is left out.
     """
-    later: bool = False
+    omit_default: bool = False
     """Whether the field was added after results had been stored. At its default it is not written out, so
     that an input without the field keeps the address of its result.
     """
@@ -134,7 +134,7 @@ def required(declaration: Declared) -> Any:
 
 
 def written(thing: Any) -> Any:
-    """Return a dataclass and its parts as dictionaries, without later fields at their defaults."""
+    """Return a dataclass and its parts as dictionaries, without the fields left out at their defaults."""
     if not is_dataclass(thing):
         return type(thing)(map(written, thing)) if isinstance(thing, list | tuple) else thing
     by_name = declarations(type(thing))
@@ -142,7 +142,7 @@ def written(thing: Any) -> Any:
     return {
         entry.name: written(value)
         for entry, value in values
-        if not (value == entry.default and entry.name in by_name and by_name[entry.name].later)
+        if not (value == entry.default and entry.name in by_name and by_name[entry.name].omit_default)
     }
 
 

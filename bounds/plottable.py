@@ -35,7 +35,7 @@ class Plottable:
         return _program("plot").plot(self, view, axes=axes, interactive=interactive)
 
     def to_dataframe(self, view: str = "") -> pandas.DataFrame:
-        """Return the numbers that `plot` draws of a view, one row a point.
+        """Return the numbers that `plot` draws of a view, one row per point.
 
         Columns are panel, curve, label of the axis and coordinate in its unit (`x_axis`, `x`, `y_axis`, `y`),
         `error` (half-height of the band; NaN: none is stated), and of maps what their colors are and their

@@ -2,6 +2,7 @@
 
 import inspect
 import shutil
+import sys
 from functools import cached_property
 from importlib.metadata import version as installed
 from importlib.resources import as_file, files
@@ -12,6 +13,7 @@ from sphinx.application import Sphinx
 from sphinx.errors import PycodeError
 from sphinx.pycode import ModuleAnalyzer
 
+sys.path.append(str(Path(__file__).parent))  # notebook_pages
 EXTRA = Path(__file__).parents[1] / "out" / "site"  # pages that scripts write: docs/lab/index.md
 
 project = "lineofaction"
@@ -24,10 +26,24 @@ extensions = [
     "sphinx.ext.napoleon",
     "sphinx.ext.mathjax",
     "sphinx_copybutton",
+    "sphinx_gallery.gen_gallery",
+    "notebook_pages",
 ]
-source_suffix = {".md": "markdown"}
+source_suffix = {".md": "markdown", ".rst": "restructuredtext"}  # the gallery writes the latter
 # In the source tree alone: decisions, notes on measurements.
-exclude_patterns = ["decisions/*", "lab/*", "paper/*", "validation-table.md"]
+exclude_patterns = ["decisions/*", "lab/*", "paper/*", "validation-table.md", "gallery/*.ipynb"]
+sphinx_gallery_conf = {
+    "examples_dirs": "../examples/gallery",
+    "gallery_dirs": "gallery",
+    "filename_pattern": r"\.py$",  # all of them are run
+    "within_subsection_order": "FileNameSortKey",
+    "min_reported_time": 1000,  # s: of no use to a reader
+    "capture_repr": (),
+    "download_all_examples": False,
+    "show_signature": False,
+    "write_computation_times": False,
+    "abort_on_example_error": True,
+}
 myst_enable_extensions = ["deflist", "dollarmath"]
 myst_heading_anchors = 4
 

@@ -396,7 +396,7 @@ def runs_of_frontier(scene: Scene, names: Sequence[str]) -> tuple[list[float], f
     Raises `InputError`: no mesh, or a run too short to compare.
     """
     scene.require_meshes()
-    BlockGrid.of(assemble(scene))
+    BlockGrid.of(assemble(scene))  # refuses runs too short to compare
     runs = (run for run in FIDELITIES if isinstance(run, TimeIntegration) and run.name in names)
     tolerance = scene.integration.tolerance
     valid = (run.tolerance or tolerance for run in runs if run.refusal(scene) is None)

@@ -33,7 +33,7 @@ _EXPANSION = Declared(
     between(0.0, 1e-3),
     "Coefficient of thermal expansion; needed where the housing has a temperature",
     21e-6,
-    later=True,
+    omit_default=True,
 )
 MODES = Declared(
     Kind.COUNT,
@@ -41,15 +41,15 @@ MODES = Declared(
     integers(1, 2000),
     "Modes to keep; responses hold to 0.7 of the highest frequency",
     80,
-    later=True,
+    omit_default=True,
 )
 ELEMENT_SIZE = Declared(
     Kind.LENGTH,
     "m",
     up_to(20.0),
-    "Edge of an element of a STEP file's mesh; left out: the mean wall thickness over 0.7",
+    "Edge of an element of a STEP file's mesh; default: the mean wall thickness divided by 0.7",
     0.014,
-    later=True,
+    omit_default=True,
 )
 LOSS_FACTOR = Declared(
     Kind.RATIO,
@@ -57,7 +57,7 @@ LOSS_FACTOR = Declared(
     between(0.0, 1.0),
     "Loss factor of the material and its joints",
     0.01,
-    later=True,
+    omit_default=True,
 )
 BORE_DIAMETER = Declared(Kind.LENGTH, "m", up_to(20.0), "Diameter of the bore", 0.062)
 BORE_LENGTH = Declared(Kind.LENGTH, "m", up_to(20.0), "Length of the bore along its axis", 0.025)

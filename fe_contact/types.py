@@ -83,8 +83,8 @@ class Estimate:
         return ufloat(self.value, self.error / _DEVIATIONS)
 
     def _written(self, unit: str) -> str:
-        one = _UNITS.get(self.unit, {}).get(unit, 1.0)
-        value, error, name = self.value / one, self.error / one, unit.replace("um", "µm")
+        unit_value = _UNITS.get(self.unit, {}).get(unit, 1.0)
+        value, error, name = self.value / unit_value, self.error / unit_value, unit.replace("um", "µm")
         if not math.isfinite(error):
             return f"{value:.4g} {name}, no error stated".replace("  ", " ")
         return with_error(value, error, name)

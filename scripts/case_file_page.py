@@ -109,15 +109,15 @@ def _is_named(figure: Figure) -> bool:
 
 
 def accepted(figure: Figure) -> str:
-    """Return the text of the accepted values."""
+    """Return the text of the accepted values: an interval, of a choice its names."""
     bound, limits = figure.what.bound, figure.limits
     if bound is None:
         return "`true` or `false`"
     if isinstance(bound, Choice):
         return ", ".join(f'`"{name}"`' for name in bound.names)
     if limits.gt is not None:
-        return f"Above {limits.gt:.7g}, at most {limits.le:.7g}"
-    return f"{limits.ge:.7g} to {limits.le:.7g}"
+        return f"({limits.gt:.7g}, {limits.le:.7g}]"
+    return f"[{limits.ge:.7g}, {limits.le:.7g}]"
 
 
 def default(figure: Figure) -> str:

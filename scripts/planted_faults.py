@@ -5,8 +5,9 @@ Usage: planted_faults.py COUNT SEED OUTPUT.csv [BUDGET]   in a tree that may be 
 A fault is drawn by seed: a house by its size, a file, a place of it, and one of the kinds below. The
 tests that reach the file by imports, then those that rest on its house, run nearest first until one fails:
 those of every change ("day"), then the slow ones that rest on the house ("house"), then the slow ones of
-others ("night"). BUDGET is the wall time (s) that each of the three has; "time" says that one of them ended
-by it, so nothing is known. What no test finds is listed too: it may change nothing.
+others ("night"). BUDGET is the CPU time (s) that each of the three has; "time" says that one of them ended
+by it, so nothing is known. What no test finds is listed too: it may change nothing. Faults that OUTPUT.csv
+has already are not planted again.
 """
 
 from __future__ import annotations
@@ -14,9 +15,10 @@ from __future__ import annotations
 import ast
 import csv
 import random
+import resource
+import signal
 import subprocess
 import sys
-import time
 from collections import deque
 from collections.abc import Iterator
 from functools import cache
@@ -37,6 +39,8 @@ OPERATORS: dict[type[ast.AST], tuple[str, str, str]] = {
     ast.Eq: ("condition", "==", "!="), ast.NotEq: ("condition", "!=", "=="),
     ast.And: ("condition", "and", "or"), ast.Or: ("condition", "or", "and"),
 }  # fmt: skip
+USAGE_ERROR, NO_TEST_RAN = 4, 5
+"""Exit codes of pytest: a test that is none, or a conftest that cannot be imported; no test selected."""
 LOCKS = ("lock", "writing", "flock", "exclusive")
 
 
@@ -197,22 +201,46 @@ def _far(file: Path) -> int:
 
 def first_failure(arguments: list[str], budget: float, *options: str) -> str:
     """Return the first test that fails, or "" and how it ended: some files, then more, then all others."""
-    until = time.monotonic() + budget
     for some in filter(None, (arguments[:20], arguments[20:100], arguments[100:])):
-        command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *options, *some]
-        left = max(until - time.monotonic(), 1.0)
-        try:
-            done = subprocess.run(
-                command, cwd=ROOT, capture_output=True, text=True, timeout=left, check=False
-            )
-        except subprocess.TimeoutExpired:
+        command = [
+            sys.executable,
+            "-m",
+            "pytest",
+            "-x",
+            "-q",
+            "-n",
+            "0",
+            "-p",
+            "no:cacheprovider",
+            *options,
+            *some,
+        ]
+        limit = max(int(budget), 1)
+        before = _seconds_of_children()
+        done = subprocess.run(
+            command,
+            cwd=ROOT,
+            capture_output=True,
+            text=True,
+            check=False,
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (limit, limit + 5)),  # noqa: B023
+        )
+        budget -= _seconds_of_children() - before
+        if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
             return "time"
-        if done.returncode not in (0, 5):
+        if done.returncode == USAGE_ERROR and "not found: " in done.stderr:
+            raise SystemExit(f"the record names a test that is none: {done.stderr.strip()[-300:]}")
+        if done.returncode not in (0, NO_TEST_RAN):
             ends = [
                 line.split()[1] for line in done.stdout.splitlines() if line.startswith(("FAILED ", "ERROR "))
             ]
             return ends[0] if ends else f"exit {done.returncode}"
     return ""
+
+
+def _seconds_of_children() -> float:
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def plant(fault: Fault) -> str:
@@ -227,15 +255,27 @@ def plant(fault: Fault) -> str:
     return text
 
 
+def _planted(output: Path) -> set[tuple[str, ...]]:
+    """Return the faults that a file of results has."""
+    if not output.exists():
+        return set()
+    with output.open(encoding="utf-8", newline="") as stream:
+        return {tuple(row[: len(Fault._fields)]) for row in csv.reader(stream)}
+
+
 def main() -> None:
     """Plant, test, restore; a row of the output each."""
     count, seed, output = int(sys.argv[1]), int(sys.argv[2]), Path(sys.argv[3])
     budget = float(sys.argv[4]) if len(sys.argv) > 4 else 600.0
     tests = {file: distances(file) for file in (ROOT / "tests").rglob("test_*.py")}
-    with output.open("w", encoding="utf-8", newline="") as stream:
+    known = _planted(output)
+    with output.open("a", encoding="utf-8", newline="") as stream:
         rows = csv.writer(stream, lineterminator="\n")
-        rows.writerow((*Fault._fields, "suite", "test"))
+        if not known:
+            rows.writerow((*Fault._fields, "suite", "test"))
         for fault in drawn(count, seed):
+            if tuple(map(str, fault)) in known:
+                continue
             before = plant(fault)
             suite, test, late = "", "", ""
             try:

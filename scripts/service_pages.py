@@ -35,10 +35,10 @@ def table(titles: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> str:
 
 
 def verbs(text: str) -> str:
-    """Return a table of the verbs by the main clause of their help; those with a section link to it."""
+    """Return a table of the verbs but for studies, by the main clause of their help, linked to sections."""
     descriptions = dict(commands(get_command(app), "loa"))
-    for name, study in STUDIES.items():
-        descriptions.setdefault(f"loa {name}", study.description)
+    for name in STUDIES:
+        descriptions.pop(f"loa {name}", None)
     linked = {verb: f"[`{verb}`](#{verb.replace(' ', '-')})" for verb in re.findall(r"\n## `(.+)`\n", text)}
     return table(
         ("verb", "what it does"),

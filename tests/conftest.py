@@ -1,7 +1,5 @@
 """What all tests share: bodies condensed once, and the recorder of figures for the page of validation."""
 
-from __future__ import annotations
-
 import gc
 import json
 import os
@@ -103,7 +101,7 @@ def pytest_collection_finish() -> None:
 
 
 @pytest.fixture
-def record_figure(request: pytest.FixtureRequest) -> RecordFigure:
+def record_figure(request):
     """Return `record_figure(name, value, target, unit, source)`, which keeps one measured figure.
 
     `name` says what was measured, `value` is the number, `target` the criterion in words or a number
@@ -112,7 +110,7 @@ def record_figure(request: pytest.FixtureRequest) -> RecordFigure:
     The fixture records and asserts nothing: the test does.
     """
 
-    def record(name: str, value: float, target: float | str, unit: str, source: str) -> None:
+    def record(name, value, target, unit, source):
         test = request.node.nodeid
         kind = Path(str(request.node.path)).relative_to(TESTS).parts[0]
         figure = {

@@ -1,11 +1,7 @@
 """Sound from the velocity of any surface: radiation models, levels, sound power by order, recordings."""
 
 from dynamics.acoustics.air import Air
-from dynamics.acoustics.boundary_elements import (
-    BoundaryElements,
-    exterior_pressure,
-    surface_pressure,
-)
+from dynamics.acoustics.boundary_elements import BoundaryElements, exterior_pressure, surface_pressure
 from dynamics.acoustics.hull import Hull
 from dynamics.acoustics.levels import (
     LevelBand,
@@ -16,11 +12,7 @@ from dynamics.acoustics.levels import (
     level_bands,
     sound_power_level,
 )
-from dynamics.acoustics.model_comparison import (
-    ElementalRadiators,
-    ModelComparison,
-    compare_models,
-)
+from dynamics.acoustics.model_comparison import ElementalRadiators, ModelComparison, compare_models
 from dynamics.acoustics.order_power import ModalResistance, OrderPower, modal_resistance, order_power
 from dynamics.acoustics.outer_hull import OuterHull, outer_hull
 from dynamics.acoustics.radiation import (

@@ -81,7 +81,7 @@ class SparseMatrices(NamedTuple):
     """`coupling_runs`, `resistance_runs`: Runs of the rows of `coupling`, and of `damping` and `stiffness`.
     """
     modal: ModalFreedoms
-    """The last freedoms, where each of them is alone in the first two matrices."""
+    """The last freedoms, as far as mass, damping and stiffness couple them to no other."""
 
 
 def _sparse_rows(matrix: FloatArray, entries: FloatArray | None = None) -> _SparseRows:
@@ -101,7 +101,7 @@ def sparse_matrices(
 ) -> SparseMatrices:
     """Lay out the matrices of a system: (n, n), `direction` (R, n) and `position_gradient` (m, n).
 
-    `others` (..., n) are all further rows over the freedoms by which forces act on them or read them.
+    `others` (..., n) are all further rows over the freedoms along which forces act or depend on motion.
     """
     coupling = joined_by_chains((mass != 0.0) | (damping != 0.0) | (stiffness != 0.0))
     mobility = np.where(joined_by_chains(mass != 0.0), np.linalg.inv(mass), 0.0)

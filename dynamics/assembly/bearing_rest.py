@@ -60,7 +60,7 @@ def rest_on_bearings(arrays: SystemArrays, matrix: FloatArray, force: FloatArray
         residual = float(np.max(np.abs(unbalanced), initial=0.0))
         scale = max(float(np.max(np.abs(motions.T @ force), initial=0.0)), reaction.largest)
         if residual <= SETTLED * scale:
-            return _Rest(True, q, residual)
+            return _Rest(settled=True, displacement=q, residual=residual)
         stiffness = motions.T @ reaction.stiffness @ motions
         damping = max(damping, SOFTEST * float(np.max(np.abs(stiffness))))
         step = motions @ np.linalg.solve(stiffness + damping * np.eye(unbalanced.size), unbalanced)
@@ -71,7 +71,7 @@ def rest_on_bearings(arrays: SystemArrays, matrix: FloatArray, force: FloatArray
             q, reaction, damping = q + step, trial, damping / 10.0
         else:
             damping *= 4.0
-    return _Rest(False, q, residual)
+    return _Rest(settled=False, displacement=q, residual=residual)
 
 
 def bearing_rows(arrays: SystemArrays) -> IntArray:

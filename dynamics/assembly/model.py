@@ -37,8 +37,8 @@ def decide_model(scene: Scene, registry: tuple[Effect, ...]) -> Model:
     added = [ledger.on_rotor(rotor.shaft.name) for rotor in mechanism.rotors]
     kinds = [{kind for effect in effects for kind in effect.adds} for effects in added]
     freedoms = find_freedoms(mechanism.rotors, mechanism.kinematics, kinds)
-    mass = mass_terms(mechanism.rotors)[0][freedoms.column]
-    for name, value in zip(freedoms.name, mass, strict=True):
+    diagonal, _ = mass_terms(mechanism.rotors)
+    for name, value in zip(freedoms.name, diagonal[freedoms.column], strict=True):
         if value <= 0.0:
             raise InputError(f"inertia of {name}", float(value), above(0.0), GIVE_INERTIA)
     train = LoadedTrain(mechanism, freedoms, gather_connections(mechanism.scene, mechanism.rotors), flanks)

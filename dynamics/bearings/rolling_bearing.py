@@ -88,7 +88,7 @@ LOCATING = Declared(
     "that is pushed along z, against z, as in a cross-located pair; none: a non-locating (floating) bearing, "
     "one ring of which slides",
     BOTH,
-    later=True,
+    omit_default=True,
 )  # [2]_
 ALONG, AGAINST = 1, 2  # bits of the directions in which the seats hold the rings: along z, against z
 LOCATED = {BOTH: ALONG | AGAINST, POSITIVE: ALONG, NEGATIVE: AGAINST, NONE: 0}
@@ -114,7 +114,7 @@ DYNAMIC_CAPACITY = Declared(
     between(1.0, 1e9),
     "Basic dynamic load rating C of the row (ISO 281), from which its rating life follows; default: no life",
     22500.0,
-    later=True,
+    omit_default=True,
 )
 _FITS = Declared(
     Kind.PART,
@@ -122,7 +122,7 @@ _FITS = Declared(
     None,
     "Fits of its rings; left out: at temperature the rings expand by themselves",
     part=RingFits,
-    later=True,
+    omit_default=True,
 )
 _INNER = replace(TEMPERATURE, description="Steady temperature of the inner ring")
 _OUTER = replace(TEMPERATURE, description="Steady temperature of the outer ring", example=70.0)

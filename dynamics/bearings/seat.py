@@ -94,7 +94,7 @@ class _Seat:
                 finite(f"preload[{index}]", value)
 
     @property
-    def full(self) -> bool:
+    def is_general(self) -> bool:
         """Whether the bearing is more than springs and dampers along x, y, z."""
         return self.stiffness is not None or self.damping is not None or self.preload is not None
 

@@ -21,7 +21,7 @@ SMALL = 1e-6
 PASSES = 6
 """Most passes between table and deflection."""
 MARGIN = 0.5
-"""Distance of the outermost first knots beyond the range of misalignments, over the range."""
+"""Distance of the outermost first knots beyond the misalignments, over their range or the largest of them."""
 MIN_MARGIN = 2e-6
 """Least distance of the outermost first knots beyond the range of misalignments, m."""
 CLOSEST = 2e-8
@@ -56,7 +56,7 @@ def in_agreement(
     positions: int,
     contacts: Mapping[str, FaceContact],
     first: Deflection,
-    complete: Callable[[Mapping[str, Sequence[float]]], object] = lambda _knots: None,
+    prepare: Callable[[Mapping[str, Sequence[float]]], object] = lambda _knots: None,
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> Agreement:
     """Deflect the scene until the misalignments are those of the tables.
@@ -70,8 +70,8 @@ def in_agreement(
         Contacts of the meshes whose load may vary over the face, by name.
     first : Deflection
         Deflection with the tables of the scene.
-    complete : callable
-        Called with the knots by mesh, m, before their tables are asked for.
+    prepare : callable
+        Called with the knots by mesh, m, before their tables are asked for; it may compute all at once.
     workers : Workers
         Workers as in `deflect`.
     """
@@ -82,7 +82,7 @@ def in_agreement(
     deflection, passes, change = first, 0, float("inf")
     while passes < PASSES:
         passes += 1
-        complete(knots)
+        prepare(knots)
         tables = {name: contact.table(knots[name]) for name, contact in contacts.items()}
         meshes = tuple(replace(mesh, table=tables.get(mesh.name, mesh.table)) for mesh in scene.meshes)
         last = deflection
@@ -100,12 +100,12 @@ def _misalignments(deflection: Deflection, name: str) -> list[float]:
 
 
 def _first_knots(misalignments: Sequence[float], in_scene: float) -> list[float]:
-    """Return knots, m, increasing, from misalignments that leave out the moment of uneven loads.
+    """Return first knots, m, increasing, about misalignments found without the moment of uneven loads.
 
     They reach to the misalignment that the scene states, at which the search for rest positions begins.
     """
     low, high = min(misalignments), max(misalignments)
-    margin = max(MARGIN * (high - low), MARGIN * max(abs(low), abs(high)), MIN_MARGIN)
+    margin = max(MARGIN * max(high - low, abs(low), abs(high)), MIN_MARGIN)
     ends = [min(low - margin, in_scene), max(high + margin, in_scene)]
     return _with_knots(ends, misalignments, closest=0.1 * margin)  # a first table needs no closer knots
 

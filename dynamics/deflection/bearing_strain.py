@@ -15,7 +15,7 @@ from dynamics.kernels.compiled import compiled
 from dynamics.kernels.local_state import LocalState
 from dynamics.mechanism.bearing_elements import supports_by_name
 from dynamics.mechanism.connections import condensed_housings, seat_compliance
-from dynamics.mechanism.supports import carried_seat, seat_motion
+from dynamics.mechanism.supports import housed_seat, seat_motion
 from dynamics.types import FloatArray
 
 HALVINGS = 50  # bisections that find the clearance
@@ -25,7 +25,7 @@ FREE = 1e-12
 
 def _free_fraction(arrays: SystemArrays, element: int, coordinate: FloatArray) -> float:
     """Return the largest fraction of `coordinate` (p,) at which an element exerts no force; bisection."""
-    local = make_local(arrays.elements, arrays.position_gradient.shape[0])
+    local = make_local(arrays.elements, meshes=arrays.position_gradient.shape[0])
     rows = slice(arrays.elements.first[element], arrays.elements.first[element + 1])
     system, state = by_address(arrays), by_address(local)
 
@@ -85,10 +85,11 @@ def bearing_strain(system: System, motion: FloatArray, coordinate: FloatArray) -
     """
     supports = supports_by_name(system.rotors)  # index of the rotor, and bearing
     names, rotors = system.supports.name, system.rotors
-    strain = np.array([seat_motion(rotors, *supports[name]) @ motion for name in names]).reshape(-1, SEAT)
-    carried = np.array([carried_seat(rotors, name) @ motion for name in names]).reshape(-1, SEAT)
-    total = strain + carried
-    seat = carried + _condensed_seats(system, total)
+    relative = np.array([seat_motion(rotors, *supports[name]) @ motion for name in names]).reshape(-1, SEAT)
+    # seats move with housings with mass, whose freedoms are in `motion`, and with massless ones
+    with_mass = np.array([housed_seat(rotors, name) @ motion for name in names]).reshape(-1, SEAT)
+    total = relative + with_mass
+    seat = with_mass + _condensed_seats(system, total)
     in_bearing, clearance, elements = total - seat, np.zeros_like(total), system.arrays.elements
     # the elements of bearings that are not linear are the last ones
     for e, bearing in enumerate(system.bearings, start=len(system.elements) - len(system.bearings)):

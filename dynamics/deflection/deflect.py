@@ -17,12 +17,7 @@ from dynamics.assembly.assemble import System, assemble
 from dynamics.checks import distinct, integer
 from dynamics.deflection.bearing_loads import BearingLoad, bearing_loads
 from dynamics.deflection.bearing_strain import bearing_strain
-from dynamics.deflection.loaded_scene import (
-    ForceUnderCase,
-    leader_of,
-    leading_torque,
-    loaded_scene,
-)
+from dynamics.deflection.loaded_scene import ForceUnderCase, leader_of, leading_torque, loaded_scene
 from dynamics.deflection.mesh_alignment import MeshAlignment, mesh_alignment
 from dynamics.deflection.rest_positions import rest_over
 from dynamics.linearize.common_period import common_period

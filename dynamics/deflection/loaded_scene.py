@@ -88,7 +88,7 @@ def loaded_scene(scene: Scene, case: LoadCase) -> Scene:
     """
     leader = leader_of(scene)
     speed = _speed(leader, case)
-    # on the speeds of the scene; a leader at rest has the speed 1 below
+    # factor on the speeds of the scene; `_fixed_trains` gives a leader at rest the speed 1
     scale = _turned(case) * (speed / abs(leader.speed) if leader.speed else speed)
     drives = (*at_steady_speeds(scene, scale).drives, *_fixed_trains(scene, leader, scale))
     driven = replace(scene, drives=drives, free_rotations=())
@@ -123,8 +123,9 @@ def with_loads(scene: Scene, case: LoadCase) -> Scene:
         meshes=tuple(
             replace(
                 mesh,
-                technique="variable_torque",
+                technique="variable_torque",  # the force follows from table and deflection
                 nominal_force=None,
+                # the coast flanks face the other way: their misalignment has the other sign
                 misalignment=_turned(case) * mesh.misalignment,
             )
             for mesh in scene.meshes
@@ -147,9 +148,8 @@ def _speed(leader: _Leader, case: LoadCase) -> float:
 
 def _effects_at_rest(scene: Scene) -> dict[str, str]:
     """Return the choices of effects: those that act at rest are on unless the scene switches them off."""
-    known = {
-        effect.name: "on" if effect.at_rest else "off" for effect in EFFECTS if effect.at_rest is not None
-    }
+    acts = {effect.name: effect.in_statics for effect in EFFECTS}
+    known = {name: "on" if on else "off" for name, on in acts.items() if on is not None}  # None: as in a run
     chosen = scene.effects.items()
     return known | {name: choice for name, choice in chosen if choice == "off" or name not in known}
 
@@ -201,6 +201,6 @@ def _factor(scene: Scene, speed: float, torque: float) -> float:
     loads, further = leading_torque(scene, leader_of(scene), speed)
     from_loads = torque - further
     if loads == 0.0 or from_loads / loads <= 0.0:
-        bound = above(further, "N m", "what torques by speed and of forces take,") if loads else "left out"
+        bound = above(further, "N m", "the torque that speed and forces exert,") if loads else "left out"
         raise InputError("torque", torque, bound, "The scene's loads at t = 0 must resist the leading shaft.")
     return from_loads / loads

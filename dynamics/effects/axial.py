@@ -21,7 +21,7 @@ class Axial(RotorEffect):
     """One displacement along the axis."""
 
     name = "axial"
-    at_rest = True
+    in_statics = True
     adds = ("z",)
     cost = "one freedom per shaft"
 

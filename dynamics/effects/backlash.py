@@ -24,7 +24,7 @@ class Backlash(MeshEffect):
     """One force element per mesh: the coast flank."""
 
     name = "backlash"
-    at_rest = False
+    in_statics = False
     adds = (COAST_FLANKS,)
     cost = "one table look-up per mesh and stage"
     linear = False

@@ -11,7 +11,7 @@ class BearingClearance(RotorEffect):
     """One force element per rolling contact, curve and rolling bearing."""
 
     name = "bearing_clearance"
-    at_rest = True
+    in_statics = True
     adds = (BEARING_LAWS,)
     cost = "one force element of one, two or five rows per law"
     linear = False

@@ -25,7 +25,7 @@ class BearingTemperature(RotorEffect):
     """Rows of bearings at temperature in place of the rows as drawn."""
 
     name = "bearing_temperature"
-    at_rest = True
+    in_statics = True
     cost = "none"
 
     def prepared(self, scene: Scene) -> Scene:

@@ -15,7 +15,7 @@ class DynamicCenterDistance(MeshEffect):
     """One more local coordinate of the flank."""
 
     name = "dynamic_center_distance"
-    at_rest = True
+    in_statics = True
     adds = (CENTER_DISTANCE_CHANGE,)
     cost = "a table look-up over one more axis, with twice the values"
 

@@ -15,7 +15,7 @@ class DynamicMisalignment(MeshEffect):
     """One more local coordinate of the flank."""
 
     name = "dynamic_misalignment"
-    at_rest = True
+    in_statics = True
     adds = (additions.MISALIGNMENT,)
     cost = "a table look-up over one more axis, with twice the values"
 

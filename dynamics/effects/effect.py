@@ -47,7 +47,7 @@ class Effect:
     """Whether linear theory estimates the influence of the effect; False for effects on impacts, which it
     does not have.
     """
-    at_rest: ClassVar[bool | None] = None
+    in_statics: ClassVar[bool | None] = None
     """Whether static deflections include the effect. True: in every scene that has the data; False: never,
     because it acts in motion only; None: where it is on, as in a run.
     """

@@ -14,7 +14,7 @@ from dynamics.effects.effect import RotorEffect, Verdict
 from dynamics.effects.loaded_parts import LoadedRotor
 from dynamics.loads.load_course import mean_factor
 from dynamics.mechanism.columns import column_count, elastic_columns, elastic_terms, section_rows, turn_row
-from dynamics.mechanism.connections import gather_connections, seated
+from dynamics.mechanism.connections import gather_connections, general_bearings
 from dynamics.mechanism.flank_gradients import approach, misalignment_gradient
 from dynamics.mechanism.flanks import Flanks
 from dynamics.mechanism.mechanism import Mechanism
@@ -72,10 +72,10 @@ def _elastic_of(mechanism: Mechanism, index: int) -> ElasticShaft:
     return elastic_shaft(
         shaft.sections,
         discs,
-        _points_of_application(mechanism, rotor, bends, _stretches(mechanism, rotor)),
-        scene.highest_frequency or shaft_resolution(scene, mechanism.kinematics),
-        shaft.damping_ratio,
-        None if drive is None else rotor.on_shaft(drive.position),
+        points=_points_of_application(mechanism, rotor, bends, _stretches(mechanism, rotor)),
+        highest=scene.highest_frequency or shaft_resolution(scene, mechanism.kinematics),
+        damping_ratio=shaft.damping_ratio,
+        imposed=None if drive is None else rotor.on_shaft(drive.position),
     )
 
 
@@ -101,7 +101,7 @@ def _points_of_application(
     """
     scene, name = mechanism.scene, rotor.shaft.name
     laws = mechanism.bearings
-    tilting = seated(scene, mechanism.rotors) | {law.name for law in laws if law.tilts}
+    tilting = general_bearings(scene, mechanism.rotors) | {law.name for law in laws if law.tilts}
     holding = {law.name for law in laws if law.holds_axis}
 
     def all_forces(position: float) -> PointOfApplication:
@@ -111,7 +111,7 @@ def _points_of_application(
 
     points = [all_forces(gear.position) for gear in scene.gears if gear.shaft == name]
     for bushing in rotor.bushings:
-        along = stretches and (bushing.axial_stiffness > 0.0 or bushing.full or bushing.name in holding)
+        along = stretches and (bushing.axial_stiffness > 0.0 or bushing.is_general or bushing.name in holding)
         tilt = bends and bushing.name in tilting
         position = rotor.on_shaft(bushing.position)
         points.append(PointOfApplication(position, across=bends, tilt=tilt, along=along))
@@ -165,7 +165,7 @@ class FlexibleShafts(RotorEffect):
     """Elastic coordinates of every shaft with sections, and the rigid freedoms that bending needs."""
 
     name = "flexible_shafts"
-    at_rest = True
+    in_statics = True
     cost = "five to thirty freedoms per shaft, all in one block"
 
     def verdicts(self, rotors: Sequence[LoadedRotor]) -> Sequence[Verdict]:
@@ -208,7 +208,7 @@ def _influence(
     The influence is the displacement of the flexible shaft less that of the rigid one on the same bearings.
     """
     scene, rotors = mechanism.scene, mechanism.rotors
-    across = [0, 1, 3, 4] if rotors[index].rigid_kinds else []  # x, y, tilt_x, tilt_y
+    across = [0, 1, 3, 4] if rotors[index].bending_freedoms else []  # x, y, tilt_x, tilt_y, if it bends
     along = [2] if elastic.extension.mass.size else []  # z
     rigid = [6 * index + kind for kind in (*across, *along)]  # the freedoms that bearings hold
     coordinates = elastic_columns(rotors, index)
@@ -275,9 +275,10 @@ def _support_stiffness(mechanism: Mechanism) -> FloatArray:
     joined = gather_connections(mechanism.scene, rotors)
     supports, seats = joined.supports, joined.seats
     total = supports.matrix(supports.stiffness, supports.motion, supports.motion)
-    total += seats.motion.T @ seats.stiffness @ seats.motion + np.diag(elastic_terms(rotors)[0])
+    springs, _ = elastic_terms(rotors)
+    total += seats.motion.T @ seats.stiffness @ seats.motion + np.diag(springs)
     for index, rotor in enumerate(rotors):
-        for stiffness, lever in rotor.curved:
-            rows = section_rows(rotors, index, rotor.center[2] + lever)[:SEAT]
+        for stiffness, lever in rotor.typical_stiffness:
+            rows = section_rows(rotors, index, rotor.center[2] + lever)[:SEAT]  # the shaft turns freely
             total += rows.T @ stiffness @ rows
     return total

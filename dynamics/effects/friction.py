@@ -23,7 +23,7 @@ class Friction(MeshEffect):
     """Two more local coordinates of a flank; their rates are its sliding."""
 
     name = "friction"
-    at_rest = False
+    in_statics = False
     cost = "two more rows per flank and eight more values per look-up"
 
     def called_for(self, mesh: LoadedMesh) -> Verdict:

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from bounds import engineering
 from dynamics.effects.effect import RotorEffect, Verdict
 from dynamics.effects.loaded_parts import LoadedRotor
 from dynamics.joints import Housing
@@ -25,7 +26,7 @@ class HousingModes(RotorEffect):
     """The amplitudes of all modes of a housing, as freedoms in addition to those of the shafts in it."""
 
     name = "housing_modes"
-    at_rest = False
+    in_statics = False
     compulsory = True
     adds = (HOUSING_AMPLITUDES,)
     cost = "a freedom per row of the housing's matrices, a force element per bearing in it, implicit steps"
@@ -36,12 +37,12 @@ class HousingModes(RotorEffect):
         All shafts in a housing have its verdict. A shaft in two housings has the effect if one of them calls
         for it. The effect changes no static motion.
         """
-        none = Verdict(False, False, "no bearing of it sits in a housing with mass", 0.0)
+        unhoused = Verdict(False, False, "no bearing of it sits in a housing with mass", 0.0)
         return [
             max(
                 (_verdict(rotor, housing) for housing in _housings_of(rotor.mechanism, rotor.index)),
                 key=lambda verdict: verdict.on,
-                default=none,
+                default=unhoused,
             )
             for rotor in rotors
         ]
@@ -83,7 +84,8 @@ def _verdict(rotor: LoadedRotor, housing: Housing) -> Verdict:
     seats = np.array([modal.seat(name)[:2] for name in supports if name in modal.bearings])
     softest = float(np.max(np.sum(seats**2 / modal.stiffness, axis=2)))
     influence = min(share, 1.0) * (rotor.resultant / len(supports) * softest)  # an equal share of mesh forces
-    reason = f"{source} reach {content[source]:.4g} Hz, the first mode of {housing.name} {first:.4g} Hz"
+    highest, lowest = engineering(content[source], 4), engineering(first, 4)
+    reason = f"{source} reach {highest} Hz, the first mode of {housing.name} {lowest} Hz"
     if any(at.name in housing.bushings for at in rotor.mechanism.bearings):
         return Verdict(True, False, f"{reason}; it carries bearings that are not linear", influence)
     return Verdict(share > SHARE, True, reason, influence)

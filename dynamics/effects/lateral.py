@@ -10,7 +10,7 @@ class Lateral(RotorEffect):
     """Two displacements across the axis."""
 
     name = "lateral"
-    at_rest = True
+    in_statics = True
     adds = ("x", "y")
     cost = "two freedoms per shaft"
 

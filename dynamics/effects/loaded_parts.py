@@ -116,8 +116,8 @@ class LoadedTrain:
         """Displacements and tilts per force and moment on supports and shafts, in m, rad, N."""
         freedoms, supports, bends = self.freedoms, self.connections.supports, ~self.freedoms.turns
         moves = freedoms.keep(supports.motion)
-        stiffness = supports.matrix(supports.stiffness, moves, moves)
-        stiffness = stiffness + elastic_matrices(self.mechanism.rotors, freedoms)[0]
+        of_bodies, _ = elastic_matrices(self.mechanism.rotors, freedoms)
+        stiffness = supports.matrix(supports.stiffness, moves, moves) + of_bodies
         return np.asarray(np.linalg.pinv(stiffness[np.ix_(bends, bends)]))
 
     @cached_property

@@ -16,7 +16,7 @@ class MeshTemperature(MeshEffect):
     """Another operating point of the table, and another backlash."""
 
     name = "mesh_temperature"
-    at_rest = True
+    in_statics = True
     cost = "none"
 
     def prepared(self, scene: Scene) -> Scene:
@@ -40,8 +40,8 @@ class MeshTemperature(MeshEffect):
         shift = np.array([change.misalignment, change.distance_change])
         point = np.array([mesh.mesh.misalignment, mesh.mesh.center_distance_change])
         # a scene whose temperatures list its meshes has them at temperature already
-        other = point + (shift if scene.temperatures.meshes is None else -shift)
-        influence = abs(_mean_error(mesh, point) - _mean_error(mesh, other))
+        shifted = point + (shift if scene.temperatures.meshes is None else -shift)
+        influence = abs(_mean_error(mesh, point) - _mean_error(mesh, shifted))
         if mesh.mesh.coast is not None and np.min(mesh.train.mean_force[mesh.index]) <= 0.0:
             influence = max(influence, abs(change.backlash))
         return Verdict(True, True, _text(mesh, change), influence)

@@ -20,7 +20,7 @@ class MovingApplicationPoint(MeshEffect):
     """A moment of the mesh force in the plane of action."""
 
     name = "moving_application_point"
-    at_rest = True
+    in_statics = True
     adds = (LOAD_ARM,)
     cost = "one more row per flank and four more values per look-up"
 

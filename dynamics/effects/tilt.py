@@ -12,7 +12,7 @@ class Tilt(RotorEffect):
     """Two rotations across the axis."""
 
     name = "tilt"
-    at_rest = True
+    in_statics = True
     adds = ("tilt_x", "tilt_y")
     cost = "two freedoms per shaft"
 

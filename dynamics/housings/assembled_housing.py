@@ -71,7 +71,7 @@ def _independent_freedoms(points: FloatArray, faces: tuple[_RigidFace, ...]) -> 
     for number, face in enumerate(faces):
         shared = owner[face.nodes]
         if np.any(shared >= 0):
-            bound = f'apart from "{faces[int(shared.max())].name}"'
+            bound = f'without nodes of "{faces[int(shared.max())].name}"'
             raise InputError(face.name, "rigid", bound, "They share nodes: move one, or make them one face.")
         owner[face.nodes] = number
     free = np.flatnonzero(owner < 0)

@@ -139,8 +139,8 @@ class Plane:
         """Return the triangles in the plane."""
         direction, surface = unit("normal", self.normal), mesh.surface
         height = (mesh.points[surface[:, :3]] - np.array(self.point)) @ direction
-        size = np.sqrt(_normals(mesh, surface)[1])[:, None]
-        facing = _normals(mesh, surface)[0] @ direction > 1.0 - NEAR
+        normals, areas = _normals(mesh, surface)
+        size, facing = np.sqrt(areas)[:, None], normals @ direction > 1.0 - NEAR
         return _require_facets(
             "point", self.point, mesh, facing & np.all(np.abs(height) <= NEAR * size, axis=1)
         )

@@ -108,10 +108,18 @@ def linear_figures(
         pull = np.maximum(-np.min(harmonics.least_mesh_force, axis=1), 0.0)
         # 1e-300: a mesh without load may have no stiffness
         parted = np.maximum(parted, pull / np.maximum(harmonics.mean_stiffness, 1e-300))
-    size = system.arrays.mass.shape[0], system.arrays.direction.shape[0]
-    forces = np.sqrt(np.sum(amplitude**2, axis=1))
-    coasting = bool(system.flanks.coast)
-    return LinearFigures(mean, high - low, orders, forces, loads, parted, *size, coasting, lines)
+    return LinearFigures(
+        mean=mean,
+        peak_to_peak=high - low,
+        orders=orders,
+        bearing_orders=np.sqrt(np.sum(amplitude**2, axis=1)),
+        bearing_loads=loads,
+        parted=parted,
+        freedoms=system.arrays.mass.shape[0],
+        rows=system.arrays.direction.shape[0],
+        coasting=bool(system.flanks.coast),
+        lines=lines,
+    )
 
 
 def _resonances(at: Excited) -> FloatArray:

@@ -54,7 +54,7 @@ steps or outputs.
 KNOWN = 64  # most scenes whose influences stay in memory
 _SOLVED, _VARYING, _BEGUN = 4.5e-8, 2e-3, 0.01
 """CPU seconds of one line at one speed over the square of the freedoms, of varying stiffness at one speed,
-and of one effect apart from its lines.
+and of one effect without its lines.
 
 5 to 170 freedoms, 2 to 30 lines: within a factor of 2.
 """
@@ -279,7 +279,8 @@ def _influences(
             if _same((other.arrays, other.bearing_map), (system.arrays, system.bearing_map)):
                 influence = _influence_of(system, name, on, current, current)
             elif screened:
-                influence = _influence_of(system, name, on, mean, linear_figures(other, conditions, False))
+                figures = linear_figures(other, conditions, varying=False)
+                influence = _influence_of(system, name, on, mean, figures)
             if influence is None or influence.decibels > UNSEEN:
                 influence = _influence_of(system, name, on, current, linear_figures(other, conditions))
         except (InputError, SolveError):
@@ -394,12 +395,13 @@ class _Allowance:
         """Return the allowance of a scene's tolerance, a relative one first; None: there is no tolerance."""
         if scene.tolerance is not None:
             allowed = SHARE * scene.tolerance
-            return cls(f"{scene.tolerance:g}", allowed, allowed, lambda influence: influence.largest, True)
+            size, text = (lambda influence: influence.largest), f"{scene.tolerance:g}"
+            return cls(text=text, alone=allowed, together=allowed, size=size, parted=True)
         if scene.level_tolerance is None:
             return None
         maximum = scene.level_tolerance
-        text = f"{maximum:g} dB"
-        return cls(text, maximum, LEVEL_SHARE * maximum, lambda influence: influence.decibels, False)
+        size, text = (lambda influence: influence.decibels), f"{maximum:g} dB"
+        return cls(text=text, alone=maximum, together=LEVEL_SHARE * maximum, size=size, parted=False)
 
 
 @dataclass(frozen=True)

@@ -4,24 +4,14 @@ from __future__ import annotations
 
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.arrays.sparse_rows import row_product, subtract_columns, subtract_resistance
-from dynamics.forces.elements import (
-    evaluate_all,
-    has_unbalance,
-)
+from dynamics.forces.elements import evaluate_all, has_unbalance
 from dynamics.integrators.instant_powers import write_powers
 from dynamics.integrators.stage_parts import add_stages, finish_step, set_motion
-from dynamics.integrators.tableaus import (
-    EXPLICIT_EMBEDDED,
-    EXPLICIT_NODES,
-    EXPLICIT_STAGES,
-    EXPLICIT_WEIGHTS,
-)
+from dynamics.integrators.tableaus import EXPLICIT_EMBEDDED, EXPLICIT_NODES, EXPLICIT_STAGES, EXPLICIT_WEIGHTS
 from dynamics.integrators.workspace import Workspace
 from dynamics.kernels.routine import routine
 from dynamics.motion.local_accelerations import settle_unbalance
-from dynamics.motion.motion import (
-    add_motion,
-)
+from dynamics.motion.motion import add_motion
 
 STAGE_COUNT = 7  # stages of the method, the last at the end of the step
 

@@ -11,11 +11,7 @@ import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.arrays.modal_freedoms import subtract_modal_forces
-from dynamics.arrays.sparse_rows import (
-    run_product,
-    subtract_columns,
-    subtract_resistance_by_runs,
-)
+from dynamics.arrays.sparse_rows import run_product, subtract_columns, subtract_resistance_by_runs
 from dynamics.forces.elements import has_unbalance
 from dynamics.integrators.instant_powers import write_powers
 from dynamics.integrators.linear_elimination import apply_linear, hold_linear

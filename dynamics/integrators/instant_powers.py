@@ -27,11 +27,11 @@ from dynamics.types import FloatArray
 def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float) -> None:
     """Write row `stage` of ``work.power`` from the local state at that stage and its rates ``work.stage_v``.
 
-    Drives supply the torque on their own shafts times their speeds. A table V(x, d) exerts dV/dd only along
-    the line of action. What dV/dx stores as the position moves on counts as supplied by the position, and
-    likewise along the table's other axes, less the work of forces along them. All in all a table stores dV,
-    which is added at the end of the run: here the position's part is minus what d and the axes supply. The
-    rotation of frames and the change of its speed count with the position.
+    Drives supply the torque on their own shafts times their speeds. A table has the energy V(x, d, axes) and
+    exerts dV/dd along the line of action. The power dV/dx x' is supplied by the position. The axes supply
+    their part of V', less the work of the forces along them. The total V' is not integrated: the end of the
+    run adds the change of V. So the position has only minus the parts of d and of the axes here. The rotation
+    of frames and the change of its speed count with the position.
     """
     velocity = work.stage_v[stage]
     laws, modal = work.motion.shape[0], system.sparse.modal
@@ -85,11 +85,11 @@ def _by_frame_speed(system: SystemArrays, work: Workspace, e: int) -> float:
 def _in_elements(
     system: SystemArrays, work: Workspace
 ) -> tuple[float, float, float, float, float, float, float]:
-    """Return the powers in the elements, W, in seven parts.
+    """Return the powers in the elements, W: bearing, mesh, friction, supplied, frames, position, axes.
 
-    They are those lost in bearings, in flanks and by friction; supplied by loads; exchanged by the kinematic
-    motion with rotating frames; supplied by the position and by the other axes of tables. The energy of the
-    fifth is kinetic, in products of displacements and kinematic speeds, which the balance leaves out.
+    The first three are losses. Loads supply the fourth; the position and the other axes of tables supply the
+    last two. The kinematic motion exchanges the fifth with rotating frames. That energy is kinetic, in
+    products of displacements and kinematic speeds, which the balance leaves out.
     """
     bearing, mesh, friction, supplied, frames, position, axes = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     elements, force, elastic = system.elements, work.force, work.local.elastic
@@ -118,7 +118,7 @@ def _in_elements(
                 element_loss += (force[r] - elastic[r]) * rate[r]
         if law == SPATIAL_FLANK:
             mesh += element_loss
-            power, stored = power_along_axes(elements, work.local, e)
+            power, stored = power_along_axes(elements, work.local, e)  # on the bodies, and in the table
             axes += stored - power
             position -= elastic[first] * rate[first] + stored
         else:

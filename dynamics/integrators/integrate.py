@@ -7,15 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.assembly.assemble import System
-from dynamics.integrators.march import (
-    NO_SAMPLES,
-    Cancel,
-    Ending,
-    Progress,
-    ending,
-    march_on,
-    start_march,
-)
+from dynamics.integrators.march import NO_SAMPLES, Cancel, Ending, Progress, ending, march_on, start_march
 from dynamics.integrators.start_value import Trail
 from dynamics.integrators.state_sink import MemorySink
 from dynamics.integrators.static import StaticSolution

@@ -369,17 +369,17 @@ def ending(march: March, sink: StateSink, status: RunStatus, taken: TimeTaken) -
     done = work.work.copy()
     done[Power.POSITION] += final[2] - march.initial[2]  # 2: energy of the meshes
     return Ending(
-        status,
-        samples,
-        end,
-        np.array([march.initial, final]),
-        done,
-        float(np.max(work.fallen)),
-        work.counts,
-        _step_range(work),
-        taken,
-        figures,
-        ring.modal_states,
+        status=status,
+        samples=samples,
+        end=end,
+        stored=np.array([march.initial, final]),
+        work=done,
+        fallen=float(np.max(work.fallen)),
+        count=work.counts,
+        step_range=_step_range(work),
+        taken=taken,
+        figures=figures,
+        modal_states=ring.modal_states,
     )
 
 

@@ -159,18 +159,18 @@ class SampleRing(NamedTuple):
         channels += carried_signals(arrays, sampler)
         signals = rows + sampler.bearings.constant.size
         return cls(
-            np.zeros((sampler.taps.size, channels)),
-            np.zeros(n),
-            np.zeros(n),
-            np.zeros(n),
-            make_local(arrays.elements, arrays.position_gradient.shape[0]),
-            np.zeros((laws, MOTION_COLUMNS)),
-            np.zeros(laws, dtype=np.int64),
-            _Peaks(np.full((3, signals), np.nan), *(np.zeros(signals) for _ in range(3))),
-            np.zeros(rows),
-            np.zeros(rows),
-            np.zeros(rows),
-            np.zeros((sampler.modal_samples.size, 2, n - sampler.bodies)),
+            point=np.zeros((sampler.taps.size, channels)),
+            q=np.zeros(n),
+            v=np.zeros(n),
+            a=np.zeros(n),
+            local=make_local(arrays.elements, arrays.position_gradient.shape[0]),
+            motion=np.zeros((laws, MOTION_COLUMNS)),
+            quanta=np.zeros(laws, dtype=np.int64),
+            peaks=_Peaks(np.full((3, signals), np.nan), *(np.zeros(signals) for _ in range(3))),
+            removed=np.zeros(rows),
+            folded=np.zeros(rows),
+            high=np.zeros(rows),
+            modal_states=np.zeros((sampler.modal_samples.size, 2, n - sampler.bodies)),
         )
 
 

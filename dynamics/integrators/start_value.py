@@ -23,7 +23,7 @@ STATE = (
     *("time", "time_rest", "error", "q", "v", "v_rest", "a", "quanta"),
     *("speed", "power", "work", "highest", "fallen", "counts"),
 )
-"""Fields of a workspace that go from step to step, apart from those per row of the force elements."""
+"""Fields of a workspace that go from step to step, except those per row of the force elements."""
 MAX_SAVED = 128
 """Most states in memory at once. When there are as many, every second one is dropped."""
 

@@ -32,7 +32,7 @@ DAMPING_RATIO = Declared(
     between(0.0, 1.0),
     "Damping ratio of every mode of a housing with mass that has no damping matrix",
     0.005,
-    later=True,
+    omit_default=True,
 )
 MODAL_COORDINATES = Declared(
     Kind.COUNT,
@@ -40,7 +40,7 @@ MODAL_COORDINATES = Declared(
     integers(0, 2000),
     "Modal coordinates of a housing with mass: the last rows of its matrices, behind those of the seats",
     0,
-    later=True,
+    omit_default=True,
 )
 
 

@@ -99,7 +99,7 @@ def coupling_absorbers(system: System) -> Iterator[_Absorber]:
 
 def body_absorbers(system: System) -> Iterator[_Absorber]:
     """Yield the shafts that bend and the housings that move."""
-    rotors, dampers = system.rotors, elastic_terms(system.rotors)[1]
+    rotors, (_, dampers) = system.rotors, elastic_terms(system.rotors)
     columns = [(rotor.shaft.name, "shaft", elastic_columns(rotors, i)) for i, rotor in enumerate(rotors)]
     columns += [(part.name, "housing", housing_columns(rotors, i)) for i, part in enumerate(rotors.housings)]
     for name, kind, body_columns in columns:

@@ -12,21 +12,13 @@ from bounds.brief import brief
 from bounds.plottable import Plottable
 from dynamics.assembly.assemble import System
 from dynamics.errors import InputError
-from dynamics.linearize.harmonic_response import (
-    HarmonicResponse,
-    excited_lines,
-    response_of,
-    varied_floor,
-)
+from dynamics.linearize.harmonic_response import HarmonicResponse, excited_lines, response_of, varied_floor
 from dynamics.linearize.linear_system import SPRING_KINDS
 from dynamics.linearize.load_harmonics import load_cycles
 from dynamics.linearize.natural_modes import natural_modes
 from dynamics.linearize.operating_speeds import checked_speeds, leading_law
 from dynamics.linearize.power_balance import PowerBalance, power_balance
-from dynamics.linearize.steady_vibration import (
-    Excited,
-    excited_harmonics,
-)
+from dynamics.linearize.steady_vibration import Excited, excited_harmonics
 from dynamics.linearize.strongest_lines import require_memory
 from dynamics.linearize.varying_stiffness import varied_vibration
 from dynamics.results.array_file import ArrayFile, stored

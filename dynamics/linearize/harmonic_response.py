@@ -221,7 +221,7 @@ def varied_floor(
     mean = steady_vibration(at, speed, harmonics)
     shared = response.bearing_force[..., np.isin(harmonics, mean.harmonics)]
     changed = shared - bearing_forces(at, mean.omega, mean.displacement)
-    squares = floor.of_bearings()[0]  # P
+    squares, _ = floor.of_bearings()  # P
     listed = 0.5 * np.sum(np.abs(shared[:, :3]) ** 2, axis=(1, 3))  # Q: forces, without moments
     change = 0.5 * np.sum(np.abs(changed[:, :3]) ** 2, axis=(1, 3))
     part = np.sqrt(change / np.maximum(listed, 1e-300))  # r; 1e-300: no division by zero

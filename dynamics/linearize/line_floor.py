@@ -159,7 +159,7 @@ class FloorInputs(NamedTuple):
 
 def floor_inputs(at: Excited, omitted: IntArray) -> FloorInputs:
     """Return the excitation in lines (L,), in as few directions as hold its power."""
-    force = flank_forces(at, omitted)[1]
+    _, force = flank_forces(at, omitted)
     size = np.max(np.abs(force), axis=1, keepdims=True)
     rows = np.flatnonzero(size)
     scaled = force[rows] / size[rows]

@@ -172,7 +172,8 @@ def _springs(system: System, time: float, tangent: FloatArray) -> list[_Spring]:
         ]
     for _, drive, row in drive_springs(system.scene, system.kinematics, system.rotors, freedoms):
         springs.append(_Spring(drive.name, row, drive.stiffness or 0.0))
-    elastic = elastic_terms(system.rotors)[0][freedoms.column]
+    stiffness, _ = elastic_terms(system.rotors)
+    elastic = stiffness[freedoms.column]
     unit = np.eye(elastic.size)
     springs += [_Spring(freedoms.name[i], unit[i], elastic[i]) for i in np.flatnonzero(elastic > 0.0)]
     return springs

@@ -116,8 +116,8 @@ class _Course:
         ones = np.ones(self._speed.size, dtype=complex)
         waves: Waves = {Fraction(0): np.array(course.mean * ones, dtype=complex)}
         for order, amplitude, phase in zip(course.multiple, course.amplitude, course.phase, strict=True):
-            half = np.array(0.5 * amplitude * np.exp(1j * phase) * ones, dtype=complex)
-            waves = _sum(waves, _sum({order * multiple: half}, {-order * multiple: half.conj()}))
+            phasor = np.array(0.5 * amplitude * np.exp(1j * phase) * ones, dtype=complex)
+            waves = _sum(waves, _sum({order * multiple: phasor}, {-order * multiple: phasor.conj()}))
         return waves
 
     def _multiple_of(self, position: int) -> Fraction:
@@ -131,9 +131,9 @@ class _Course:
 
 def _circle(multiple: Fraction, angle: float) -> tuple[Waves, Waves]:
     """Return cosine and sine of an angle that starts at `angle`, rad, and has the frequency `multiple`."""
-    half = np.full(1, 0.5 * np.exp(1j * angle), dtype=complex)
-    cosine = _sum({multiple: half}, {-multiple: half.conj()})
-    return cosine, _sum({multiple: -1j * half}, {-multiple: 1j * half.conj()})
+    phasor = np.full(1, 0.5 * np.exp(1j * angle), dtype=complex)
+    cosine = _sum({multiple: phasor}, {-multiple: phasor.conj()})
+    return cosine, _sum({multiple: -1j * phasor}, {-multiple: 1j * phasor.conj()})
 
 
 def _sum(first: Waves, second: Waves) -> Waves:

@@ -51,7 +51,7 @@ def speed_matrices(system: System, linear: LinearSystem, speed: float) -> SpeedM
     """Return the matrices, their speed terms from those at `speed` (rad/s, not 0) and at twice that."""
     per_meter = 1.0 / linear.scale
     gyroscopic, once = terms_at(system, law_speeds(system, speed))
-    twice = terms_at(system, law_speeds(system, 2.0 * speed))[1]
+    _, twice = terms_at(system, law_speeds(system, 2.0 * speed))
     swept, centripetal = (4.0 * once - twice) / (2.0 * speed), (twice - 2.0 * once) / (2.0 * speed**2)
     parts = (linear.mass, linear.damping, linear.stiffness, gyroscopic / speed, swept, centripetal)
     return SpeedMatrices(*(per_meter[:, None] * part * per_meter for part in parts))

@@ -119,7 +119,8 @@ def excited_harmonics(
     loads = load_harmonics(at.system, at.period, speed, harmonics, at.time)
     excited_lines = _is_excited(np.moveaxis(loads / at.linear.scale, 1, 2))
     for excitation in excitations:
-        excited_lines = excited_lines | _is_excited(flank_forces(at, harmonics, excitation)[1])
+        _, force = flank_forces(at, harmonics, excitation)
+        excited_lines = excited_lines | _is_excited(force)
     return harmonics[excited_lines]
 
 
@@ -219,7 +220,7 @@ def gyroscopic_terms(system: System, speed: FloatArray) -> list[Terms]:
     """
     part = np.abs(speed) / np.max(np.abs(speed))
     gyroscopic, once = terms_at(system, law_speeds(system, float(np.max(np.abs(speed)))))
-    twice = terms_at(system, law_speeds(system, 2.0 * float(np.max(np.abs(speed)))))[1]
+    _, twice = terms_at(system, law_speeds(system, 2.0 * float(np.max(np.abs(speed)))))
     # once = linear + centripetal, twice = 2 linear + 4 centripetal
     linear, centripetal = 2.0 * once - 0.5 * twice, 0.5 * twice - once
     return [(w * gyroscopic, w * linear + w * w * centripetal) for w in part]

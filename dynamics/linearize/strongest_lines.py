@@ -52,7 +52,8 @@ def strongest_lines(at: Excited, harmonics: IntArray, speed: FloatArray) -> Line
     maximum = max(ALWAYS, int(MAX_AMPLITUDES / max(speed.size * at.system.arrays.mass.shape[0], 1)))
     if harmonics.size <= maximum:
         return Lines(harmonics, harmonics[:0])
-    force = np.abs(flank_forces(at, harmonics)[1])
+    _, exciting = flank_forces(at, harmonics)
+    force = np.abs(exciting)
     bands, band = np.unique(np.rint(harmonics / at.period.counted), return_inverse=True)
     size = np.zeros(harmonics.size)
     for index in range(bands.size):

@@ -56,13 +56,13 @@ class Seats:
         return np.asarray(self.damping @ quarter)
 
 
-def seated(scene: Scene, rotors: Bodies) -> frozenset[str]:
+def general_bearings(scene: Scene, rotors: Bodies) -> frozenset[str]:
     """Return the names of the bearings that are more than three springs to what holds them.
 
     Bearings in a housing without mass, or with neglected mass, have the housing's matrix in series.
     """
     housed = {name for housing in condensed_housings(scene, rotors) for name in housing.bushings}
-    full = {part.name for part in (*scene.ground_bearings, *scene.planet_bearings) if part.full}
+    full = {part.name for part in (*scene.ground_bearings, *scene.planet_bearings) if part.is_general}
     return frozenset(housed | full)
 
 
@@ -73,7 +73,7 @@ def condensed_housings(scene: Scene, rotors: Bodies) -> list[Housing]:
 
 def _gather_seats(scene: Scene, rotors: Bodies, names: Sequence[str]) -> Seats:
     """Lay out the bearings of `scene` that are seats; `names` are those of all supports."""
-    chosen, condensed = seated(scene, rotors), condensed_housings(scene, rotors)
+    chosen, condensed = general_bearings(scene, rotors), condensed_housings(scene, rotors)
     # the seats of a housing lie next to each other: they share a block of the matrices
     housed = [name for housing in condensed for name in housing.bushings]
     order = [*housed, *(name for name in names if name in chosen and name not in housed)]
@@ -123,7 +123,8 @@ def condense_housing(
 
     the exact stiffness, and the exact damping at frequencies at which damping is small against stiffness.
     """
-    loss, follow = housing.matrices()[1], seat_compliance(housing, stiffness) @ stiffness
+    _, loss = housing.matrices()
+    follow = seat_compliance(housing, stiffness) @ stiffness
     left = np.eye(stiffness.shape[0]) - follow
     series = stiffness @ left
     amplitudes = follow[list(housing.columns)]
@@ -140,8 +141,8 @@ def seat_compliance(housing: Housing, stiffness: FloatArray) -> FloatArray:
     `stiffness` (5 s, 5 s) is K_b of the bearings alone. Under the shaft's motion d the seats move by this
     times K_b d - preload.
     """
-    followed = list(housing.columns)
-    both = stiffness[np.ix_(followed, followed)] + housing.matrices()[0]
+    followed, (of_housing, _) = list(housing.columns), housing.matrices()
+    both = stiffness[np.ix_(followed, followed)] + of_housing
     scale = 1.0 / np.sqrt(np.maximum(np.diag(both), 1e-300))
     inverse = np.linalg.pinv(scale[:, None] * both * scale, hermitian=True)
     compliance = np.zeros_like(stiffness)
@@ -208,7 +209,7 @@ class Connections:
 
 def gather_connections(scene: Scene, rotors: Bodies) -> Connections:
     """Lay out what joins the rotors of `scene`."""
-    supports = gather_supports(rotors, seated(scene, rotors))
+    supports = gather_supports(rotors, general_bearings(scene, rotors))
     couplings = gather_couplings(scene, rotors)
     return Connections(supports, _gather_seats(scene, rotors, supports.name), couplings)
 

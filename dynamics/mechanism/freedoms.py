@@ -63,7 +63,7 @@ def find_freedoms(rotors: Bodies, kinematics: Kinematics, added: Sequence[Collec
     """Gather the freedoms `added` to each rotor, and the rotation of every shaft without a rigid drive."""
     freedoms: list[_Freedom] = []
     for index, rotor in enumerate(rotors):
-        free = {*added[index], *rotor.rigid_kinds}
+        free = {*added[index], *rotor.bending_freedoms}
         if index not in kinematics.imposed:
             free.add("rotation")
         kinds = [

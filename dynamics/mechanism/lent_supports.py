@@ -58,4 +58,4 @@ def _holding(scene: Scene, rotor: Rotor, coupling: Coupling, kinds: tuple[int, .
     block = np.ix_(kinds, kinds)
     support[block] = matrix[block]
     lever = float(scene.shaft(coupling.first).origin[2] + coupling.position - rotor.center[2])
-    return replace(rotor, curved=(*rotor.curved, (support, lever)))
+    return replace(rotor, typical_stiffness=(*rotor.typical_stiffness, (support, lever)))

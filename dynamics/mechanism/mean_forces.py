@@ -27,8 +27,9 @@ def mean_forces(mechanism: Mechanism) -> FloatArray:
     moments = _sample_moments(scene)
     torque = load_moments(scene, kinematics, moments)
     imposed = np.array([slope(drive.speed, moments) for drive in scene.drives]).reshape(-1, moments.size)
-    ratio = kinematics.float_ratio[:, : len(scene.drives)]
+    ratio = kinematics.float_ratio[:, : len(scene.drives)]  # laws of drives precede those of other trains
     torque -= inertia[:, None] * (ratio @ imposed)
+    # what is left accelerates the trains without a drive
     torque -= inertia[:, None] * shaft_acceleration(scene, kinematics, inertia, torque)
     free = shafts_without_drive(scene, kinematics)
     lever = levers(scene, kinematics)[free]

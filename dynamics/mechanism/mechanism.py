@@ -117,14 +117,15 @@ def gather_mechanism(scene: Scene, additions: Additions) -> Mechanism:
     coasts = COAST_FLANKS in additions.possible
     forces = nominal_forces(scene, kinematics, rotational_inertia(rotors), coasts=coasts)
     duties = bearing_duties(scene, rotors, forces)
-    support_names = gather_supports(rotors, seated=frozenset()).name
+    support_names = gather_supports(rotors, general=frozenset()).name
     bearings = bearing_locations(scene, rotors, support_names, duties)
     # The rotors get the stiffness of the nonlinear bearings at their typical load, with its lever.
     supports, stiffened = supports_by_name(rotors), list(rotors)
     for bearing in bearings:
         index, support = supports[bearing.name]
         rotor = stiffened[index]
-        stiffened[index] = replace(rotor, curved=(*rotor.curved, (bearing.seat, rotor.lever(support))))
+        stiffness = (*rotor.typical_stiffness, (bearing.seat, rotor.lever(support)))
+        stiffened[index] = replace(rotor, typical_stiffness=stiffness)
     rotors = Bodies(with_couplings(scene, stiffened))
     for index, rotor in enumerate(rotors):
         if index not in kinematics.imposed and rotor.inertia.polar <= 0.0:

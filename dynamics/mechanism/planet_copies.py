@@ -14,8 +14,9 @@ from dynamics.errors import InputError
 from dynamics.forces.laws import BEARING_PARTS
 from dynamics.mechanism.kinematics import Kinematics, solve_kinematics
 from dynamics.meshes import GearMesh
-from dynamics.scene.scene import Scene, on_axis
+from dynamics.scene.scene import Scene
 from dynamics.shafts import DiscBody, GearBody, Shaft
+from dynamics.shafts.shaft import on_axis
 
 TOOTH_FIT = 1e-6  # in teeth: largest misfit of a planet's teeth in all central gears by its angle
 
@@ -55,7 +56,7 @@ def with_planets(
         raise InputError("pin_errors", len(pin_errors), f"one for each of the {number} planets")
     _check_teeth(scene, solve_kinematics(scene), shaft, turns)
     planet = scene.shaft(shaft)
-    bearings = planet_parts(scene, shaft)[1]
+    _, bearings = planet_parts(scene, shaft)
     copied = {name: [numbered(name, index) for index in range(1, number)] for name in bearings}
     error_by_planet = {numbered(shaft, index): error for index, error in enumerate(pin_errors or ())}
     laws: dict[str, Any] = {kind: _on_copies(getattr(scene, kind), copied) for kind in BEARING_PARTS}

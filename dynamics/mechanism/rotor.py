@@ -15,9 +15,9 @@ import numpy as np
 
 from dynamics.bearings import Bushing, PlanetBearing
 from dynamics.bearings.matrix import matrix_rows
-from dynamics.scene.scene import Scene, on_axis
+from dynamics.scene.scene import Scene
 from dynamics.shafts import ElasticShaft, Inertia, Shaft
-from dynamics.shafts.shaft import nearest_on
+from dynamics.shafts.shaft import nearest_on, on_axis
 from dynamics.types import FloatArray
 
 Support = TypeVar("Support", Bushing, PlanetBearing)
@@ -42,7 +42,7 @@ class Rotor:
     """Rotor of the carrier in whose rotating frame this rotor is described."""
     carrier: int | None
     """Rotor of the carrier that takes this rotor along, if it is a planet: a rotor off the carrier's axis."""
-    curved: tuple[tuple[FloatArray, float], ...] = ()
+    typical_stiffness: tuple[tuple[FloatArray, float], ...] = ()
     """Stiffness matrices (5, 5) with their levers, m, of nonlinear bearing laws at their typical load, and of
     couplings that hold the rotor where no bearing does.
     """
@@ -60,7 +60,7 @@ class Rotor:
         return 0 if self.elastic is None else self.elastic.mass.size
 
     @property
-    def rigid_kinds(self) -> tuple[str, ...]:
+    def bending_freedoms(self) -> tuple[str, ...]:
         """Rigid freedoms that bending needs, since its elastic coordinates are relative to them."""
         bends = self.elastic is not None and self.elastic.bends
         return ("x", "y", "tilt_x", "tilt_y") if bends else ()
@@ -115,7 +115,7 @@ class Rotor:
         Sums over the supports take the means of x and y of these matrices.
         """
         matrices = [(b.added_stiffness, self.lever(b)) for b in self.supports if b.stiffness is not None]
-        return [*matrices, *self.curved]
+        return [*matrices, *self.typical_stiffness]
 
 
 def build_rotor(scene: Scene, shaft: Shaft) -> Rotor:

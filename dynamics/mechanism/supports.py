@@ -38,10 +38,10 @@ def seat_motion(rotors: Bodies, index: int, support: Bushing | PlanetBearing) ->
         carrier = _carrier_of(rotor, support)
         pin = section(rotors[carrier], np.array([*rotor.center[:2], z]))[:SEAT]
         rows[:, RIGID * carrier : RIGID * carrier + RIGID] -= pin
-    return rows - carried_seat(rotors, support.name)
+    return rows - housed_seat(rotors, support.name)
 
 
-def carried_seat(rotors: Bodies, bearing: str) -> FloatArray:
+def housed_seat(rotors: Bodies, bearing: str) -> FloatArray:
     """Return the motion of a bearing's seat per freedom, (5, N); only a housing with mass moves its seats."""
     rows = np.zeros((SEAT, column_count(rotors)))
     housing = rotors.housing_of(bearing)
@@ -117,10 +117,10 @@ class Supports:
         return np.asarray(np.einsum("bki,bk,bkj->ij", left, coefficient, right))
 
 
-def gather_supports(rotors: Bodies, seated: frozenset[str]) -> Supports:
+def gather_supports(rotors: Bodies, general: frozenset[str]) -> Supports:
     """Return the arrays of the supports of all rotors.
 
-    The springs of the bearings named in `seated` are in other arrays (`Seats`); they are zero in these.
+    The springs of the bearings named in `general` are in other arrays (`Seats`); they are zero in these.
     """
     bushings: list[tuple[int, Bushing]] = [
         (index, bushing) for index, rotor in enumerate(rotors) for bushing in rotor.bushings
@@ -128,11 +128,11 @@ def gather_supports(rotors: Bodies, seated: frozenset[str]) -> Supports:
     on_pins = [(index, bearing) for index, rotor in enumerate(rotors) for bearing in rotor.planet_bearings]
     supports: list[tuple[int, Bushing | PlanetBearing]] = [*bushings, *on_pins]
     strains = [seat_motion(rotors, index, bearing)[:TRANSLATIONS] for index, bearing in supports]
-    seats = [carried_seat(rotors, bearing.name)[:TRANSLATIONS] for _, bearing in supports]
+    seats = [housed_seat(rotors, bearing.name)[:TRANSLATIONS] for _, bearing in supports]
     errors = [seat_error(rotors, index, bearing)[:TRANSLATIONS] for index, bearing in supports]
     stiffness, damping = [], []
     for _, bearing in supports:
-        if bearing.name in seated:
+        if bearing.name in general:
             stiffness.append([0.0, 0.0, 0.0])
             damping.append([0.0, 0.0, 0.0])
             continue

@@ -64,9 +64,9 @@ class GearMesh:
     the secant, the damping and the static reference curve; left out, the one that carries the load at t = 0.
     `position_offset` left out follows from the geometry of the train, of which the first mesh starts at 0.
     Where the table has axes of misalignment and change of center distance, these are the constant operating
-    point at which it is used. Without `coast`, for the effect ``"backlash"``, only the driving flank carries
-    force; `friction` is for the effect of that name. With `bent_shafts` the table includes the bending of the
-    gears' shafts; they are then rigid here.
+    point at which it is used. The effect ``"backlash"`` needs `coast`, without which only the driving flank
+    carries force; `friction` is for the effect of that name. With `bent_shafts` the table includes the
+    bending of the gears' shafts; they are then rigid here.
     """
 
     name: str

@@ -118,7 +118,7 @@ def find_cell(grid: GridTables, flank: int, position: float, m: float, a: float)
     m_step = a_step * sizes[1]
     m_left, m_weights, m_slopes = _axis_cell(grid.axis, grid.axis_first[flank, 0], sizes[0], m)
     a_left, a_weights, a_slopes = _axis_cell(grid.axis, grid.axis_first[flank, 1], sizes[1], a)
-    return Cell(
+    return Cell(  # in the order of its fields
         grid.first[flank] + m_left * m_step + a_left * a_step,
         m_step,
         a_step,
@@ -223,7 +223,9 @@ def grid_force(grid: GridTables, flank: int, cell: Cell, deflection: float, hint
 def _along(w: float, span: float, tangent: float, ends: Weights, slopes: Weights) -> float:
     """Return the derivative of a level interval's cubic at constant deflection as the ends move by `slopes`.
 
-    `ends` and `slopes`: deflection at both ends, stiffness at both ends.
+    `ends` and `slopes`: deflection at both ends, stiffness at both ends. The derivative of the cubic F(w) has
+    two parts: that of `rise` and `fall` at constant w (the step between the levels is constant), and
+    dF/dw dw/dx with span dw/dx = -(slope of the lower end + w slope of the span).
     """
     span_slope = slopes[1] - slopes[0]
     rise = span_slope * ends[2] + span * slopes[2]

@@ -98,8 +98,8 @@ class GridTables(NamedTuple):
             number = self.number[self.first[flank] : self.first[flank] + size]
             retained = retained_knots(knots, every)[:-1]
             number = number.reshape(m * a, knots, levels * channels * orders)[:, retained]
-            same = self.first == begin
-            first[same], shape[same, 2] = sum(part.size for part in numbers), retained.size
+            alike = self.first == begin
+            first[alike], shape[alike, 2] = sum(part.size for part in numbers), retained.size
             numbers.append(number.ravel())
         return self._replace(
             base=self.base.decimated(every),

@@ -18,15 +18,7 @@ from dynamics.kernels.compiled import inner
 from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine
 from dynamics.meshes.grid_energy import grid_energy
-from dynamics.meshes.grid_lookup import (
-    Cell,
-    GridForce,
-    find_cell,
-    grid_force,
-    hermite,
-    hermite_slope,
-    sample,
-)
+from dynamics.meshes.grid_lookup import Cell, GridForce, find_cell, grid_force, hermite, hermite_slope, sample
 from dynamics.meshes.grid_tables import GridTables
 from dynamics.meshes.mesh_table import MeshTable
 from dynamics.meshes.sliding_friction import Lever, Sliding, scaled, sliding_force
@@ -75,17 +67,17 @@ class SpatialFlankLaws(NamedTuple):
             return np.array(figures[name], dtype=dtype).reshape(len(tables), *width)
 
         return cls(
-            GridTables.packed(tables),
-            column("damping"),
-            column("reach"),
-            column("row", 3, dtype=np.int64),
-            column("fixed", 2),
-            column("follows", 2, dtype=np.int64),
-            column("per_face"),
-            column("mid_face"),
-            column("friction"),
-            column("radius"),
-            column("running", dtype=np.bool_),
+            grid=GridTables.packed(tables),
+            damping=column("damping"),
+            reach=column("reach"),
+            row=column("row", 3, dtype=np.int64),
+            fixed=column("fixed", 2),
+            follows=column("follows", 2, dtype=np.int64),
+            per_face=column("per_face"),
+            mid_face=column("mid_face"),
+            friction=column("friction"),
+            radius=column("radius"),
+            running=column("running", dtype=np.bool_),
         )
 
     def as_running(self) -> SpatialFlankLaws:

@@ -11,14 +11,7 @@ from dynamics.orders.resampling import (
     order_frequency,
     resample_to_position,
 )
-from dynamics.orders.spectrum import (
-    Spectrum,
-    find_peaks,
-    mesh_orders,
-    sidebands,
-    spectrum,
-    window_spectrum,
-)
+from dynamics.orders.spectrum import Spectrum, find_peaks, mesh_orders, sidebands, spectrum, window_spectrum
 from dynamics.orders.third_octaves import (
     ThirdOctaves,
     Waterfall,

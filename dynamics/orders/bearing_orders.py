@@ -303,15 +303,15 @@ def _put_together(
     frequency = np.stack([row.frequency for row in rows])
     sweep = np.array([row.sweep for row in rows])
     return BearingOrders(
-        tuple(result.bearing),
-        np.array([row.time for row in rows]),
-        np.array([row.speed for row in rows]),
-        harmonics.order,
-        frequency,
-        np.stack([row.force for row in rows], axis=-2),
-        np.array([row.in_contact for row in rows]),
-        sweep,
-        _smearing(result.modes, frequency, sweep),
-        np.stack([row.remainder for row in rows], axis=-1),
-        metadata,
+        bearing=tuple(result.bearing),
+        time=np.array([row.time for row in rows]),
+        speed=np.array([row.speed for row in rows]),
+        order=harmonics.order,
+        frequency=frequency,
+        bearing_force=np.stack([row.force for row in rows], axis=-2),
+        in_contact=np.array([row.in_contact for row in rows]),
+        sweep=sweep,
+        smearing=_smearing(result.modes, frequency, sweep),
+        remainder=np.stack([row.remainder for row in rows], axis=-1),
+        metadata=metadata,
     )

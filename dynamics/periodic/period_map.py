@@ -210,13 +210,13 @@ def _at_constant_speed(system: System, period: CommonPeriod, speed: float, time:
     """
     _check_speed(system, period, speed)
     speeds = _constant(speed * period.proportion)
-    none = np.zeros(period.proportion.size)
+    zeros = np.zeros(period.proportion.size)
     torque = np.array([float(load.torque(time)) for load in system.scene.loads])
     arrays = system.arrays
     laws = arrays.elements.laws
     laws = laws._replace(applied_force=laws.applied_force.frozen_at(time))
     changed = arrays._replace(
-        reference=arrays.reference._replace(speed=speeds, full_turns=none, fraction=none),
+        reference=arrays.reference._replace(speed=speeds, full_turns=zeros, fraction=zeros),
         load=arrays.load._replace(torque=_constant(torque)),
         elements=arrays.elements._replace(laws=laws),
     )
@@ -327,16 +327,16 @@ def periodic_problem(
             "loads", 0.0, "present, or a nominal force given", "They set the size of the motion."
         )
     return PeriodicProblem(
-        system,
-        period,
-        PeriodGrid.of(system, period, 1.0 / max(rate * period.duration(slowest), minimum)),
-        rate,
-        minimum,
-        repeat,
-        time,
-        np.concatenate([rest, np.zeros(rest.size)]),
-        size,
-        NEWTON_SHARE * max(force, stiff * size),
+        system=system,
+        period=period,
+        grid=PeriodGrid.of(system, period, 1.0 / max(rate * period.duration(slowest), minimum)),
+        rate=rate,
+        minimum=minimum,
+        repeat=repeat,
+        time=time,
+        rest=np.concatenate([rest, np.zeros(rest.size)]),
+        size=size,
+        force_tolerance=NEWTON_SHARE * max(force, stiff * size),
     )
 
 

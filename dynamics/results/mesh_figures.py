@@ -67,7 +67,7 @@ def dynamic_factor(result: RunResult, pitches: int = 16, mesh: int = 0) -> _Dyna
         series[mesh, : first[-1]] / nominal
         for series in (result.mesh_force, result.least_mesh_force, result.largest_mesh_force)
     )
-    first = np.unique(first[:-1])
+    first = np.unique(first[:-1])  # a block without samples has the first sample of the next one
     samples = np.diff(np.append(first, force.size))
 
     def mean(values: FloatArray) -> FloatArray:

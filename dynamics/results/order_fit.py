@@ -25,7 +25,7 @@ def order_amplitudes(position: FloatArray, values: FloatArray, orders: int) -> F
     The amplitudes are those of `order_phasors` over all samples of `position` (T,), unwrapped base pitches.
     """
     cycles = np.outer(position - position[0], np.arange(1, orders + 1))
-    solved = _fit(cycles, values.reshape(-1, position.size), None)[1]
+    _, solved = _fit(cycles, values.reshape(-1, position.size), None)
     return np.asarray(np.abs(_phasors(solved, (*values.shape[:-1], orders))))
 
 

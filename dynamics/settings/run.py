@@ -110,10 +110,10 @@ class Integration:
 
     def __post_init__(self) -> None:
         positive("smallest_step", self.smallest_step)
+        declared_fields(self)
         if self.largest_step <= self.smallest_step:
             bound = above(self.smallest_step, name="smallest_step")
             raise InputError("largest_step", self.largest_step, bound)
-        declared_fields(self)
         integer("step_limit", self.step_limit, 1, 2**62)
 
 

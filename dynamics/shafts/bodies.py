@@ -23,10 +23,15 @@ TEMPERATURE = Declared(
     between(-273.15, 1000.0),
     "Steady temperature; given where [temperatures] is",
     80.0,
-    later=True,
+    omit_default=True,
 )
 EXPANSION = Declared(
-    Kind.RATIO, "1/K", between(0.0, 1e-3), "Coefficient of thermal expansion", STEEL_EXPANSION, later=True
+    Kind.RATIO,
+    "1/K",
+    between(0.0, 1e-3),
+    "Coefficient of thermal expansion",
+    STEEL_EXPANSION,
+    omit_default=True,
 )
 _MASS = Declared(Kind.INERTIA, "kg", between(0.0, 1e9), "Mass", 2.0)
 _POLAR = Declared(

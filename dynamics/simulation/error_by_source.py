@@ -21,17 +21,12 @@ from dynamics.motion.observation import observe
 from dynamics.motion.sampled_states import States
 from dynamics.results.order_fit import order_amplitudes, orders_seen, unwrapped
 from dynamics.scene import Integration
-from dynamics.simulation.documents import (
-    ERROR_CHECK_FACTOR,
-    finer,
-    requested_error,
-    with_longest_step,
-)
+from dynamics.simulation.documents import ERROR_CHECK_FACTOR, finer, requested_error, with_longest_step
 from dynamics.types import FloatArray, IntArray, Json, StaticStatus
 from host import cpu_seconds
 
 WINDOWS = 3  # windows of a run, if it is long enough
-SHARE = 0.045
+WINDOW_SHARE = 0.045
 """Most samples in all windows, over the samples of a run: integrating them anew takes some 12 % of the run.
 """
 MIN_SAMPLES, MAX_SAMPLES = 24, 512
@@ -135,8 +130,8 @@ def window_seconds(system: System) -> float:
 def _spans(system: System) -> list[tuple[int, int]]:
     """Return windows at the ends of equal parts of the run; none where it is too short or has no mesh."""
     samples = sample_count(system)
-    count = WINDOWS if SHARE * samples >= WINDOWS * MIN_SAMPLES else 1
-    size = min(int(SHARE * samples / count), MAX_SAMPLES)
+    count = WINDOWS if WINDOW_SHARE * samples >= WINDOWS * MIN_SAMPLES else 1
+    size = min(int(WINDOW_SHARE * samples / count), MAX_SAMPLES)
     if size < MIN_SAMPLES or not system.scene.meshes:
         return []
     ends = [round((k + 1) * samples / count) for k in range(count)]

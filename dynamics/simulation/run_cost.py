@@ -19,7 +19,7 @@ from dynamics.integrators.method_choice import choose_method
 from dynamics.integrators.workspace import Count
 from dynamics.motion.sampled_states import States, Widths
 from dynamics.scene import Scene
-from dynamics.simulation.error_by_source import SHARE
+from dynamics.simulation.error_by_source import WINDOW_SHARE
 from dynamics.simulation.long_run_error import outlives_windows
 from host import cpu_seconds
 
@@ -34,9 +34,7 @@ MIN_STEPS = 32
 FIRST_STRETCH = 1.0 / 16.0
 """First stretch of a probe over the step of the chosen method."""
 FINER = 10.0**0.2
-"""Steps at a tenth of the tolerance, over the steps of the run: a method of order 5. A run with half the
-positions takes as many steps.
-"""
+"""Steps at a tenth of the tolerance, over the steps of the run: a method of order 5."""
 FASTER, MAKING = 2.3, 2.0
 """CPU time of ordinary loops over that of code made for the structure (measured: 2.0 to 2.8), and CPU seconds
 of making this code (1.1 to 4.6).
@@ -74,7 +72,9 @@ def probe_run(scene: Scene) -> ProbedRun:
     assembling = cpu_seconds() - began
     probes = [_probe(system, part * scene.duration) for part in PARTS]
     steps = scene.duration * float(np.mean([probe.seconds for probe in probes]))
-    share = SHARE + FINER * (1.0 if probes[0].lightly_damped else SHARE)
+    # windows are run again with half the positions of the tables, in as many steps; then windows, or all of
+    # a lightly damped run, at a tenth of the tolerance
+    share = WINDOW_SHARE + FINER * (1.0 if probes[0].lightly_damped else WINDOW_SHARE)
     start = assembling + min(probe.start for probe in probes)
     return ProbedRun(start, steps, probes[0].code_may_follow, share)
 
@@ -119,7 +119,8 @@ def _probe(system: System, time: float) -> _Probe:
     from dynamics.integrators.code_choice import StructureCode  # noqa: PLC0415 (a result is read without it)
 
     began = cpu_seconds()
-    later = starting_at(system, time, np.zeros(len(system.scene.references), dtype=np.int64))
+    no_revolutions = np.zeros(len(system.scene.references), dtype=np.int64)  # of trains without a drive
+    later = starting_at(system, time, no_revolutions)
     rest = static_equilibrium(later)
     if not rest.status.usable:
         raise SolveError(f"no static equilibrium at {time:.6g} s: {rest.status.name.lower()}")

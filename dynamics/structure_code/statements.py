@@ -324,10 +324,10 @@ class Statements(ArrayAccess):
             if isinstance(child, ast.If | ast.While | ast.Continue | ast.Return):
                 return False
             if isinstance(child, ast.Call) and any(
-                self._structured(part, assigned, True) for part in child.args
+                self._structured(part, assigned, any_array=True) for part in child.args
             ):
                 return False
-            if isinstance(child, ast.Subscript) and self._structured(child.value, assigned, False):
+            if isinstance(child, ast.Subscript) and self._structured(child.value, assigned, any_array=False):
                 return False
         return True
 
@@ -393,7 +393,7 @@ class Statements(ArrayAccess):
             return self.pair(node.ops[0], self.value(node.left), self.value(node.comparators[0]))
         links = [node.left, *node.comparators]
         chain = [ast.Compare(links[k], [op], [links[k + 1]]) for k, op in enumerate(node.ops)]
-        return self._all_or_any(chain, True)
+        return self._all_or_any(chain, all_of=True)
 
     def _all_or_any(self, nodes: Sequence[ast.expr], all_of: bool) -> Any:
         """Write `and` or `or` of expressions; a later expression is evaluated only if it decides."""

@@ -66,7 +66,7 @@ def _slots(kind: Any, origin: int) -> tuple[list[tuple[int, Any, bool]], list[in
 
 @cache
 def _of_sources() -> bytes:
-    """Return a digest of all sources that code depends on apart from the structure."""
+    """Return a digest of all sources that code depends on, except the structure."""
     digest = sha256()
     for file in sorted(Path(__file__).parents[1].rglob("*.py")):
         digest.update(file.read_bytes())

@@ -132,7 +132,7 @@ class Study(ArrayFile, Plottable):
 
     def swing(self, factor: int, response: int) -> float:
         """Return the effect of a factor of the grid or the list: the spread of the means of its levels."""
-        means = self.level_means(factor, response)[1]
+        _, means = self.level_means(factor, response)
         return float(np.nanmax(means) - np.nanmin(means)) if np.isfinite(means).any() else float("nan")
 
     def correlation(self, response: int) -> FloatArray:
@@ -356,19 +356,19 @@ def _result(
     usable = np.flatnonzero(np.isfinite(figure[:, 0]))
     worst = usable[np.argsort(-figure[usable, 0], kind="stable")][:keep_worst]
     return Study(
-        design.names,
-        design.kinds,
-        tuple(response.title for response in task.responses),
-        tuple(response.kind.unit for response in task.responses),
-        design.points,
-        figure,
-        np.array([point.errors for point in points]),
-        tuple(point.reason for point in points),
-        np.array([point.seconds for point in points]),
-        design.samples,
-        confidence,
-        worst,
-        {
+        factor=design.names,
+        kind=design.kinds,
+        response=tuple(response.title for response in task.responses),
+        unit=tuple(response.kind.unit for response in task.responses),
+        value=design.points,
+        figure=figure,
+        error=np.array([point.errors for point in points]),
+        reason=tuple(point.reason for point in points),
+        seconds=np.array([point.seconds for point in points]),
+        samples=design.samples,
+        confidence=confidence,
+        worst=worst,
+        metadata={
             "seed": design.seed,
             "start": task.start,
             "receipt": task.receipt,

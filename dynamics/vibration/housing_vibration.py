@@ -21,12 +21,7 @@ from dynamics.errors import InputError
 from dynamics.housings.reduced_housing import PointMotion, ReducedHousing
 from dynamics.linearize.line_floor import LineFloor
 from dynamics.types import BoolArray, ComplexArray, FloatArray
-from dynamics.vibration.housing_motion import (
-    BearingHarmonics,
-    housing_motion,
-    modal_amplitudes,
-    seat_forces,
-)
+from dynamics.vibration.housing_motion import BearingHarmonics, housing_motion, modal_amplitudes, seat_forces
 
 
 class MotionQuantity(StrEnum):

@@ -64,12 +64,12 @@ class Parts:
         """Return the motion in each mode kept, and in the rest together; parameters as `of_bearings`."""
         loads = np.asarray(force)[None, None]
         amplitude = modal_amplitudes(housing, np.array([float(frequency)]), loads)[0, 0]
-        every = amplitude[:, None] * housing.modes[1].T
+        by_mode = amplitude[:, None] * housing.modes[1].T
         count = len(housing.frequency)
         names = tuple(f"mode {number + 1}" for number in range(count))
-        if count == len(every):
-            return cls(names, housing.frequency, every)
-        motion = np.vstack([every[:count], every[count:].sum(axis=0, keepdims=True)])
+        if count == len(by_mode):
+            return cls(names, housing.frequency, by_mode)
+        motion = np.vstack([by_mode[:count], by_mode[count:].sum(axis=0, keepdims=True)])
         return cls((*names, RESIDUAL), np.append(housing.frequency, np.nan), motion)
 
     def shares(self, weight: FloatArray) -> FloatArray:

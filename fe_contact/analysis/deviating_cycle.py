@@ -136,8 +136,8 @@ def _solved(
     The errors are an array (1 + 23, L): first that of a position in a pitch that is not solved, then those of
     the quantities.
     """
-    every, none = np.arange(contact.pitches), np.zeros((1 + QUANTITIES, contact.load.size))
+    pitches, no_errors = np.arange(contact.pitches), np.zeros((1 + QUANTITIES, contact.load.size))
     envelope = chosen(contact, allowed) if predicted.pays(contact.pitches) else None
     if envelope is None:
-        return contact.exact(every), every >= 0, none
+        return contact.exact(pitches), pitches >= 0, no_errors
     return envelope.ste, envelope.solved, np.vstack([envelope.drawn_errors.error, envelope.quantity_errors])

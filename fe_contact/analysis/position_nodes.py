@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -67,58 +68,73 @@ def adaptive_nodes(rule: NodeRule, solve: Callable[[FloatArray], FloatArray]) ->
     """
     nodes = np.arange(rule.start) / rule.start
     values = solve(nodes)
-    # of the interval after each node: whether it is still measured, its error, and STE in its middle
-    measured = np.zeros(rule.start, dtype=bool)
-    error, at_middle = np.full(values.shape[1:], np.inf), np.zeros_like(values)
-    for remaining in reversed(range(MAX_ROUNDS)):
-        nominal = values[values.shape[0] // 2]
-        allowed = rule.tolerance * rule.ripple(nominal)
-        at_middle[:, ~measured], error[~measured] = _probed(nodes, values, solve, ~measured)
-        beyond = np.any(error > allowed, axis=1)
-        if not beyond.any() or not remaining or nodes.size + beyond.sum() > rule.maximum:
-            break
-        nodes, values, measured, error, at_middle = _inserted(nodes, values, beyond, at_middle, error)
+    search = _Search(
+        nodes=nodes,
+        values=values,
+        measured=np.zeros(rule.start, dtype=bool),
+        error=np.full(values.shape[1:], np.inf),
+        at_middle=np.zeros_like(values),
+    )
     nominal = values.shape[0] // 2
-    return PositionNodes(nodes, error, values[nominal], at_middle[nominal])
+    for remaining in reversed(range(MAX_ROUNDS)):
+        allowed, unknown = rule.tolerance * rule.ripple(search.values[nominal]), ~search.measured
+        middle, error = _probed(search.nodes, search.values, solve, unknown)
+        search.at_middle[:, unknown], search.error[unknown] = middle, error
+        beyond = np.any(search.error > allowed, axis=1)
+        if not beyond.any() or not remaining or search.nodes.size + beyond.sum() > rule.maximum:
+            break
+        search = search.inserted(beyond)
+    return PositionNodes(search.nodes, search.error, search.values[nominal], search.at_middle[nominal])
+
+
+class _Search(NamedTuple):
+    """Nodes (P,) of a search, STE (W, P, L) there, m, and what is known of the interval after each node."""
+
+    nodes: FloatArray
+    values: FloatArray
+    measured: BoolArray
+    """Whether the interval is still as measured. Shape (P,)."""
+    error: FloatArray
+    """Largest error of an interpolated STE in the interval, m. Shape (P, L)."""
+    at_middle: FloatArray
+    """STE in the middle of the interval, m. Shape (W, P, L)."""
+
+    def inserted(self, beyond: BoolArray) -> _Search:
+        """Insert the middles of the intervals that are `beyond` the tolerance.
+
+        Both halves of an interval and its neighbors are measured again.
+        """
+        touched = beyond | np.roll(beyond, 1) | np.roll(beyond, -1)
+        middles = (self.nodes + 0.5 * Axis(self.nodes, 1.0).spacing)[beyond]
+        merged = np.concatenate([self.nodes, middles])
+        order = np.argsort(merged, kind="stable")
+        at_middle, unknown = self.at_middle, np.full((middles.size, self.error.shape[1]), np.inf)
+        return _Search(
+            nodes=merged[order],
+            values=np.concatenate([self.values, at_middle[:, beyond]], axis=1)[:, order],
+            measured=np.concatenate([~touched, np.zeros(middles.size, dtype=bool)])[order],
+            error=np.concatenate([self.error, unknown])[order],
+            at_middle=np.concatenate([at_middle, np.zeros_like(at_middle[:, beyond])], axis=1)[:, order],
+        )
 
 
 def _probed(
     nodes: FloatArray, values: FloatArray, solve: Callable[[FloatArray], FloatArray], chosen: BoolArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return STE (W, c, L) in the middles of the c chosen intervals, and the largest errors (c, L) there."""
-    where = nodes[chosen, None] + Axis(nodes, 1.0).spacing[chosen, None] * PROBES
-    solved = solve(where.ravel())
+    position = nodes[chosen, None] + Axis(nodes, 1.0).spacing[chosen, None] * PROBES
+    solved = solve(position.ravel())
     nominal = solved[solved.shape[0] // 2]
-    deviation = np.abs(_interpolated(nodes, values, where.ravel()) - nominal).reshape(*where.shape, -1)
-    by_interval = solved.reshape(solved.shape[0], *where.shape, -1)
+    deviation = np.abs(_interpolated(nodes, values, position.ravel()) - nominal).reshape(*position.shape, -1)
+    by_interval = solved.reshape(solved.shape[0], *position.shape, -1)
     return by_interval[:, :, PROBES.size // 2], deviation.max(axis=1)
 
 
-def _interpolated(nodes: FloatArray, values: FloatArray, where: FloatArray) -> FloatArray:
+def _interpolated(nodes: FloatArray, values: FloatArray, position: FloatArray) -> FloatArray:
     """Interpolate the middle one of W base pitches at `where` (Q,) in [0, 1], (Q, L); all pitches repeat."""
     pitches = np.arange(values.shape[0]) - values.shape[0] // 2
     knots = (pitches[:, None] + nodes).ravel()
-    return interpolate(Axis(knots, float(pitches.size)), values.reshape(knots.size, -1), where)
-
-
-def _inserted(
-    nodes: FloatArray, values: FloatArray, beyond: BoolArray, at_middle: FloatArray, error: FloatArray
-) -> tuple[FloatArray, FloatArray, BoolArray, FloatArray, FloatArray]:
-    """Insert the middles of the intervals that are `beyond` the tolerance into the state of the search.
-
-    Both halves of an interval and its neighbors are measured again.
-    """
-    touched = beyond | np.roll(beyond, 1) | np.roll(beyond, -1)
-    middles = (nodes + 0.5 * Axis(nodes, 1.0).spacing)[beyond]
-    merged = np.concatenate([nodes, middles])
-    order = np.argsort(merged, kind="stable")
-    return (
-        merged[order],
-        np.concatenate([values, at_middle[:, beyond]], axis=1)[:, order],
-        np.concatenate([~touched, np.zeros(middles.size, dtype=bool)])[order],
-        np.concatenate([error, np.full((middles.size, error.shape[1]), np.inf)])[order],
-        np.concatenate([at_middle, np.zeros_like(at_middle[:, beyond])], axis=1)[:, order],
-    )
+    return interpolate(Axis(knots, float(pitches.size)), values.reshape(knots.size, -1), position)
 
 
 def table_nodes(points: OperatingPoints, plan: Plan, report: Report = unreported) -> PositionNodes:

@@ -101,18 +101,18 @@ def solve_table(
         run.progress("contact", 1.0)
     solved = [(contact.problem, contact.solution) for contact in contacts]
     return SolvedTable(
-        checked,
-        plan,
-        points,
-        solved,
-        decision,
-        prediction,
-        nodes,
-        contacts,
-        support,
-        table,
-        condition,
-        derived,
+        checked=checked,
+        plan=plan,
+        places=points,
+        solved=solved,
+        decision=decision,
+        prediction=prediction,
+        nodes=nodes,
+        contacts=contacts,
+        support=support,
+        table=table,
+        condition=condition,
+        derived=derived,
     )
 
 

@@ -69,13 +69,15 @@ def deformed_solids(
     support = bore_support(right)
     left, mirror = gear.helix_angle < 0.0, None
     if left != seen_from_behind:  # the mirror image of a mirror image needs none
+        # freedoms of the planes across the face from the other end on; -1 at centers of faces
         planes = swept_sector(section.grid, gear.face_width, recipe, support, right.web).flank_index[::-1]
         mirror = planes[planes >= 0]
     # a column for each tooth of each case
     columns = np.stack([_mirrored_back(force, mirror) for load in loads for force in load.values()], axis=1)
     tooth, _ = condensed_tooth(right, section, recipe, support, StageClock())
     cuts = loaded_cuts(tooth.condensed, columns, right.teeth)
-    solved = CondensedGear(*tooth, RingSolution(np.empty((0, 0, 0)), cuts.everywhere))
+    # the deformed gear needs the cuts of the ring, but no compliance blocks
+    solved = CondensedGear(*tooth, ring=RingSolution(blocks=np.empty((0, 0, 0)), left=cuts.everywhere))
     elements = sector_elements(right, section, solved.sector)
     deformed = []
     start = 0  # column of the case's first tooth
@@ -125,7 +127,7 @@ def _fields(gear: CondensedGear, loaded: _Loaded, view: IntArray) -> tuple[Float
         cuts[:size] += left[distance % teeth, :, column].T
         cuts[size:] += left[(distance - 1) % teeth, :, column].T
         forces[:, distance % teeth == 0] += force[:, None]
-    flank = gear.condensed.flank @ forces + gear.condensed.transmitted.T @ cuts
+    flank = gear.condensed.flank @ forces + gear.condensed.transmitted.T @ cuts  # by forces, and by the cuts
     return gear.condensation.expand(np.concatenate([flank, cuts])), forces
 
 
@@ -159,7 +161,7 @@ def _deformed(
     return DeformedGear(
         points=points * flip,
         cells=cells[:, UPSIDE_DOWN] if left else cells,
-        tooth=np.repeat(view, len(elements.nodes)),
+        tooth=np.repeat(view, len(elements.nodes)),  # one entry per element
         displacement=displacement * flip,
         stress=mean * np.outer(flip, flip),
         quality={name: np.tile(values, len(view)) for name, values in elements.quality.items()},

@@ -15,7 +15,9 @@ from fe_contact.mesh.swept_sector import SweptSector
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
 LEAF = 16  # elements gathered in one front: fewer cost more interpreter time, more cost more operations
-OFF_CENTRE = 8.0  # dislike of unequal halves against a short cut
+OFF_CENTER = (
+    8.0  # a cut costs its shared nodes times 1 + 8 d^2; d: share of the elements on one side less 0.5
+)
 
 
 @dataclass(frozen=True)
@@ -87,7 +89,7 @@ class EliminationTree:
         return _waiting(self.root)
 
     def working_entries(self) -> int:
-        """Most numbers in memory at a time besides factors, with the results that fronts leave."""
+        """Largest number of entries in memory at one time: fronts and their results, without factors."""
         return _working(self.root)
 
 
@@ -157,24 +159,22 @@ class _Builder:
 
     def build(self, group: IntArray) -> _Draft:
         """Return the front of a group of elements and number what it eliminates."""
-        if len(group) <= self.leaf:
-            children: tuple[_Draft, ...] = ()
-            in_group = self.freedoms[group]
-            freedoms, count = np.unique(in_group[in_group >= 0], return_counts=True)
-        else:
-            children = tuple(self.build(half) for half in self._halves(group))
+        children = tuple(map(self.build, self._halves(group))) if len(group) > self.leaf else ()
+        if children:
             freedoms, inverse = np.unique(np.concatenate([c.border for c in children]), return_inverse=True)
             count = np.bincount(inverse, np.concatenate([c.count for c in children])).astype(np.int64)
+        else:
+            in_group = self.freedoms[group]
+            freedoms, count = np.unique(in_group[in_group >= 0], return_counts=True)
         complete = count == self.occurrences[freedoms]
         inner = freedoms[complete]
         self.order[inner] = self.done + np.arange(len(inner))
         self.done += len(inner)
-        return _Draft(
-            group[: 0 if children else None], children, inner, freedoms[~complete], count[~complete]
-        )
+        elements = group[:0] if children else group  # the elements of a group with children are theirs
+        return _Draft(elements, children, inner, freedoms[~complete], count[~complete])
 
     def _halves(self, group: IntArray) -> tuple[IntArray, IntArray]:
-        """Cut a group along the grid line that leaves the fewest shared nodes and fair halves."""
+        """Cut a group along the grid line that leaves few shared nodes and nearly equal halves."""
         cuts: list[tuple[float, int, BoolArray]] = []
         for lines in self._lines:
             line = lines[group]
@@ -186,8 +186,8 @@ class _Builder:
             i = int(np.argmin(np.abs(share - 0.5)))
             low = line <= values[i]
             shared = self._shared(group[low], group[~low])
-            cuts.append((shared * (1.0 + OFF_CENTRE * (share[i] - 0.5) ** 2), len(cuts), low))
-        _, _, low = min(cuts, key=lambda cut: cut[:2])
+            cuts.append((shared * (1.0 + OFF_CENTER * (share[i] - 0.5) ** 2), len(cuts), low))
+        _, _, low = min(cuts, key=lambda cut: cut[:2])  # of equal costs the first
         return group[low], group[~low]
 
     def _shared(self, group: IntArray, other: IntArray) -> int:

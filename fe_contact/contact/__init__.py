@@ -2,12 +2,7 @@
 
 from fe_contact.contact.adjoint import adjoint, force_changes, load_arm
 from fe_contact.contact.assembly import contact_problem
-from fe_contact.contact.candidates import (
-    PatchRule,
-    contact_candidates,
-    teeth_in_reach,
-    with_gaps,
-)
+from fe_contact.contact.candidates import PatchRule, contact_candidates, teeth_in_reach, with_gaps
 from fe_contact.contact.carrying_strips import CarryingStrips
 from fe_contact.contact.contact_pressure import contact_pressure
 from fe_contact.contact.face_assembly import face_contact_problem, with_face_tilt

@@ -85,16 +85,18 @@ class CarryingStrips:
         touch, shape = candidates.touch, (*added_arm.shape, candidates.pair.size)
         touching = touch.s_1[p, m], touch.s_2[p, m], touch.roll_1[p, m], candidates.face_position[m]
         strips = Strips(pair, *touching, middle, half)
+        turned, following = bodies
         return cls(
-            shape,
-            np.ravel_multi_index(at, shape),
-            strips,
-            ClosingLag.of(strips, candidates, (p, m)),
-            *bodies,
-            math.cos(candidates.base_helix_angle),
-            weight,
-            arm_weight,
-            added_arm,
+            shape=shape,
+            index=np.ravel_multi_index(at, shape),
+            strips=strips,
+            closing=ClosingLag.of(strips, candidates, (p, m)),
+            turned=turned,
+            following=following,
+            normal=math.cos(candidates.base_helix_angle),
+            weight=weight,
+            arm_weight=arm_weight,
+            added_arm=added_arm,
         )
 
     @property

@@ -56,18 +56,19 @@ def plane_flank_forces(
     -------
     dict, dict
         Inward nodal forces (k,) per unit face width by tooth number, N/m. A force at a tip edge acts along
-        the mating flank's normal, so that it is multiplied by its lever (see `contact_problem`).
+        the mating flank's normal: it is multiplied by the arm of this normal over the base radius.
     """
     forces: list[ByTooth] = []
     slices, pressed, row = _pressed(candidates, force, position)
     for flank, (patches, lever, direction) in zip(flanks, _sides(slices), strict=True):
         by_tooth: ByTooth = {}
         for i in np.flatnonzero(pressed):
-            unit = np.zeros(flank.s.size)
-            at = (patches.center[row, i], patches.half_width[row, i])
-            load_vector(flank.s, *at, patches.edge_share[row, i], unit)
+            unit_load = np.zeros(flank.s.size)
+            center, half_width = patches.center[row, i], patches.half_width[row, i]
+            # fills in the nodal forces of a unit load, of which `edge_share` is singular at the tip edge
+            load_vector(flank.s, center, half_width, patches.edge_share[row, i], unit_load)
             share = pressed[i] * lever[row, i] / slices.width
-            _add(by_tooth, int(direction * slices.pair[i]), share * unit)
+            _add(by_tooth, int(direction * slices.pair[i]), share * unit_load)
         forces.append(by_tooth)
     return forces[0], forces[1]
 
@@ -95,12 +96,11 @@ def face_flank_forces(
     sides = zip(flanks, _sides(slices), (0.0, axial_offset), strict=True)
     for flank, (patches, lever, direction), offset in sides:
         middle = slices.face_position[carrying] - offset
-        loads = face_loads(
-            FaceGrid(flank.s, flank.z, flank.index),
-            *patches.by_slice(row, carrying),
-            np.maximum(middle - 0.5 * slices.slice_width, flank.z[0]),
-            np.minimum(middle + 0.5 * slices.slice_width, flank.z[-1]),
-        )
+        low = np.maximum(middle - 0.5 * slices.slice_width, flank.z[0])
+        high = np.minimum(middle + 0.5 * slices.slice_width, flank.z[-1])
+        center, half_width, edge_share = patches.by_slice(row, carrying)
+        grid = FaceGrid(flank.s, flank.z, flank.index)
+        loads = face_loads(grid, center, half_width, edge_share, low, high)
         by_tooth: ByTooth = {}
         for k, i in enumerate(carrying):
             used = loads.used[k]
@@ -116,12 +116,12 @@ def _pressed(
     candidates: Candidates, force: FloatArray, position: int
 ) -> tuple[LoadedSlices, FloatArray, int]:
     """Return the slices, the forces (n,) on them in N, and the row of the position in their arrays."""
-    slices = candidates.slices
+    slices = candidates.slices  # positions with the same phase share a row
     return slices, candidates.on_slices(force[position]), position % len(slices.present)
 
 
 def _sides(slices: LoadedSlices) -> tuple[Side, Side]:
-    """Return patches, lever and sign of tooth numbers of both gears: pair j is on tooth -j of gear 1."""
+    """Return patches, arms over base radii and signs of tooth numbers: pair j is on tooth -j of gear 1."""
     touch = slices.touch
     return (slices.patch_1, touch.lever_1, -1), (slices.patch_2, touch.lever_2, 1)
 

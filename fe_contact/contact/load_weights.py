@@ -30,7 +30,9 @@ def load_weights(
 ) -> tuple[FloatArray, FloatArray]:
     """Return the derivatives of the transmission error and of `load_sums` by the candidates' normal approach.
 
-    Parameters are those of `load_sums`. With the terms of `adjoint`, dF = S (m dSTE - dg) and n'dF = 0.
+    Parameters are those of `load_sums`. Forces change by dF = S (a dSTE - dg), n'dF = 0: S is the stiffness
+    of the contact, a the `motion_arm` of `Candidates` (normal approach per unit STE), dg the approach taken
+    away and n the `torque_share`.
 
     Returns
     -------
@@ -45,10 +47,10 @@ def load_weights(
     pushed = np.zeros((len(shares), *solution.force.shape))
     middle, half = np.zeros((2, *solution.force.shape))  # further results of `weigh`, not used here
     weigh(point_problems(problem), solution.force, shares, pushed, middle, half)
-    stiffness, *row_slopes = np.einsum("rplm,pm->rpl", pushed, c.motion_arm)
+    stiffness, *row_slopes = np.einsum("rplm,pm->rpl", pushed, c.motion_arm)  # by the transmission error
     weight = pushed[0] / stiffness[..., None]
     weights = [
-        (slope[..., None] * weight - nominal) / solution.load[:, None]
-        for slope, nominal in zip(row_slopes, pushed[1:], strict=True)
+        (slope[..., None] * weight - at_constant_ste) / solution.load[:, None]
+        for slope, at_constant_ste in zip(row_slopes, pushed[1:], strict=True)
     ]
     return weight, np.stack(weights) if weights else pushed[1:]

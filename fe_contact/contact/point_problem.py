@@ -60,21 +60,21 @@ def point_problems(problem: ContactProblem) -> PointProblems:
     c, rows = problem.candidates, np.ascontiguousarray
     first, second = problem.half_planes
     return PointProblems(
-        rows(problem.bodies),
-        rows(problem.rolling),
-        rows(problem.radius),
-        rows(problem.edges),
-        rows(c.slices.present),
-        rows(c.curves),
-        rows(c.heights),
-        rows(c.gap * c.motion_arm),
-        rows(c.motion_arm),
-        rows(c.torque_share),
-        rows(c.width),
-        gap_table(c.gap_about),
-        float(c.slices.law_length),
-        rows(problem.law_length),
-        rows(2.0 / (math.pi * (first + second))),
+        bodies=rows(problem.bodies),
+        tilt=rows(problem.rolling),
+        radius=rows(problem.radius),
+        edge=rows(problem.edges),
+        present=rows(c.slices.present),
+        curves=rows(c.curves),
+        heights=rows(c.heights),
+        gap=rows(c.gap * c.motion_arm),
+        motion_arm=rows(c.motion_arm),
+        torque_arm=rows(c.torque_share),
+        width=rows(c.width),
+        about=gap_table(c.gap_about),
+        length=float(c.slices.law_length),
+        lengths=rows(problem.law_length),
+        modulus=rows(2.0 / (math.pi * (first + second))),
     )
 
 

@@ -372,7 +372,7 @@ class ContactProblem:
     def radius(self) -> FloatArray:
         """Motion of the middles of strips away from tip 1 per tilt of rolling flanks, m.
 
-        The shape is (P, n), one row a position; zeros (Q, n) where no flank rolls.
+        The shape is (P, n), one row per position; zeros (Q, n) where no flank rolls.
         """
         if not self.rolling.size:
             return np.zeros(self.candidates.slices.present.shape)

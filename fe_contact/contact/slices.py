@@ -47,13 +47,14 @@ class Slices:
     def curves(self) -> tuple[FloatArray, FloatArray]:
         """Curves over the face at each point (K Q, K), and their heights (K, K) for mean motions of slices.
 
-        The curves times the heights make a quadratic spline over the face whose mean over each slice is that
-        of the slice. It is the derivative of the cubic spline through the sums of the means of all slices
-        before each one. At a point at most three curves are not zero.
+        The curves times the heights make a quadratic spline over the face. Its mean over a slice is the mean
+        motion of that slice. It is the derivative of a cubic not-a-knot spline, which passes through the sum
+        of the means of the preceding slices at each boundary. At most three curves are not zero at a point.
         """
         count = self.center.size
-        degree, knots = min(count - 1, 2), np.arange(count + 1.0)
-        knots = np.concatenate([np.zeros(degree + 1), knots[2:-2], np.full(degree + 1, float(count))])
+        degree, ends = min(count - 1, 2), np.arange(count + 1.0)
+        # not a knot: the inner boundaries next to the ends of the face are left out
+        knots = np.concatenate([np.zeros(degree + 1), ends[2:-2], np.full(degree + 1, float(count))])
         position = (self.point_center - self.center[0]) / self.width + 0.5
         gauss_points = np.arange(count)[:, None] + 0.5 + np.array([-1.0, 1.0]) / math.sqrt(12.0)
         curves, means = (basis_splines(x, knots, degree) for x in (position, gauss_points.ravel()))

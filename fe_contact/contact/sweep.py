@@ -71,7 +71,7 @@ def solve_sets(
     problem: ContactProblem, sets: Sequence[FloatArray], start: Start | None = None
 ) -> tuple[ContactSolution, ...]:
     """Solve every position at sets of loads, each by itself; see `solve_contact`."""
-    every, c = point_problems(problem), problem.candidates
+    problems, c = point_problems(problem), problem.candidates
     p, m, solved = c.position.size, c.pair.size, []
     # forces (P, L, n) to start from; an empty array: none
     first = np.zeros((0, 0, m)) if start is None else np.ascontiguousarray(start.on(c))
@@ -81,7 +81,7 @@ def solve_sets(
         status, iterations = np.zeros((2, p, loads.size), dtype=np.int64)
         residuals, beyond = np.zeros((p, loads.size, 4)), np.zeros((p, loads.size), dtype=np.bool_)
         results = deflection, tangent, force, status, iterations, residuals, beyond
-        _sweep(every, np.array(loads, dtype=float), first, *results)
+        _sweep(problems, np.array(loads, dtype=float), first, *results)
         solved.append(ContactSolution(loads, *results, np.min(c.gap, axis=1)))
     return tuple(solved)
 

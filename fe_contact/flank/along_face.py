@@ -43,10 +43,10 @@ class _HelixCrowningDatumFace(_OneSidedRelief):
     _side: ClassVar[int] = -1
 
     helix_crowning_datum_face: float = amount(
-        _FACE, "Lead crowning at the datum face alone, besides that at both ends", 5e-6, later=True
+        _FACE, "Lead crowning at the datum face alone, besides that at both ends", 5e-6, omit_default=True
     )
     helix_crowning_datum_face_length: float = length(
-        _FACE, "Length of the crowning to the datum face, from its highest point", 15e-3, later=True
+        _FACE, "Length of the crowning to the datum face, from its highest point", 15e-3, omit_default=True
     )
 
 
@@ -57,10 +57,13 @@ class _HelixCrowningNonDatumFace(_OneSidedRelief):
     _side: ClassVar[int] = 1
 
     helix_crowning_non_datum_face: float = amount(
-        _FACE, "Lead crowning at the non-datum face alone, besides that at both ends", 5e-6, later=True
+        _FACE, "Lead crowning at the non-datum face alone, besides that at both ends", 5e-6, omit_default=True
     )
     helix_crowning_non_datum_face_length: float = length(
-        _FACE, "Length of the crowning to the non-datum face, from its highest point", 10e-3, later=True
+        _FACE,
+        "Length of the crowning to the non-datum face, from its highest point",
+        10e-3,
+        omit_default=True,
     )
 
 
@@ -84,7 +87,7 @@ class _HelixForm(Polynomial):
         "Helix form of all teeth, a parabola of this height; > 0 removes two thirds at both ends of the "
         "face, adds a third in its middle; < 0: hollow",
         2e-6,
-        later=True,
+        omit_default=True,
     )
     powers: ClassVar[tuple[int, int]] = (0, 2)
     mean: ClassVar[float] = 1.0 / 3.0
@@ -110,13 +113,13 @@ class _EndReliefDatumFace(_OneSidedRelief):
     _side: ClassVar[int] = -1
 
     end_relief_datum_face: float = amount(
-        _FACE, "End relief at the datum face, the end of negative face positions", 10e-6, later=True
+        _FACE, "End relief at the datum face, the end of negative face positions", 10e-6, omit_default=True
     )
     end_relief_datum_face_length: float = length(
-        _FACE, "Length of the end relief at the datum face", 2e-3, later=True
+        _FACE, "Length of the end relief at the datum face", 2e-3, omit_default=True
     )
     end_relief_datum_face_shape: Shape = shape(
-        _FACE, "End relief at the datum face over its length", later=True
+        _FACE, "End relief at the datum face over its length", omit_default=True
     )
 
 
@@ -125,13 +128,16 @@ class _EndReliefNonDatumFace(_OneSidedRelief):
     _side: ClassVar[int] = 1
 
     end_relief_non_datum_face: float = amount(
-        _FACE, "End relief at the non-datum face, the end of positive face positions", 10e-6, later=True
+        _FACE,
+        "End relief at the non-datum face, the end of positive face positions",
+        10e-6,
+        omit_default=True,
     )
     end_relief_non_datum_face_length: float = length(
-        _FACE, "Length of the end relief at the non-datum face", 2e-3, later=True
+        _FACE, "Length of the end relief at the non-datum face", 2e-3, omit_default=True
     )
     end_relief_non_datum_face_shape: Shape = shape(
-        _FACE, "End relief at the non-datum face over its length", later=True
+        _FACE, "End relief at the non-datum face over its length", omit_default=True
     )
 
 

@@ -34,13 +34,13 @@ class _ProfileCrowningTip(ProfileRelief):
     _at_tip: ClassVar[bool] = True
 
     profile_crowning_tip: float = amount(
-        _PROFILE, "Profile crowning at the tip alone, besides that at both ends", 5e-6, later=True
+        _PROFILE, "Profile crowning at the tip alone, besides that at both ends", 5e-6, omit_default=True
     )
     profile_crowning_tip_length: float = length(
         _PROFILE,
         "Length of the crowning to the tip along the radius, from its highest point",
         4e-3,
-        later=True,
+        omit_default=True,
     )
 
 
@@ -51,13 +51,13 @@ class _ProfileCrowningRoot(ProfileRelief):
     _at_tip: ClassVar[bool] = False
 
     profile_crowning_root: float = amount(
-        _PROFILE, "Profile crowning at the root alone, besides that at both ends", 5e-6, later=True
+        _PROFILE, "Profile crowning at the root alone, besides that at both ends", 5e-6, omit_default=True
     )
     profile_crowning_root_length: float = length(
         _PROFILE,
         "Length of the crowning to the root along the radius, from its highest point",
         3e-3,
-        later=True,
+        omit_default=True,
     )
 
 
@@ -83,7 +83,7 @@ class _ProfileForm(Polynomial):
         "Profile form of all teeth, a parabola of this height; > 0 removes two thirds at both ends of the "
         "profile, adds a third in its middle; < 0: hollow",
         2e-6,
-        later=True,
+        omit_default=True,
     )
     powers: ClassVar[tuple[int, int]] = (2, 0)
     mean: ClassVar[float] = 1.0 / 3.0  # mean of u^2 from -1 to 1

@@ -65,7 +65,7 @@ def _start(relief: str, way: str, example: float) -> Any:
     text = f"{kind.text.capitalize()} at which the {relief} starts, instead of its length"
     bound = between(0.0, kind.maximum)
     return declared(
-        None, Declared(Kind.START, kind.unit, bound, text, example, Direction.PROFILE, later=True)
+        None, Declared(Kind.START, kind.unit, bound, text, example, Direction.PROFILE, omit_default=True)
     )
 
 

@@ -64,7 +64,7 @@ class _GroundHelixCrowning(FlankPart):
         "Helix crowning as generating grinding makes it by infeed along the face, with its natural twist; of "
         "external gears",
         5e-6,
-        later=True,
+        omit_default=True,
     )
 
     def check_fits(self, gear: Tooth) -> None:
@@ -121,15 +121,17 @@ class _TriangularTipRelief(_CornerRelief):
         _FLANK,
         "Triangular tip relief at the corner of the tip which lines of contact reach first or last",
         15e-6,
-        later=True,
+        omit_default=True,
     )
     triangular_tip_relief_length: float = length(
         _FLANK,
         "Length of the triangular tip relief along the radius at its end of the face",
         1e-3,
-        later=True,
+        omit_default=True,
     )
-    triangular_tip_relief_shape: Shape = shape(_FLANK, "Triangular tip relief over its length", later=True)
+    triangular_tip_relief_shape: Shape = shape(
+        _FLANK, "Triangular tip relief over its length", omit_default=True
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -140,15 +142,17 @@ class _TriangularRootRelief(_CornerRelief):
         _FLANK,
         "Triangular root relief at the corner of the root which lines of contact reach first or last",
         15e-6,
-        later=True,
+        omit_default=True,
     )
     triangular_root_relief_length: float = length(
         _FLANK,
         "Length of the triangular root relief along the radius at its end of the face",
         1e-3,
-        later=True,
+        omit_default=True,
     )
-    triangular_root_relief_shape: Shape = shape(_FLANK, "Triangular root relief over its length", later=True)
+    triangular_root_relief_shape: Shape = shape(
+        _FLANK, "Triangular root relief over its length", omit_default=True
+    )
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -20,28 +20,28 @@ _LONGEST = 10.0  # m; what a gear has room for depends on the gear
 _LENGTHS = SiNote("Lengths are in m: 1 mm is 0.001.")
 
 
-def amount(along: Direction, description: str, example: float, *, later: bool = False) -> Any:
+def amount(along: Direction, description: str, example: float, **options: Any) -> Any:
     """Return the field of material removed in m, >= 0."""
     bound = between(0.0, _DEEPEST)
-    return declared(0.0, Declared(Kind.AMOUNT, "m", bound, description, example, along, later=later))
+    return declared(0.0, Declared(Kind.AMOUNT, "m", bound, description, example, along, **options))
 
 
-def slope(along: Direction, description: str, example: float, *, later: bool = False) -> Any:
+def slope(along: Direction, description: str, example: float, **options: Any) -> Any:
     """Return the field of a difference of material removed in m, of either sign."""
     bound = between(-_DEEPEST, _DEEPEST)
-    return declared(0.0, Declared(Kind.DEVIATION, "m", bound, description, example, along, later=later))
+    return declared(0.0, Declared(Kind.DEVIATION, "m", bound, description, example, along, **options))
 
 
-def length(along: Direction, description: str, example: float, *, later: bool = False) -> Any:
+def length(along: Direction, description: str, example: float, **options: Any) -> Any:
     """Return the field ``x_length`` of the length in m over which the amount ``x`` acts."""
     bound = between(0.0, _LONGEST)
-    return declared(0.0, Declared(Kind.LENGTH, "m", bound, description, example, along, later=later))
+    return declared(0.0, Declared(Kind.LENGTH, "m", bound, description, example, along, **options))
 
 
-def shape(along: Direction, description: str, *, later: bool = False) -> Any:
+def shape(along: Direction, description: str, **options: Any) -> Any:
     """Return the field ``x_shape`` of the law of a relief over its length."""
     bound = one_of(tuple(SHAPES))
-    return declared("linear", Declared(Kind.SHAPE, "", bound, description, "linear", along, later=later))
+    return declared("linear", Declared(Kind.SHAPE, "", bound, description, "linear", along, **options))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -106,12 +106,12 @@ class FlankProfile:
 
         Raises `InputError`: a coordinate outside the profile.
         """
-        where = self._checked(s)
-        points = np.empty((*where.shape, 2))
-        involute, fillet, land = self._parts(where)
-        points[involute] = self.involute(self.roll_length(where[involute]))
-        points[fillet] = self.fillet(self.s_form - where[fillet])
-        points[land] = self.root_land(self.s_root - where[land])
+        coordinate = self._checked(s)
+        points = np.empty((*coordinate.shape, 2))
+        involute, fillet, land = self._parts(coordinate)
+        points[involute] = self.involute(self.roll_length(coordinate[involute]))
+        points[fillet] = self.fillet(self.s_form - coordinate[fillet])
+        points[land] = self.root_land(self.s_root - coordinate[land])
         return points
 
     def normal(self, s: ArrayLike) -> FloatArray:
@@ -119,14 +119,14 @@ class FlankProfile:
 
         At the form point it is the involute's, which differs from the fillet's with undercut.
         """
-        where = self._checked(s)
-        normals = np.empty((*where.shape, 2))
-        involute, fillet, land = self._parts(where)
+        coordinate = self._checked(s)
+        normals = np.empty((*coordinate.shape, 2))
+        involute, fillet, land = self._parts(coordinate)
         gear = self.gear
-        roll = gear.sign * self.roll_length(where[involute])
+        roll = gear.sign * self.roll_length(coordinate[involute])
         normals[involute] = involute_normal(gear.base_radius, gear.base_thickness_half_angle, roll)
-        normals[fillet] = gear.trochoid.normal(self._tool_angle(self.s_form - where[fillet]))
-        normals[land] = gear.sign * self.root_land(self.s_root - where[land]) / gear.root_radius
+        normals[fillet] = gear.trochoid.normal(self._tool_angle(self.s_form - coordinate[fillet]))
+        normals[land] = gear.sign * self.root_land(self.s_root - coordinate[land]) / gear.root_radius
         return normals
 
     def _arc(self, roll_length: float) -> float:
@@ -138,12 +138,12 @@ class FlankProfile:
 
     def _checked(self, s: ArrayLike) -> FloatArray:
         """Return `s` as an array, its rounding errors at both ends removed."""
-        where = np.asarray(s, dtype=float)
+        coordinate = np.asarray(s, dtype=float)
         slack = 1e-9 * self.gear.normal_module  # rounding of coordinates
-        if not np.all((where >= self.s_space - slack) & (where <= self.s_tip + slack)):
+        if not np.all((coordinate >= self.s_space - slack) & (coordinate <= self.s_tip + slack)):
             bound = from_to(self.s_space, self.s_tip, "m")
             raise InputError("s", s, bound, "Flank coordinates run from s_space to s_tip.")
-        return np.asarray(np.clip(where, self.s_space, self.s_tip), dtype=float)
+        return np.asarray(np.clip(coordinate, self.s_space, self.s_tip), dtype=float)
 
     def _parts(self, s: FloatArray) -> tuple[BoolArray, BoolArray, BoolArray]:
         """Masks of the coordinates on the involute, the fillet and the root circle."""

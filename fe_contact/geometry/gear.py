@@ -41,7 +41,7 @@ _SECTOR = Declared(
     "Teeth of a sector that is cut out of the body, an odd number around the loaded tooth: its cut planes and"
     " bore are fixed, as in finite-element models of a part of a gear. Left out: the whole gear",
     7,
-    later=True,
+    omit_default=True,
 )
 
 

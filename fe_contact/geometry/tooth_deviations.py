@@ -29,12 +29,12 @@ _FACE_WAVES = (
 
 
 def _amount(text: str, example: float) -> Declared:
-    return Declared(Kind.LENGTH, "m", between(0.0, _LARGEST), text, example, written=_UM, later=True)
+    return Declared(Kind.LENGTH, "m", between(0.0, _LARGEST), text, example, written=_UM, omit_default=True)
 
 
 def _angle(text: str) -> Declared:
     limit = 2.0 * math.pi
-    return Declared(Kind.ANGLE, "rad", between(-limit, limit), text, 0.0, later=True)
+    return Declared(Kind.ANGLE, "rad", between(-limit, limit), text, 0.0, omit_default=True)
 
 
 @described
@@ -97,7 +97,7 @@ class Wave:
     amplitude: float = required(_amount("Amplitude: half of its height", 5e-7))
     phase: float = declared(0.0, _angle("Angle of the wave at which its first crest meets the mate"))
     face_waves: float | None = declared(
-        None, Declared(Kind.RATIO, "", between(-100.0, 100.0), _FACE_WAVES, 0.0, later=True)
+        None, Declared(Kind.RATIO, "", between(-100.0, 100.0), _FACE_WAVES, 0.0, omit_default=True)
     )
 
     def __post_init__(self) -> None:

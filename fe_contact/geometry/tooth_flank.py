@@ -31,18 +31,20 @@ _SLOPE = "Slope deviation {} over the {}; > 0: half of it in excess at {}, half 
 _FORM = "Form deviation {} over the {}, the height of its shape; > 0: in excess in the middle"
 _GRID = replace(
     SURFACE,
-    description="Surface of this tooth, removed from it alone, besides the amounts and the modifications",
-    later=True,
+    description="Surface removed from this tooth alone, in addition to its deviations and the modifications",
+    omit_default=True,
 )
 
 
 def _deviation(text: str, example: float) -> Declared:
-    return Declared(Kind.LENGTH, "m", between(-_LARGEST, _LARGEST), text, example, written="µm", later=True)
+    return Declared(
+        Kind.LENGTH, "m", between(-_LARGEST, _LARGEST), text, example, written="µm", omit_default=True
+    )
 
 
 def _waves(along: str) -> Declared:
     text = f"Waves of the form deviation over the {along}, a crest in its middle; 0: a parabola"
-    return Declared(Kind.COUNT, "", integers(0, 50), text, 0, later=True)
+    return Declared(Kind.COUNT, "", integers(0, 50), text, 0, omit_default=True)
 
 
 @described
@@ -128,12 +130,12 @@ def coordinates(gear: Tooth, roll_length: FloatArray, face_position: FloatArray)
 def tooth_shapes(gear: Tooth, roll_length: FloatArray, face_position: FloatArray) -> dict[str, FloatArray]:
     """Return the excess by 1 m of each slope, and of each form without waves, by field of `ToothFlank`."""
     u, v = np.broadcast_arrays(*coordinates(gear, roll_length, face_position))
-    none = np.zeros(u.shape)
+    zeros = np.zeros(u.shape)
     return {
         "profile_slope": 0.5 * u,
-        "profile_form": _form(none + 1.0, none, u),
+        "profile_form": _form(zeros + 1.0, zeros, u),
         "helix_slope": 0.5 * v,
-        "helix_form": _form(none + 1.0, none, v),
+        "helix_form": _form(zeros + 1.0, zeros, v),
     }
 
 

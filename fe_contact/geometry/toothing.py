@@ -66,15 +66,17 @@ _THINNING = Declared(
     " A / (2 tan alpha_n), and the root with it (x_E of ISO 21771); flank: grinding of the flanks, which"
     " leaves the root circle",
     FLANK,
-    later=True,
+    omit_default=True,
 )
 
 _OF_AXIS = "Axis of the teeth off the axis of rotation; left out: they are one"
-_RUN_OUT = Declared(Kind.PART, "", None, _OF_AXIS, part=RunOut, later=True)
+_RUN_OUT = Declared(Kind.PART, "", None, _OF_AXIS, part=RunOut, omit_default=True)
 _OF_FLANKS = "Waves on all loaded flanks, left by machining"
-_WAVES = Declared(Kind.PARTS, "", None, _OF_FLANKS, part=Wave, later=True)
+_WAVES = Declared(Kind.PARTS, "", None, _OF_FLANKS, part=Wave, omit_default=True)
 _OF_TEETH = "Deviations of the loaded flanks of single teeth; teeth without an entry are as designed"
-_TOOTH_FLANKS = Declared(Kind.PARTS, "", None, _OF_TEETH, part=ToothFlank, later=True, maximum=MAX_TEETH)
+_TOOTH_FLANKS = Declared(
+    Kind.PARTS, "", None, _OF_TEETH, part=ToothFlank, omit_default=True, maximum=MAX_TEETH
+)
 
 MATING = ("normal_module", "normal_pressure_angle", "helix_angle")
 """Fields in which mating gears agree, except for the hand of the helix of external gears."""

@@ -107,7 +107,18 @@ def _assemble(
         _FlankNodes(int(j), sector_nodes[i, sector.flank], sector.s, rotated(normals, j * pitch_angle))
         for i, j in enumerate(teeth)
     )
-    return GearMesh(points, triangles, bore, flanks, teeth, pitch_angle, sector, sector_nodes, hub_nodes, hub)
+    return GearMesh(
+        points=points,
+        triangles=triangles,
+        bore_nodes=bore,
+        flanks=flanks,
+        teeth=teeth,
+        pitch_angle=pitch_angle,
+        sector=sector,
+        sector_nodes=sector_nodes,
+        hub_nodes=hub_nodes,
+        hub=hub,
+    )
 
 
 def _number_sectors(sector: ToothSector, count: int, closed: bool) -> IntArray:

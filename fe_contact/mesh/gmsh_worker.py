@@ -142,8 +142,8 @@ def _fill_block(gmsh: Any, sides: list[list[list[float]]]) -> list[list[list[flo
     bottom = [int(gmsh.model.mesh.getNodes(0, tag)[0][0]) for tag in tags[: len(sides[0])]]
     rows = _rows_above(bottom, [flat[i : i + 4] for i in range(0, len(flat), 4)])
     numbers, xyz, _ = gmsh.model.mesh.getNodes()
-    where = {int(tag): [xyz[3 * i], xyz[3 * i + 1]] for i, tag in enumerate(numbers)}
-    return [[where[tag] for tag in row] for row in rows]
+    points = {int(tag): [xyz[3 * i], xyz[3 * i + 1]] for i, tag in enumerate(numbers)}
+    return [[points[tag] for tag in row] for row in rows]
 
 
 def _rows_above(bottom: list[int], quads: list[list[int]]) -> list[list[int]]:

@@ -35,10 +35,10 @@ def fill_blocks(
 ) -> list[FloatArray]:
     """Fill each block with quadrilaterals, all in one child process: the gmsh worker, or `command`.
 
-    `scale` is the length in m of which gmsh works in multiples (its tolerances are absolute), `seconds` the
-    time limit. Corner points (rows, columns, 2) are from the bottom up and from left to right; those on the
-    sides are the given ones, bit for bit. Raises `MeshError`: the child failed, was killed, ran out of time
-    or answered nonsense; the message says which.
+    The unit of length of gmsh is `scale`, m, since its tolerances are absolute; the time limit is `seconds`.
+    Corner points (rows, columns, 2) are from the bottom up and from left to right; those on the sides are the
+    given ones, bit for bit. Raises `MeshError`: the child failed, was killed, ran out of time or answered
+    nonsense; the message says which.
     """
     answer = ask_gmsh({"blocks": [block.loop(scale) for block in blocks]}, seconds, command)
     try:

@@ -18,10 +18,7 @@ from fe_contact.analysis.database.compute_database import compute_database
 from fe_contact.analysis.request.model_choice import Decision
 from fe_contact.analysis.request.request_check import checked_request
 from fe_contact.microgeometry.confirmed_figures import confirmed_figures
-from fe_contact.microgeometry.design_loads import (
-    misalignment_axis,
-    snapped_to_axis,
-)
+from fe_contact.microgeometry.design_loads import misalignment_axis, snapped_to_axis
 from fe_contact.microgeometry.design_problem import DesignProblem
 from fe_contact.microgeometry.design_study import DesignStudy
 from fe_contact.microgeometry.evaluator import Evaluation, Evaluator

@@ -89,18 +89,21 @@ class DrawnRipple:
         Positions are those of a preview, every other one of a table. Raises `InputError` as
         `CondensedPair.table`, or for teeth that differ, or for an effect of the flanks that is off.
         """
-        checked, contacts, _, nodes, plan = bodies.contact_problem(
-            pair, np.array([torque]), misalignment, center_distance_change
-        )
-        if checked.model.period > 1:
+        problem = bodies.contact_problem(pair, np.array([torque]), misalignment, center_distance_change)
+        if problem.checked.model.period > 1:
             bound = "left out where teeth differ"
             raise InputError("tolerance_class", "a class", bound, "For those, loa scatter draws pairs.")
-        if not all(acts(name, checked) for name in tolerances.widths):
+        if not all(acts(name, problem.checked) for name in tolerances.widths):
             bound = "left out where effects of the flanks are off"
             raise InputError("tolerance_class", "a class", bound, "Leave them at auto.")
-        misalignments, position = np.array([misalignment]), nodes.position[::2]
-        choices = checked.request.choices
-        evaluator = Evaluator(contacts.fine, choices, position, plan.load, misalignments, ONE_NODE)
+        evaluator = Evaluator(
+            problem.contacts.fine,
+            problem.checked.request.choices,
+            position=problem.nodes.position[::2],
+            load=problem.plan.load,
+            misalignment=np.array([misalignment]),
+            nodes=ONE_NODE,
+        )
         return cls(evaluator, tuple(tolerances.widths), tolerances.sample(DRAWN, seed))
 
     @property

@@ -14,11 +14,7 @@ from fe_contact.microgeometry.counted_merit import Cancelled
 from fe_contact.microgeometry.design_problem import SearchProblem
 from fe_contact.microgeometry.design_study import DesignStudy, design_study
 from fe_contact.microgeometry.drawing_grid import best_on_grid
-from fe_contact.microgeometry.optimization import (
-    Optimization,
-    OptimizationRequest,
-    Perturbation,
-)
+from fe_contact.microgeometry.optimization import Optimization, OptimizationRequest, Perturbation
 from fe_contact.microgeometry.search import Ended, Search, SearchRun, search_from
 from fe_contact.microgeometry.search_methods import Cancel, never
 from fe_contact.options import Run
@@ -81,7 +77,7 @@ def _remotely(
     run: Run,
     cancel: Cancel,
 ) -> list[SearchRun]:
-    """Search on workers, one task a start; a cancelled search returns the runs that have ended.
+    """Search on workers, one task per start; a cancelled search returns the runs that have ended.
 
     A Ctrl-C that cancels may also have ended workers, so their errors are ignored then.
     """
@@ -122,7 +118,7 @@ def optimize(
     ----------
     request : OptimizationRequest
     run : Run
-        Its workers search, one task a start. With a single start they assess the designs, and take the walks,
+        Its workers search, one task per start. With one start they assess the designs, and take the walks,
         that do not wait for each other. They analyze the designs at the end.
     cancel : callable
         Asked before every design whether to end the search: the best so far is then analyzed in full, and

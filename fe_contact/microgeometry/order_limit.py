@@ -188,19 +188,19 @@ class ModeledPairs:
         load = int(len(share) - 1 - np.argmax(share[::-1]))
         why = causes(load)
         return PairsAbove(
-            limit,
-            self.names,
-            amplitude,
-            self.nominal,
-            share,
-            np.maximum(share - np.hypot(share - low, wider), 0.0),
-            np.minimum(share + np.hypot(high - share, wider), 1.0),
-            load,
-            why.first_order,
-            why.total,
-            np.clip(share[load] + (why.tightened - why.share), 0.0, 1.0),
-            np.sqrt(np.mean((scaled - known) ** 2, axis=0)),
-            beyond.mean(axis=0),
+            limit=limit,
+            names=self.names,
+            amplitude=amplitude,
+            nominal=self.nominal,
+            share=share,
+            low=np.maximum(share - np.hypot(share - low, wider), 0.0),
+            high=np.minimum(share + np.hypot(high - share, wider), 1.0),
+            load=load,
+            first_order=why.first_order,
+            total=why.total,
+            cured=np.clip(share[load] + (why.tightened - why.share), 0.0, 1.0),
+            missed=np.sqrt(np.mean((scaled - known) ** 2, axis=0)),
+            beyond=beyond.mean(axis=0),
         )
 
 

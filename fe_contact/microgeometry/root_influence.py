@@ -59,7 +59,8 @@ class RootInfluence:
         candidates, N.
         """
         pressed = problem.candidates.on_slices(force)
-        return np.stack([gear.crests(pressed)[0].max(axis=2) for gear in self._gears(problem.candidates)])
+        crests = (gear.crests(pressed) for gear in self._gears(problem.candidates))
+        return np.stack([largest.max(axis=2) for largest, _, _ in crests])
 
     def rows(
         self, problem: ContactProblem, force: FloatArray, changes: FloatArray

@@ -73,19 +73,19 @@ class Search:
 
 def usual_designs(search: Search) -> float:
     """Return the cost of a usual search, in assessments of a design at all positions."""
-    few, maximum, method = (
+    share, maximum, method = (
         min(search.exploration / search.positions, 1.0),
         float(search.evaluations),
         search.method,
     )
     explored = EXPLORED * maximum
     if isinstance(method, DifferentialEvolution):
-        return search.starts * (few * explored + maximum - explored)
+        return search.starts * (share * explored + maximum - explored)
     if not isinstance(method, (SequentialLinearProgramming, StagedLinearProgramming)):
         return search.starts * maximum
     explored = min(method.sample, explored)
     walked = min((method.trials + 1) * (TRIED + 1) + FOLLOWED, maximum - explored)
-    return search.starts * (few * explored + LINEARIZED * walked)
+    return search.starts * (share * explored + LINEARIZED * walked)
 
 
 @dataclass(frozen=True)

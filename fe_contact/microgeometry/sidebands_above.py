@@ -215,19 +215,20 @@ def _indices(
     """Return the first-order and total Sobol' indices of the level, (d,) each."""
     from scipy.stats import sobol_indices  # noqa: PLC0415 (start-up time)
 
-    one = teeth.drawn(BASE_PAIRS, seed + 1)
-    other = teeth.drawn(BASE_PAIRS, seed + 1, after=teeth.dimensions)
+    base_gears = teeth.drawn(BASE_PAIRS, seed + 1)
+    other_gears = teeth.drawn(BASE_PAIRS, seed + 1, after=teeth.dimensions)
 
     def level(gears: DrawnTeeth) -> FloatArray:
         amplitude = np.maximum(passing.amplitude(gears)[:, load], _MIN)
         return np.asarray(20.0 * np.log10(amplitude / limit.amplitude))[None]
 
-    mixed = np.stack([level(one.changed(name, other.amount(name))) for name in teeth.widths])
+    mixed = np.stack([level(base_gears.changed(name, other_gears.amount(name))) for name in teeth.widths])
     values: Mapping[Literal["f_A", "f_B", "f_AB"], FloatArray]
-    values = {"f_A": level(one), "f_B": level(other), "f_AB": mixed}
+    values = {"f_A": level(base_gears), "f_B": level(other_gears), "f_AB": mixed}
     indices = sobol_indices(func=values, n=BASE_PAIRS)
     first, total = (np.ravel(getattr(indices, name)) for name in ("first_order", "total_order"))
-    acting = np.any(passing.lines(one)[..., load] != 0.0, axis=1)  # what adds nothing has no part in it
+    # what adds nothing has no part in it
+    acting = np.any(passing.lines(base_gears)[..., load] != 0.0, axis=1)
     return np.where(acting, first, 0.0), np.where(acting, total, 0.0)
 
 

@@ -318,22 +318,24 @@ def sampled(request: ToleranceRequest, run: Run) -> ToleranceStudy:
         error = ripple_errors(table, nominal)[0]
     run.progress("confirmation", 1.0)
     return ToleranceStudy(
-        study.torque,
-        names,
-        deviation,
-        ripple,
-        design.evaluation.peak_to_peak[0],
-        error,
-        tuple(estimated_quantile(ripple, fraction, sampling.confidence) for fraction in sampling.fractions),
-        at_once,
-        sampling.confidence,
-        clock.to_json(),
-        _request_json(request),
-        sampling.solved,
-        len(model_error),
-        np.sqrt(np.mean(model_error**2, axis=0)),
-        np.abs(model_error).max(axis=0),
-        above,
+        torque=study.torque,
+        names=names,
+        deviation=deviation,
+        peak_to_peak=ripple,
+        nominal=design.evaluation.peak_to_peak[0],
+        error=error,
+        quantiles=tuple(
+            estimated_quantile(ripple, fraction, sampling.confidence) for fraction in sampling.fractions
+        ),
+        first_order=at_once,
+        confidence=sampling.confidence,
+        cost=clock.to_json(),
+        request=_request_json(request),
+        solved=sampling.solved,
+        held=len(model_error),
+        missed=np.sqrt(np.mean(model_error**2, axis=0)),
+        missed_largest=np.abs(model_error).max(axis=0),
+        above=above,
     )
 
 

@@ -17,9 +17,7 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.options import LEVELS, MEDIUM, MESHES, AnalysisOptions
 from fe_contact.planning.cost_model import effort, predict_run
 from fe_contact.planning.discretization import FINER_SLICES, FaceDiscretization
-from fe_contact.planning.expected_curves import (
-    ExpectedCurves,
-)
+from fe_contact.planning.expected_curves import ExpectedCurves
 from fe_contact.planning.expected_error import ExpectedError, expected_error, percent
 from fe_contact.planning.model_error import is_relieved_helical
 from fe_contact.planning.plan import make_plan
@@ -86,16 +84,16 @@ def mesh_for_tolerance(tolerance: AllowedError, options: Sequence[MeshOption]) -
     within = within or [option for option in options if option.error.reducible <= tolerance.relative]
     if within:
         best = min(within, key=_effort)
-        return MeshChoice(best, True, f"expected error {best.error.text}{_probability_text(best, tolerance)}")
+        reason = f"expected error {best.error.text}{_probability_text(best, tolerance)}"
+        return MeshChoice(best, met=True, reason=reason)
     fine_enough = [option for option in options if option.error.numerical <= tolerance.relative]
     plane_exceeds = min(option.error.plane for option in options) > tolerance.relative
     if fine_enough and plane_exceeds:
         best = min(fine_enough, key=_effort)
     else:
         best = min(options, key=lambda option: option.error.reducible)
-    error = best.error
-    parts = f"mesh {percent(error.numerical)} %, plane {percent(error.plane)} %"
-    return MeshChoice(best, False, f"no mesh is expected within {tolerance.text} ({parts})")
+    parts = f"mesh {percent(best.error.numerical)} %, plane {percent(best.error.plane)} %"
+    return MeshChoice(best, met=False, reason=f"no mesh is expected within {tolerance.text} ({parts})")
 
 
 def _probability_text(option: MeshOption, tolerance: AllowedError) -> str:
@@ -119,10 +117,10 @@ def mesh_for_time(
     for option in sorted(options, key=lambda o: (o.error.total, o.effort)):
         predicted = seconds(option)
         if predicted <= budget:
-            return MeshChoice(option, True, f"predicted {engineering(predicted, 2)} CPU s")
+            return MeshChoice(option, met=True, reason=f"predicted {engineering(predicted, 2)} CPU s")
     minimum = min(options, key=_effort)
     reason = f"even the fastest mesh is predicted to take {engineering(seconds(minimum), 2)} CPU s"
-    return MeshChoice(minimum, False, reason)
+    return MeshChoice(minimum, met=False, reason=reason)
 
 
 def _effort(option: MeshOption) -> float:
@@ -194,9 +192,9 @@ def chosen_mesh(
 
     meshes = mesh_options(pair, load, options, model, alignments, curves, model_chosen=model_chosen)
     if options.level is not None:
-        return MeshChoice(meshes[0], True, "as requested")
+        return MeshChoice(meshes[0], met=True, reason="as requested")
     if options.tolerance is None and options.time_budget is None:
-        return MeshChoice(meshes[LEVELS.index("standard")], True, "nothing asked")
+        return MeshChoice(meshes[LEVELS.index("standard")], met=True, reason="nothing asked")
     if options.tolerance is not None:
         return mesh_for_tolerance(options.tolerance, meshes)
     return mesh_for_time(options.time_budget or 0.0, meshes, seconds)

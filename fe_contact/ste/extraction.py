@@ -18,7 +18,7 @@ from fe_contact.ste.fields import SteFields
 from fe_contact.ste.force_table import ForceTable
 from fe_contact.ste.interpolation import Axis, monotone_slopes, ordered_slopes
 from fe_contact.ste.level_grid import deflection_grid, monotone_stiffness, stiffness_grid
-from fe_contact.ste.load_levels import SMOOTHING, LoadLevels, gradual_contact, refined_levels
+from fe_contact.ste.load_levels import SMOOTHING, LoadLevels, refined_levels, smooth_share
 from fe_contact.types import FloatArray, IntArray
 
 SHORT_LINE = 1e-9
@@ -66,27 +66,28 @@ def force_table(database: SteFields) -> ForceTable:
     _, order = _all_loads(database)
     loaded = _merged(database.pairs_in_contact, database.support_pairs_in_contact, order).astype(np.int64)
     pairs = np.concatenate([np.zeros_like(loaded[..., :1]), loaded], axis=-1)
-    levels = refined_levels(_stored_levels(database), pairs, gradual_contact(database.geometry))
+    levels = refined_levels(_stored_levels(database), pairs, smooth_share(database.geometry))
     axis = Axis(database.position, float(database.period))
     deflection = deflection_grid((axis,), levels.deflection, (ordered_slopes(axis, levels.deflection),))
     unlimited = stiffness_grid((axis,), levels.stiffness, (monotone_slopes(axis, levels.stiffness),))
     stiffness = monotone_stiffness(unlimited, deflection, levels.force)
     flat = np.zeros_like(levels.deflection)  # the slopes of a table of one position
-    slides, sliding = sliding_sums(database)
+    sliding_share, sliding_lever = sliding_sums(database)
     arm = database.load_arm if database.load_arm.size else database.face_centroid
     return ForceTable(
         position=database.position,
         level=levels.force,
         misalignment=database.misalignment,
         center_distance_change=database.center_distance_change,
+        # `nodal` is by order of the derivative in the position
         deflection=_position_third(deflection.nodal[(0,)]),
         deflection_slope=_position_third(deflection.nodal.get((1,), flat)),
         stiffness=_position_third(stiffness.nodal[(0,)]),
         stiffness_slope=_position_third(stiffness.nodal.get((1,), flat)),
         period=database.period,
         load_arm=_position_third(_at_levels(database, arm, levels.force)),
-        sliding_share=_position_third(_at_levels(database, slides, levels.force)),
-        sliding_lever=_position_third(_at_levels(database, sliding, levels.force)),
+        sliding_share=_position_third(_at_levels(database, sliding_share, levels.force)),
+        sliding_lever=_position_third(_at_levels(database, sliding_lever, levels.force)),
     )
 
 

@@ -63,11 +63,11 @@ class LoadLevels:
     stiffness: FloatArray
 
 
-def gradual_contact(gears: PairGeometry) -> float:
-    """Return how gradually a further pair comes into contact: 0 along a whole line at once, 1 from a corner.
+def smooth_share(gears: PairGeometry) -> float:
+    """Return the share of the smooth curve in inserted levels, 0 to 1, by how a further pair begins to touch.
 
-    Along a line the stiffness jumps; from a corner the line of contact grows from nothing, and so does the
-    stiffness.
+    Along a whole line (0) the stiffness jumps; from a corner (1) the line of contact grows from nothing, and
+    so does the stiffness.
     """
     overlap = gears.face_width * math.tan(gears.base_helix_angle) / gears.base_pitch
     return min(overlap / _GRADUAL_OVERLAP, 1.0)

@@ -100,8 +100,8 @@ class Child:
             frames += self._frames.take(piece)
         return frames
 
-    def has_exited(self, within_s: float = 0.0) -> bool:
-        """Whether it ends within a moment; until it is reaped its id is given to no other group."""
+    def exits_within(self, within_s: float) -> bool:
+        """Wait for its end; return whether it came. Until it is reaped its id is given to no other group."""
         if self._ended is not None:
             return True
         deadline = time.monotonic() + within_s
@@ -126,7 +126,7 @@ class Child:
         child that is not dead after `within_s` is left to the system. `within_s` None waits until it is dead.
         """
         self.end_group()
-        if self._ended is None and (within_s is None or self.has_exited(within_s)):
+        if self._ended is None and (within_s is None or self.exits_within(within_s)):
             with self._reaping:
                 self._ended = self._process.reap()
         self._close_pipes()

@@ -123,7 +123,8 @@ def show_effects(out: Console, ledger: list[dict[str, Any]]) -> None:
     title = f"Effects: estimated change without each, {influence_point(ledger)}".removesuffix(", ")
     out.print()
     out.print(table(columns, rows, title, text_columns=(columns[0], columns[-1])))
-    if trifles := by_size(ledger)[1]:
+    _, trifles = by_size(ledger)
+    if trifles:
         names = ", ".join(entry["name"].replace("_", " ") for entry in trifles)
         out.print(f"{trifles_title(trifles)}: {names}")
 

@@ -21,12 +21,7 @@ from lineofaction.cli.export_point import Point
 from lineofaction.cli.export_rexs import export_rexs
 from lineofaction.cli.export_run import TABLE, UNIVERSAL, export_run
 from lineofaction.cli.export_stiffness import export_stiffness
-from lineofaction.cli.output import (
-    console,
-    print_json,
-    print_written,
-    table,
-)
+from lineofaction.cli.output import console, print_json, print_written, table
 from lineofaction.cli.ste import positions
 from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.input_file import InputFile

@@ -7,13 +7,7 @@ from pathlib import Path
 
 import typer
 
-from lineofaction.cli.output import (
-    check_writable,
-    console,
-    print_json,
-    print_written,
-    table,
-)
+from lineofaction.cli.output import check_writable, console, print_json, print_written, table
 from lineofaction.gearbox.problems import EXIT_FAILED, BadInput
 from lineofaction.gearbox.progress_bars import progress_bar
 from lineofaction.hardcases import HARD_SCENES, HardScene, Outcome, run_scenes

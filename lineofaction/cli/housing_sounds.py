@@ -20,12 +20,7 @@ from lineofaction.gearbox.progress_bars import progress_bar
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.listen import SoundPressure
-from lineofaction.gearbox.studies.listen.run import (
-    HeardRun,
-    Receiver,
-    SceneHousings,
-    received_run,
-)
+from lineofaction.gearbox.studies.listen.run import HeardRun, Receiver, SceneHousings, received_run
 from lineofaction.report.drawing.figure import number
 from lineofaction.report.run.view import RunView
 

@@ -78,5 +78,5 @@ def text_of_kind(kind: str, wishes: PairWishes) -> str:
     else:
         cases = [validated(Case, table)]
     for case in cases:
-        gear_pair(case)
+        gear_pair(case)  # raises for a case that is no pair
     return text

@@ -12,12 +12,7 @@ from pydantic import ValidationError
 
 from bounds import engineering
 from host.directories import cache_home
-from lineofaction.cli.output import (
-    Report,
-    check_writable,
-    console,
-    print_json,
-)
+from lineofaction.cli.output import Report, check_writable, console, print_json
 from lineofaction.cli.verb_warnings import warn
 from lineofaction.gearbox.convert.case import case_at
 from lineofaction.gearbox.convert.checked_case import CheckedCase

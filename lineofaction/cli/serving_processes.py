@@ -47,10 +47,13 @@ _METRICS = "PROMETHEUS_MULTIPROC_DIR"
 """Environment variable of prometheus-client that names the folder of the figures of all processes."""
 
 
-def _managed_work(
+def _management_port(
     settings: Settings, machinery: Machinery, metrics: str
 ) -> AbstractContextManager[Callable[[], None]]:
-    """Return the management port of the scheduler; `metrics`: the folder of the figures of all processes."""
+    """Return a context in which the management port is open; its value is a function that announces the port.
+
+    The port answers with the figures of all processes, which are in the folder `metrics`.
+    """
     engine, store, scheduler = machinery.engine, machinery.store, machinery.scheduler
     writes = WriteCheck(Deployment(engine, store))
     registry = process_registry(engine, store, writes, scheduler, settings)
@@ -76,16 +79,17 @@ def serve_in_processes(settings: Settings, serve: Work, announce: Work) -> None:
     lock = DirectoryLock(settings.data_directory)
     lock.acquire()
     metrics = tempfile.mkdtemp(prefix="loa-metrics-")
+    # a fork server has the environment of the process that starts it
     os.environ.update(child_environment(**{_METRICS: metrics}))
     try:
         machinery = job_machinery(settings, default_registry())
         scheduler = machinery.scheduler
         assert scheduler is not None
-        with closing(machinery), _managed_work(settings, machinery, metrics) as announce_management:
+        with closing(machinery), _management_port(settings, machinery, metrics) as announce_port:
             processes = ServingProcesses(settings.processes, serve)
             scheduler.start()
             announce()
-            announce_management()
+            announce_port()
             _supervise(processes, scheduler, stopped)
     finally:
         lock.release()

@@ -163,10 +163,10 @@ def _columns(curve: dict[str, Any]) -> list[str]:
 
 def _answer(database: SteDatabase, following: str, curve: dict[str, Any]) -> Iterator[str]:
     """Yield the lines of a curve: figures with errors, harmonics, load sharing, the next verb."""
-    one, other = database.geometry.teeth
-    yield f"gear pair {one}/{other} {_point(curve)}"
+    pinion_teeth, wheel_teeth = database.geometry.teeth
+    yield f"gear pair {pinion_teeth}/{wheel_teeth} {_point(curve)}"
     if curve["period"] == 1:
-        yield f"harmonic 1 is {order_words(one, 'pinion')}"
+        yield f"harmonic 1 is {order_words(pinion_teeth, 'pinion')}"
     yield ""
     known, unknown = _orders(curve)
     lines = [

@@ -11,13 +11,7 @@ from typing import Any
 
 import typer
 
-from lineofaction.cli.output import (
-    check_writable,
-    console,
-    print_json,
-    print_written,
-    table,
-)
+from lineofaction.cli.output import check_writable, console, print_json, print_written, table
 from lineofaction.gearbox.problems import EXIT_FAILED, BadInput
 from lineofaction.gearbox.progress_bars import progress_bar
 from lineofaction.validation import CASES, Outcome, ValidationCase, markdown, read_case, run_case

@@ -14,9 +14,7 @@ import httpx2
 
 from lineofaction.client.problem_answers import problem_of, stranger
 from lineofaction.client.steps import Open, Pause, Piece, Send, Steps, Stream
-from lineofaction.gearbox.problems import (
-    Unreachable,
-)
+from lineofaction.gearbox.problems import Unreachable
 
 _RETRIED = (429, 502, 503, 504)
 _FIRST_PAUSE_S, _LONGEST_BACKOFF_S, _LONGEST_PAUSE_S = 0.1, 2.0, 10.0

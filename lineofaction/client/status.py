@@ -63,6 +63,8 @@ class JobState:
     priority: int = 0
     remaining_s: float | None = None
     """Seconds that a running job still needs, by its pace; None: not known."""
+    ahead: int | None = None
+    """Number of computations before a job that waits, those that run included; None: it does not wait."""
     parent: str = ""
     """The batch that the job is in; empty: none."""
     place: int = 0
@@ -79,6 +81,8 @@ class JobState:
         """The job's present activity: its stage while it runs, else waits, done, failed or dismissed."""
         if self.status == "running":
             return self.stage or "starts"
+        if self.ahead:
+            return f"waits behind {self.ahead} job{'' if self.ahead == 1 else 's'}"
         return {"accepted": "waits", "successful": "done"}.get(self.status, self.status)
 
     @property
@@ -114,7 +118,8 @@ class JobState:
         known |= {"priority": document.get("priority", 0)}
         known |= {"tags": tuple(document.get("tags") or ())}
         known |= {"differences": tuple((document.get("differences") or {}).get("first", ()))}
-        known |= {"remaining_s": document.get("remaining_s"), "parent": document.get("parentID") or ""}
+        known |= {name: document.get(name) for name in ("remaining_s", "ahead")}
+        known |= {"parent": document.get("parentID") or ""}
         known |= {name: document.get(name, 0) for name in ("place", "children")}
         return cls(document["jobID"], document["processID"], **known, warnings=warnings)
 

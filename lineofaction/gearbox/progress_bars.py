@@ -85,13 +85,7 @@ def progress_bar(stages: Stages = ()) -> Iterator[Progress]:
         yield silent
         return
     from rich.console import Console  # noqa: PLC0415 (start-up time)
-    from rich.progress import (  # noqa: PLC0415
-        BarColumn,
-        Progress,
-        TaskID,
-        TextColumn,
-        TimeElapsedColumn,
-    )
+    from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn  # noqa: PLC0415
 
     columns = (TextColumn("{task.description:<14}"), BarColumn(), TextColumn("{task.percentage:>3.0f} %"))
     clocks = (TimeElapsedColumn(), TextColumn("{task.fields[left]}"))

@@ -163,8 +163,9 @@ class Studies:
         _as(_either_perhaps_file, lambda: computations.OPTIMIZE),
         "Optimize the flanks",
         "Search better flanks",
-        "Choose flank modifications: of a case for the least of its complaint, without one for the least "
-        "peak-to-peak STE over torques and scatter, of a mesh of a scene for what is heard least.",
+        "Search flank modifications: of a case with a complaint for the lowest level of its order, of "
+        "another case for the least peak-to-peak STE over torques and scatter, of a mesh of a scene for the "
+        "least sound.",
         "examples/palermo_spur_20_20.toml examples/optimize_tip_relief.toml -o best",
         group="design",
         kind="optimization",

@@ -11,7 +11,7 @@ import numpy as np
 from fe_contact.errors import InputError
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
-from lineofaction.hardcases.contact.contact_case import even_positions, off
+from lineofaction.hardcases.contact.contact_case import even_positions, max_relative
 from lineofaction.hardcases.scene import Measured, Scenes, largest
 from lineofaction.hardcases.tables import COMPLIANCE, PLAIN_TABLE, along, square_wave, table_of
 
@@ -50,7 +50,7 @@ def _square_wave_ste() -> Sequence[Measured]:
 
 @SCENES.add(
     "two_loads_only",
-    "Two stored loads, or one, leave nothing to take a curvature from, and lift-off below them.",
+    "Two stored loads, or one, do not determine a curvature, and lift-off lies below them.",
     "Force and STE are inverse to each other; a linear table stays linear between its loads.",
 )
 def _two_loads() -> Sequence[Measured]:
@@ -72,7 +72,7 @@ def _two_loads() -> Sequence[Measured]:
             ),
             Measured(
                 f"from the lowest load on, off the straight law, {loads}",
-                off(table.ste(table.position[:, None], between[stored]), straight[:, stored]),
+                max_relative(table.ste(table.position[:, None], between[stored]), straight[:, stored]),
                 maximum=1e-12,
             ),
             Measured(f"least growth of STE with load, {loads}, m", growth.min(), minimum=1e-9),
@@ -97,7 +97,11 @@ def _lift_off() -> Sequence[Measured]:
     near = table.force_at(x, lift_off + 1e-9)
     return (
         Measured("force at and below lift-off, N", max(below.force.max(), at.force.max()), maximum=0.0),
-        Measured("stiffness at and below lift-off, N/m", max(below.stiffness.max(), at.stiffness.max()), 0.0),
+        Measured(
+            "stiffness at and below lift-off, N/m",
+            max(below.stiffness.max(), at.stiffness.max()),
+            maximum=0.0,
+        ),
         Measured("force 1 pm above it, N", above.force.max(), maximum=1e-6, minimum=0.0),
         Measured("force 1 nm above it over the secant's", near.force.max() * COMPLIANCE / 1e-9, maximum=1.0),
         Measured("least force 1 nm above it, N", near.force.min(), minimum=1e-12),
@@ -107,8 +111,8 @@ def _lift_off() -> Sequence[Measured]:
 
 @SCENES.add(
     "queries_outside",
-    "Positions of a million pitches, approaches far beyond the highest load, and what is no number.",
-    "Position repeats; beyond the top the curve goes on straight and is flagged; no number is refused.",
+    "Positions of a million pitches, approaches far beyond the highest load, infinity and NaN.",
+    "Position repeats; beyond the top the curve goes on straight and is flagged; inf and NaN are refused.",
 )
 def _queries_outside() -> Sequence[Measured]:
     """Query beyond every end of the table, far away, and with NaN."""
@@ -129,7 +133,11 @@ def _queries_outside() -> Sequence[Measured]:
     return (
         Measured("a million pitches away, relative change", far, maximum=1e-9),
         Measured("12345 pitches back, relative change", back, maximum=1e-11),
-        Measured("beyond the top, off the straight continuation", off(beyond.force, straight), maximum=1e-9),
+        Measured(
+            "beyond the top, off the straight continuation",
+            max_relative(beyond.force, straight),
+            maximum=1e-9,
+        ),
         Measured("flags beyond the top", (beyond.validity != 0).sum(), minimum=x.size),
         Measured("flags inside", (inside.validity != 0).sum(), maximum=0.0),
         Measured("of four queries that are no numbers, refused", refused, minimum=4.0),
@@ -154,9 +162,9 @@ def _along_the_axis(table: SteDatabase, x: FloatArray) -> tuple[Measured, ...]:
     return (
         Measured(
             "STE at each misalignment off the one stored for it",
-            max(off(values, np.full(x.size, f)) for values, f in zip(at, factor, strict=True)), maximum=1e-12,
+            max_relative(np.array(at), factor[:, None]), maximum=1e-12,
         ),
-        Measured("force likewise", max(off(values, np.full(x.size, 2500.0)) for values in force), 1e-9),
+        Measured("force likewise", max_relative(np.array(force), np.array(2500.0)), maximum=1e-9),
         Measured("STE between two misalignments over STE at the lower", between.min(), minimum=1.0),
         Measured("over that at the higher one", between.max() / 1.5, maximum=1.0),
         Measured("flags beyond the axis", (beyond.validity != 0).sum(), minimum=x.size),

@@ -24,7 +24,7 @@ from lineofaction.gearbox.result_files import COMPLAINT, stamped
 from lineofaction.gearbox.studies.bodies import UNIT
 from lineofaction.gearbox.study import Study
 from lineofaction.report.drawing.attaching import attached
-from lineofaction.report.drawing.figure import Figure, Table, panel_rows
+from lineofaction.report.drawing.figure import Figure, Table, half_figures, panel_rows
 from lineofaction.report.drawing.image import png, still
 from lineofaction.report.drawing.interactive import plotly_figure
 from lineofaction.report.drawing.marks import Marks, marked_page_of_case, marked_sections, marks_of, of_run
@@ -40,7 +40,7 @@ from lineofaction.report.ste.page import static_alarms, static_making, static_re
 from lineofaction.report.unit_picture import is_picture, one_picture, picture_sections
 from model_studies.netcdf import UnreadableFile, opened_netcdf
 
-_ACROSS = 2  # panels beside each other on a page
+_ACROSS, _OF_MANY, _MANY = 2, 3, 5  # panels beside each other on a page, also of a figure with many
 _BOUND = f"an STE database, a run, or the result of a study ({', '.join(STUDIES)})"
 _READERS: dict[str, tuple[tuple[str, str], Callable[[Path], Any]]] = {
     "database": (("format", "lineofaction STE database"), SteDatabase.from_netcdf),
@@ -200,8 +200,23 @@ def page_of(read: Inputs) -> Page:
     """
     page = _page_of(read)
     alarms = (*(f"Warning: {text}" for text in read.warnings), *page.alarms)
-    sections = sorted(one_effects_section(one_picture(page.sections)), key=lambda section: section.part)
+    sections = _without_repeated_figures(one_effects_section(one_picture(page.sections)))
+    sections.sort(key=lambda section: section.part)
     return replace(page, alarms=alarms, sections=tuple(sections), records=read.records)
+
+
+def _without_repeated_figures(sections: Sequence[Section]) -> list[Section]:
+    """Return sections in which a figure that several studies draw alike, with one finding, stands once."""
+    seen: set[tuple[str, str]] = set()
+    unique = []
+    for section in sections:
+        figures = []
+        for figure in section.figures:
+            if (figure.key, figure.alternative) not in seen:
+                figures.append(figure)
+            seen.add((figure.key, figure.alternative))
+        unique.append(replace(section, figures=tuple(figures)))
+    return unique
 
 
 def _page_of(read: Inputs) -> Page:
@@ -316,7 +331,7 @@ def page_json(page: Page, *, printed: bool = False) -> Json:
     `printed`: its page in place of its parts, of pictures alone: ``{"page": HTML}``.
     """
     if printed:
-        stills = {figure.key: still(png(figure, across=_ACROSS)) for figure in _figures(page)}
+        stills = {key: still(image) for key, image in _drawn(page).items()}
         return {"page": html(page, stills, still=True)}
     return {
         "title": page.title,
@@ -387,7 +402,7 @@ def write_page(
     page = replace(page, alarms=(*(f"Warning: {text}" for text in warnings), *page.alarms))
     figures = _figures(page)
     printed = output.suffix == ".pdf"
-    drawn = {figure.key: png(figure, across=_ACROSS) for figure in figures}
+    drawn = _drawn(page)
     stills = {key: still(image) for key, image in drawn.items()}
     text = html(page, stills, still=printed or still_only)
     content = _printed(page, text, output) if printed else text.encode("utf-8")
@@ -396,12 +411,30 @@ def write_page(
     written = [output]
     if images is not None:
         images.mkdir(parents=True, exist_ok=True)
+        half = {key for section in page.sections for key in half_figures(section.figures)}
         for figure in figures:
-            in_one_column = all(len(row) == 1 for row in panel_rows(figure.content, _ACROSS))
+            alone = all(len(row) == 1 for row in panel_rows(figure.content, _across(figure)))
+            alone &= figure.key not in half
             with atomic_file(images / f"{figure.key}.png") as draft:
-                draft.write_bytes(drawn[figure.key] if in_one_column else png(figure))
+                draft.write_bytes(drawn[figure.key] if alone else png(figure))
             written.append(images / f"{figure.key}.png")
     return written
+
+
+def _drawn(page: Page) -> dict[str, bytes]:
+    """Draw the figures of a page as printed: panels beside each other, small figures on half the width."""
+    images = {}
+    for section in page.sections:
+        half = half_figures(section.figures)
+        for figure in section.figures:
+            is_half = figure.key in half
+            images[figure.key] = png(figure, across=1 if is_half else _across(figure), half=is_half)
+    return images
+
+
+def _across(figure: Figure) -> int:
+    """Return how many panels of a figure stand beside each other on a page, if they are narrow."""
+    return _OF_MANY if len(figure.content) >= _MANY else _ACROSS
 
 
 def _printed(page: Page, text: str, output: Path) -> bytes:

@@ -1,4 +1,4 @@
-"""Numbers of a result's plots as a table of pandas, one row a point."""
+"""Numbers of a result's plots as a table of pandas, one row per point."""
 
 from __future__ import annotations
 

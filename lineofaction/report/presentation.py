@@ -26,7 +26,6 @@ from lineofaction.report.drawing.figure import Figure, Table
 from lineofaction.report.drawing.marks import marked, marked_page, marks_of
 from lineofaction.report.drawing.page import Headline, Page, Part, Section
 from lineofaction.report.drawing.tables import cost_tables, ledger_section
-from lineofaction.report.unit_picture import with_picture
 
 _SUBJECTS = [entry.name for entry in iter_modules([str(Path(__file__).parent)]) if entry.ispkg]
 """Folders of the report, in which the modules of studies are."""
@@ -74,6 +73,8 @@ def _of_its_unit(presentation: Presentation) -> Presentation:
         return plain if marks is None else marked(plain, marks)
 
     def page(result: Any) -> Page:
+        from lineofaction.report.unit_picture import with_picture  # noqa: PLC0415 (start-up time: it draws)
+
         marks, plain = marks_of(result), presentation.page(result)
         plain = at_point(plain, presentation.point(result))
         complete = plain if marks is None else marked_page(plain, marks)

@@ -23,7 +23,6 @@ from lineofaction.report.drawing.page import Headline, Page, TitleBlock
 
 HASH_DIGITS = 12
 """Digits of a hash that tell two reports apart."""
-_BLANK = "-"
 _NUMBER = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
 _VALUE = re.compile(rf"({_NUMBER}) ?(.*)")
 _BAND = re.compile(rf"± ({_NUMBER})|({_NUMBER}|none) to ({_NUMBER}|none)")
@@ -45,8 +44,8 @@ def titled(page: Page, about: ReportInput | None) -> Page:
     """
     about = ReportInput() if about is None else about
     fields = {"project": about.project, "drawing": about.number, "revision": about.revision}
+    fields |= {"author": about.author, "date": date.today().isoformat()}
     rows = {name: text for name, text in fields.items() if text}
-    rows |= {"author": about.author or _BLANK, "date": date.today().isoformat()}
     rows["made with"] = f"lineofaction {software_versions()['lineofaction']}"
     if page.records:
         rows["hash"] = hash_of(page.records)

@@ -1,4 +1,4 @@
-"""Comparisons with numbers of others: one file a case in `cases`, run by `loa validate`.
+"""Comparisons with numbers of others: one file per case in `cases`, run by `loa validate`.
 
 Adding a file adds a comparison; a file elsewhere is named by its path. What a file holds:
 docs/measured-and-computed.md.

@@ -76,7 +76,7 @@ class _LiveProcess:
 
     @property
     def alive(self) -> bool:
-        return not self._child.has_exited()
+        return not self._child.exits_within(0.0)
 
     def ask(self, question: Question, times: AnswerTimes) -> Frame:
         """Return the answer; stop the work on it where the question becomes obsolete.

@@ -8,12 +8,12 @@ from datetime import datetime
 from functools import lru_cache
 from typing import Any
 
-from sqlalchemy import ColumnElement, case, select
+from sqlalchemy import ColumnElement, case, func, or_, select
 
 from bounds import engineering
 from service.project import at_address
 from service.queue.differences import differences_of
-from service.queue.tables import computations, jobs
+from service.queue.tables import BATCH, computations, jobs, of_batch
 from service.queue.terms import Delivery, Label
 from service.schemas.answers import Differences
 from service.store.results import results
@@ -59,7 +59,9 @@ class Job:
 
     `inputs` are normalized, as they are computed; `stated` are the caller's, or the normalized ones where
     those were not kept. A batch has so many `children`: each has the batch as `parent`, and its index from 0
-    as `place`. `headline` is what a list shows of the result; None: no result, or one of an older version.
+    as `place`. While a job waits, `ahead` computations of all projects run or have an earlier turn; None: it
+    does not wait, or is a batch. `headline` is what a list shows of the result; None: no result, or one of an
+    older version.
     """
 
     id: str
@@ -89,12 +91,18 @@ class Job:
     parent: str | None = None
     place: int = 0
     children: int = 0
+    ahead: int | None = None
     headline: Json | None = None
 
     @property
     def ended(self) -> bool:
         """Whether the job has ended."""
         return self.status in ENDED
+
+    @property
+    def mark(self) -> str:
+        """A text that differs between any two states that a follower is told of."""
+        return mark_of(self.updated, self.ahead)
 
     def remaining_s(self, instant: datetime) -> float | None:
         """Return the seconds that a running job still needs at an instant, at the pace of its last report.
@@ -111,6 +119,24 @@ class Job:
         return max(seconds - (instant - updated).total_seconds(), LEAST_LEFT * seconds)
 
 
+def mark_of(updated: str, ahead: int | None) -> str:
+    """Return the mark of a job's state: when it changed last, and while it waits behind how many."""
+    return updated if ahead is None else f"{updated}/{ahead}"
+
+
+def _ahead() -> ColumnElement[Any]:
+    """Return the number of computations before one that waits, in the order of `Claims.claim`."""
+    waiting, other = computations.c, computations.alias().c
+    earlier = (other.priority > waiting.priority) | (other.created < waiting.created)
+    before = (other.state == "accepted") & (other.priority >= waiting.priority) & earlier
+    number = select(func.count()).where(or_(other.state == "running", before), ~other.key.startswith(BATCH))
+    return case(((waiting.state == "accepted") & ~of_batch, number.scalar_subquery()))
+
+
+AHEAD = _ahead()
+"""The column `Job.ahead` of a selection of computations, composed once."""
+
+
 def job_state() -> ColumnElement[Any]:
     """Return a job's state: a caller who dismissed sees "dismissed", also if the shared work goes on."""
     return case((jobs.c.dismissed.is_not(None), "dismissed"), else_=computations.c.state)
@@ -124,6 +150,7 @@ def jobs_of_all_projects() -> Any:
         jobs.c.created.label("job_created"),
         *(jobs.c[name] for name in _JOB_COLUMNS),
         computations,
+        AHEAD.label("ahead"),
         results.c.headline,
     ).select_from(jobs.join(computations).outerjoin(results, of_computation))
 
@@ -146,6 +173,7 @@ def job_of(row: Any) -> Job:
         stated=row.stated or row.inputs,
         label=Label.from_row(row),
         differences=differences_of(row.differences),
+        ahead=None if dismissed else row.ahead,
         headline=None if row.headline is None else json.loads(row.headline) or None,
     )
 

@@ -102,8 +102,8 @@ class PageQuery:
         conditions = [*self._wanted(others), *self._ran(others), _is_better(others, lines)]
         if self.job_filter.statuses:
             conditions.append(others.c.state.in_(self.job_filter.statuses))
-        same = select(others.c.job).where(others.c.key == lines.c.key, others.c.parent == lines.c.parent)
-        return ~same.where(*conditions).exists()
+        rivals = select(others.c.job).where(others.c.key == lines.c.key, others.c.parent == lines.c.parent)
+        return ~rivals.where(*conditions).exists()
 
     @property
     def _wants_all(self) -> bool:

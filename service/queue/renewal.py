@@ -104,12 +104,12 @@ class Renewal:
                 return
             equal = (computations.c.key == address) & computations.c.state.in_(LIVE)
             others = select(computations.c.id).where(equal, computations.c.id != claim.id)
-            other = connection.execute(others).scalar()
-            if other is None or stored:
+            equal_id = connection.execute(others).scalar()
+            if equal_id is None or stored:
                 connection.execute(update(computations).where(waits).values(**values))
             else:
-                widen_terms(connection, other, row.priority, row.max_cost_s)
-                _join(connection, claim.id, other)
+                widen_terms(connection, equal_id, row.priority, row.max_cost_s)
+                _join(connection, claim.id, equal_id)
         fields = {"computation": claim.id, "former": former.key, "key": claim.key, "program": former.program}
         logger.info("work renewed", **fields)
 

@@ -22,7 +22,7 @@ KEYLESS_CALLER = Holder(name=KEYLESS)
 """The caller of a service without keys."""
 
 LOWER_COST = (
-    "Select a coarser level, fewer positions, loads or samples, of a run a shorter one; or raise the limit."
+    "Select a coarser level, fewer positions, loads or samples, or a shorter run; or raise the limit."
 )
 """Suggestion of a problem whose cost is above its limit."""
 Response = Literal["raw", "document"]
@@ -69,10 +69,10 @@ class Label:
     @classmethod
     def from_row(cls, row: Any) -> Self:
         """Return the label of a row of the job table."""
-        return cls(row.title, tuple(row.tags.split()))
+        return cls(row.title, tuple(row.tags.split()))  # a tag holds no blanks
 
     def columns(self) -> dict[str, str]:
-        """Return the columns of the job table: the title, the title for searches, and one tag a line.
+        """Return the columns of the job table: the title, the title for searches, and one tag per line.
 
         Every tag stands between two line feeds, so that a search for a tag finds whole tags only.
         """
@@ -85,7 +85,10 @@ NO_LABEL = Label()
 
 @dataclass(frozen=True)
 class Delivery:
-    """The form of a result: itself or links in headers (raw), or a JSON object by name of output."""
+    """The form of a result: raw, or a JSON document with an entry for each output.
+
+    Each output is in it by value, or a reference (a link) stands for it, which raw results have in headers.
+    """
 
     response: Response = "raw"
     transmission: Transmission = "value"

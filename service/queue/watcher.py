@@ -10,9 +10,9 @@ from dataclasses import dataclass, field
 from typing import Generic, TypeVar
 
 import structlog
-from sqlalchemy import Engine, func, select
+from sqlalchemy import Engine, case, func, select
 
-from service.queue.job import Job, job_of, jobs_of_all_projects
+from service.queue.job import AHEAD, Job, job_of, jobs_of_all_projects, mark_of
 from service.queue.tables import computations, jobs
 from service.store.database import reading
 from service.store.dialects import dialect_of
@@ -31,9 +31,9 @@ logger = structlog.get_logger(__name__)
 
 @dataclass
 class _Followed(Generic[T]):
-    """A job, the time of its last known change, and its followers."""
+    """A job, the mark of its last known state, and its followers."""
 
-    updated: str
+    mark: str
     followers: list[Follower[T]] = field(default_factory=list)
 
 
@@ -57,9 +57,11 @@ class Watcher(Generic[T]):
         It is called in the watcher's thread. States that follow each other within `REST_S` may be one.
         """
         with self._lock:
-            followed = self._jobs.setdefault(job.id, _Followed(job.updated))
-            # the earlier state of two followers: one may be notified twice, but none misses a change
-            followed.updated = min(followed.updated, job.updated)
+            followed = self._jobs.setdefault(job.id, _Followed(job.mark))
+            if (
+                followed.mark != job.mark
+            ):  # of two followers one may be notified twice, but none misses a change
+                followed.mark = ""
             followed.followers.append(follower)
             self._new = True
             if self._thread is None:
@@ -112,20 +114,21 @@ class Watcher(Generic[T]):
         """Notify the followers of jobs that changed or are gone."""
         self._new = False
         with self._lock:
-            known = {identifier: followed.updated for identifier, followed in self._jobs.items()}
+            known = {identifier: followed.mark for identifier, followed in self._jobs.items()}
         instant = func.coalesce(jobs.c.dismissed, computations.c.updated)
-        statement = select(jobs.c.id, instant).join(computations).where(jobs.c.id.in_(known))
+        ahead = case((jobs.c.dismissed.is_(None), AHEAD))
+        statement = select(jobs.c.id, instant, ahead).join(computations).where(jobs.c.id.in_(known))
         with reading(self._engine) as connection:
-            updated: dict[str, str] = {row[0]: row[1] for row in connection.execute(statement)}
-        changed = [identifier for identifier in updated if updated[identifier] != known[identifier]]
+            marks = {row[0]: mark_of(row[1], row[2]) for row in connection.execute(statement)}
+        changed = [identifier for identifier in marks if marks[identifier] != known[identifier]]
         for job in self._read(changed):
             state = self._show(job)
             with self._lock:
                 if job.id in self._jobs:
-                    self._jobs[job.id].updated = job.updated
+                    self._jobs[job.id].mark = job.mark
                 self._tell([job.id], state)
         with self._lock:
-            gone = known.keys() - updated.keys()
+            gone = known.keys() - marks.keys()
             self._tell(gone, None)
             for identifier in gone:  # its followers are notified of the end once, not at every look
                 self._jobs.pop(identifier, None)

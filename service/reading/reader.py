@@ -37,7 +37,7 @@ MODULES = (
     "lineofaction.gearbox.from_rexs.opened",
     "service.reading.child",
     "service.reading.texts",
-    *filter(find_spec, ["service.reading.sheets"]),  # an instrument
+    *filter(find_spec, ["service.reading.sheets"]),  # an instrument, which may be deleted
     "scipy.optimize",
 )
 """Modules that the warm process imports."""
@@ -63,7 +63,7 @@ class _Children:
     def __init__(self, home: Path, logs: Path) -> None:
         self._home, self._log = home, logs / "reading.log"
         self._launcher = Launcher(WORK, MODULES, logs / "reading_warm.log", logger.warning)
-        self._launching = threading.Lock()
+        self._launching = threading.Lock()  # the launcher and its forked children are for one thread
         self._children: set[Child] = set()
         self._stopping = False
 
@@ -111,7 +111,7 @@ class _Children:
     def _end(self, child: Child) -> Ended:
         """Kill a child and its children, unless it has ended; return its status."""
         child.end_group()
-        while not child.has_exited(_PATIENCE_S):
+        while not child.exits_within(_PATIENCE_S):
             pass
         with self._launching:
             self._children.discard(child)

@@ -28,7 +28,7 @@ class JobEvent(NamedTuple):
     """A state of a job as a server-sent event; it is formatted once for all streams that send it."""
 
     id: str
-    """When the state changed last, RFC 3339: a browser that reconnects names it (``Last-Event-ID``)."""
+    """Mark of the state: a browser that reconnects names it (``Last-Event-ID``)."""
     text: bytes
     """The server-sent event."""
     last: bool

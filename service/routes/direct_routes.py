@@ -30,8 +30,8 @@ class DirectRoute(ScopedRoute):
     It is for queries that come thousands of times a second: dependencies would cost more than the answer.
     """
 
-    def answering(self) -> Callable[[Request], Any]:
-        """Return the coroutine itself."""
+    def admitted_handler(self) -> Callable[[Request], Any]:
+        """Return the coroutine itself, see `ScopedRoute`."""
         handler: Handler = self.endpoint.direct  # type: ignore[attr-defined]
         return handler
 

@@ -47,9 +47,9 @@ class FaultsBody(BaseModel):
 class DraftRoute(ScopedRoute):
     """A route of questions about drafts: faults of the draft are an answer."""
 
-    def answering(self) -> Callable[[Request], Any]:
+    def admitted_handler(self) -> Callable[[Request], Any]:
         """Return the handler that answers with the result or with the faults."""
-        answer = super().answering()
+        answer = super().admitted_handler()
 
         async def answered(request: Request) -> Response:
             try:

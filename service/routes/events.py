@@ -73,8 +73,8 @@ async def job_events(job_id: str, context: Ctx, last_event_id: LastEvent = None)
 def event_of(job: Job, registry: Registry) -> JobEvent:
     """Return the event of a job as it is."""
     document = status_info(job, registry).model_dump_json().encode()
-    text = b"event: status\nid: %s\ndata: %s\n\n" % (job.updated.encode(), document)
-    return JobEvent(job.updated, text, job.ended)
+    text = b"event: status\nid: %s\ndata: %s\n\n" % (job.mark.encode(), document)
+    return JobEvent(job.mark, text, job.ended)
 
 
 class _Stream(StreamingResponse):

@@ -11,10 +11,7 @@ from pydantic import Field
 from starlette.responses import Response
 
 from lineofaction.gearbox.loading import on_demand
-from lineofaction.gearbox.problems import (
-    BadInput,
-    NoSuchJob,
-)
+from lineofaction.gearbox.problems import BadInput, NoSuchJob
 from service.access.holder import Scope
 from service.queue.job import Job, JobFilter, subject_of
 from service.routes.context import Context, Ctx, caller_of
@@ -23,13 +20,7 @@ from service.routes.list_pages import Cursor, Limit, mark_of, page_links
 from service.routes.lists import LISTED, list_answer
 from service.routes.openapi import documented
 from service.routes.scopes import ScopedRoute, needs, require
-from service.schemas.answers import (
-    JobInputs,
-    JobList,
-    JobStatus,
-    Link,
-    StatusInfo,
-)
+from service.schemas.answers import JobInputs, JobList, JobStatus, Link, StatusInfo
 from service.schemas.execute import LabelChange, Tag, Title
 from service.store.results import Mark
 from service.webhooks.calls import Calls

@@ -14,13 +14,7 @@ import structlog
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from structlog.contextvars import bind_contextvars, clear_contextvars
 
-from lineofaction.gearbox.problems import (
-    ServiceError,
-    TooLarge,
-    TooSlow,
-    Unexpected,
-    UnsupportedMediaType,
-)
+from lineofaction.gearbox.problems import ServiceError, TooLarge, TooSlow, Unexpected, UnsupportedMediaType
 from service.access.quotas import quota_fields
 from service.management.request_figures import Metrics
 from service.routes.media_types import CBOR, EVENT_STREAM, RAW, media_type

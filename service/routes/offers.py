@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-from service.routes import (
-    cases,
-    documents,
-    inspections,
-)
+from service.routes import cases, documents, inspections
 
 ROUTERS = (
     cases.router,

@@ -16,12 +16,7 @@ from fastapi import APIRouter, Header, Query, Response
 from pydantic import BaseModel, create_model
 
 from lineofaction.gearbox.loading import on_demand
-from lineofaction.gearbox.problems import (
-    LiveUnavailable,
-    NoSuchProcess,
-    QueueFull,
-    TooManyHeld,
-)
+from lineofaction.gearbox.problems import LiveUnavailable, NoSuchProcess, QueueFull, TooManyHeld
 from lineofaction.gearbox.registry import NETCDF
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from service.access.holder import Holder, Scope

@@ -53,13 +53,13 @@ class ScopedRoute(APIRoute):
         scope: Scope | None = self.endpoint.scope  # type: ignore[attr-defined]
         return scope
 
-    def answering(self) -> Callable[[Request], Any]:
-        """Return the handler of admitted requests."""
+    def admitted_handler(self) -> Callable[[Request], Any]:
+        """Return the handler of requests that `get_route_handler` admits."""
         return super().get_route_handler()
 
     def get_route_handler(self) -> Callable[[Request], Any]:
         """Return the handler that admits callers with the scope."""
-        answer, scope, streams = self.answering(), self.scope, self.endpoint.streams  # type: ignore[attr-defined]
+        answer, scope, streams = self.admitted_handler(), self.scope, self.endpoint.streams  # type: ignore[attr-defined]
         if scope is OPEN_TO_ALL:
             return answer
 

@@ -35,6 +35,7 @@ STATUS: Json = {
     "updated": _INSTANT,
     "progress": 24,
     "remaining_s": 19.0,
+    "ahead": None,
     "stage": "compliance",
     "stage_progress": 40,
     "attempts": 1,

@@ -168,6 +168,11 @@ class StatusInfo(BaseModel):
     remaining_s: float | None = Field(
         default=None, description="Seconds that a running job still needs, by its pace; null: not known yet"
     )
+    ahead: int | None = Field(
+        default=None,
+        ge=0,
+        description="Computations before a waiting job, running ones too; null: it does not wait",
+    )
     stage: str = Field(description="The stage the job is in")
     stage_progress: int = Field(ge=0, le=100, description="Per cent of the stage")
     attempts: int = Field(ge=0, description="Number of starts of the computation")

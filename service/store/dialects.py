@@ -19,9 +19,7 @@ from sqlalchemy import URL, Connection, Engine, NullPool, Table, create_engine, 
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.exc import DBAPIError
 
-from lineofaction.gearbox.problems import (
-    BadInput,
-)
+from lineofaction.gearbox.problems import BadInput
 from service.store.shortages import out_of_files, shortage
 from service.store.writers import writers_of
 

@@ -10,10 +10,7 @@ from sqlalchemy import Engine
 from lineofaction.gearbox.problems import BadInput
 from service.store.database import open_database
 from service.store.deployment import Deployment
-from service.store.files import (
-    DirectoryFiles,
-    ResultFiles,
-)
+from service.store.files import DirectoryFiles, ResultFiles
 from service.store.object_files import Keys, object_files
 from service.store.results import ResultStore
 

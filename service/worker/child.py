@@ -23,14 +23,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from fe_contact.cache_reads import COMPLIANCE_READS
-from host import (
-    cpu_seconds,
-    keep_freed_memory,
-    kill_process_group,
-    lock,
-    lower_priority,
-    peak_memory,
-)
+from host import cpu_seconds, keep_freed_memory, kill_process_group, lock, lower_priority, peak_memory
 from host.children.frames import Frame, read_frame
 from lineofaction.gearbox.loading import on_demand
 from lineofaction.gearbox.problems import ServiceError

@@ -103,8 +103,11 @@ class Worker:
             self._outcome = _outcome(content)
 
     def finish(self) -> Outcome:
-        """End the process group, reap the child and return how it ended."""
-        self._child.has_exited(_LEAVING_S)
+        """End the process group, reap the child and return how it ended.
+
+        An order is executed again after a child that is lost, which counts as no attempt, or has died.
+        """
+        self._child.exits_within(_LEAVING_S)  # waits for a child that ends by itself
         self.kill()
         if self._outcome is not None:
             return self._outcome

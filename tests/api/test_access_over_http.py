@@ -1,10 +1,6 @@
 """A service with keys: nothing without one, nothing about one in what it says."""
 
-from __future__ import annotations
-
-from collections.abc import Iterator
 from contextlib import ExitStack, closing
-from pathlib import Path
 from typing import Any
 
 import httpx2
@@ -12,7 +8,6 @@ import pytest
 import structlog.contextvars
 import structlog.testing
 from fastapi.testclient import TestClient
-from httpx2 import Response
 from running_service import until
 from served_app import served
 from service_fakes import EXECUTION, REGISTRY, bearing
@@ -26,25 +21,25 @@ from service.settings import Settings
 
 
 @pytest.fixture
-def settings(tmp_path: Path) -> Settings:
+def settings(tmp_path):
     return Settings(data_directory=tmp_path / "data")
 
 
 @pytest.fixture
-def secret(settings: Settings) -> str:
+def secret(settings):
     return KeyFile(settings.key_file).add("bench", requests_per_minute=50)
 
 
 @pytest.fixture
-def http(settings: Settings, secret: str) -> Iterator[TestClient]:
+def http(settings, secret):
     with TestClient(create_app(settings, REGISTRY), raise_server_exceptions=False) as found:
         yield found
 
 
-def test_every_path_but_health_readiness_and_the_page_asks_for_a_key(http: TestClient) -> None:
+def test_every_path_but_health_readiness_and_the_page_asks_for_a_key(http):
     paths = {
         (method, path.replace("{", "").replace("}", ""))
-        for path, methods in http.app.openapi()["paths"].items()  # type: ignore[attr-defined]
+        for path, methods in http.app.openapi()["paths"].items()
         for method in methods
     }
     paths |= {("get", f"/{name}") for name in ("openapi.json", "nowhere", "health/", "pages", "page")}
@@ -61,18 +56,18 @@ def test_every_path_but_health_readiness_and_the_page_asks_for_a_key(http: TestC
 @pytest.mark.parametrize(
     "value", ["", "Bearer", "Bearer ", "Basic {}", "{}", "Bearer {}x", "Bearer \xff", "Bearer a,b"]
 )
-def test_what_is_no_key_is_not_taken_for_one(http: TestClient, secret: str, value: str) -> None:
+def test_what_is_no_key_is_not_taken_for_one(http, secret, value):
     answer = http.get("/v1/jobs", headers={"Authorization": value.replace("{}", secret).encode("latin-1")})
     assert answer.status_code == 401
     assert secret not in answer.text
 
 
-def test_the_scheme_may_be_written_in_any_case(http: TestClient, secret: str) -> None:
+def test_the_scheme_may_be_written_in_any_case(http, secret):
     for scheme in ("Bearer", "bearer", "BEARER"):
         assert http.get("/v1/jobs", headers={"Authorization": f"{scheme} {secret}"}).status_code == 200
 
 
-def test_taking_the_last_key_back_opens_nothing(http: TestClient, settings: Settings, secret: str) -> None:
+def test_taking_the_last_key_back_opens_nothing(http, settings, secret):
     assert http.get("/v1/jobs", headers=bearing(secret)).status_code == 200
     KeyFile(settings.key_file).remove("bench")
     assert http.get("/v1/jobs", headers=bearing(secret)).status_code == 401
@@ -81,7 +76,7 @@ def test_taking_the_last_key_back_opens_nothing(http: TestClient, settings: Sett
     assert http.get("/v1/jobs").status_code == 401
 
 
-def test_the_first_key_shuts_a_service_that_was_open(settings: Settings) -> None:
+def test_the_first_key_shuts_a_service_that_was_open(settings):
     with TestClient(create_app(settings, REGISTRY)) as http:
         assert http.get("/v1/jobs").status_code == 200
         secret = KeyFile(settings.key_file).add("late")
@@ -89,7 +84,7 @@ def test_the_first_key_shuts_a_service_that_was_open(settings: Settings) -> None
         assert http.get("/v1/jobs", headers=bearing(secret)).status_code == 200
 
 
-def test_beyond_its_rate_a_key_is_told_when_to_come_again(http: TestClient, secret: str) -> None:
+def test_beyond_its_rate_a_key_is_told_when_to_come_again(http, secret):
     codes = [http.get("/v1/processes", headers=bearing(secret)).status_code for _ in range(60)]
     assert codes[:50] == [200] * 50
     assert 429 in codes
@@ -98,7 +93,7 @@ def test_beyond_its_rate_a_key_is_told_when_to_come_again(http: TestClient, secr
     assert 1 <= int(answer.headers["retry-after"]) <= 2
 
 
-def test_the_log_names_the_key_and_never_holds_it(settings: Settings, secret: str) -> None:
+def test_the_log_names_the_key_and_never_holds_it(settings, secret):
     kept = structlog.testing.LogCapture()
     structlog.configure(processors=[structlog.contextvars.merge_contextvars, kept])
     with TestClient(create_app(settings, REGISTRY)) as http:
@@ -110,10 +105,8 @@ def test_the_log_names_the_key_and_never_holds_it(settings: Settings, secret: st
     assert secret not in str(kept.entries) and "guessed" not in str(kept.entries)
 
 
-def test_the_client_takes_its_key_from_its_caller_or_the_environment(
-    http: TestClient, secret: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def client(key: str | None) -> LineOfActionClient:
+def test_the_client_takes_its_key_from_its_caller_or_the_environment(http, secret, tmp_path, monkeypatch):
+    def client(key):
         return LineOfActionClient("http://testserver", cache_dir=tmp_path, transport=http._transport, key=key)
 
     with client(None) as without, pytest.raises(Unauthorised, match="Authorization"):
@@ -125,11 +118,11 @@ def test_the_client_takes_its_key_from_its_caller_or_the_environment(
         assert found.submit("fake", {"wish": {"text": "table"}}).process == "fake"
 
 
-def test_a_key_has_as_many_unfinished_jobs_as_it_may_and_leaves_room_for_others(settings: Settings) -> None:
+def test_a_key_has_as_many_unfinished_jobs_as_it_may_and_leaves_room_for_others(settings):
     file = KeyFile(settings.key_file)
     few, many = bearing(file.add("few", unfinished_jobs=2)), bearing(file.add("many"))
 
-    def enter(number: float, who: dict[str, str]) -> Response:
+    def enter(number, who):
         wish = {"mode": "hang", "number": number}
         return http.post(EXECUTION, json={"inputs": {"wish": wish}}, headers=who)
 
@@ -151,7 +144,7 @@ def test_a_key_has_as_many_unfinished_jobs_as_it_may_and_leaves_room_for_others(
 # What a key may hold at the same time, and the line that each access leaves in the log.
 
 
-def test_what_is_held_is_counted_by_name_and_given_back() -> None:
+def test_what_is_held_is_counted_by_name_and_given_back():
     held = Usage("streams", in_all=4)
     with held.one("a"), held.one("a"), held.one("b"):
         with pytest.raises(TooManyHeld, match="'a' holds 2 streams, the limit"):
@@ -165,21 +158,21 @@ def test_what_is_held_is_counted_by_name_and_given_back() -> None:
 
 
 @pytest.fixture
-def at(settings: Settings) -> Iterator[str]:
+def at(settings):
     """The address of a service behind a socket that works on nothing."""
     KeyFile(settings.key_file).add("first")
     with served(create_app(settings, REGISTRY, works=False)) as port:
         yield f"http://127.0.0.1:{port}"
 
 
-def test_a_key_holds_as_many_streams_as_it_may_and_leaves_others_theirs(at: str, settings: Settings) -> None:
+def test_a_key_holds_as_many_streams_as_it_may_and_leaves_others_theirs(at, settings):
     file = KeyFile(settings.key_file)
     few, many = bearing(file.add("few", streams=2)), bearing(file.add("many"))
     body = {"inputs": {"wish": {"mode": "hang"}}}
     with httpx2.Client(base_url=at, timeout=60.0) as http, ExitStack() as held:
         events = http.post(EXECUTION, json=body, headers=few).headers["location"] + "/events"
 
-        def listen(who: dict[str, str]) -> ExitStack:
+        def listen(who):
             stream = ExitStack()
             answer = stream.enter_context(http.stream("GET", events, headers=who))
             lines = stream.enter_context(closing(answer.iter_lines()))
@@ -201,7 +194,7 @@ def _taken(http: httpx2.Client, events: str, who: dict[str, str]) -> bool:
         return answer.status_code == 200
 
 
-def test_a_key_holds_as_many_connections_as_it_may(at: str, settings: Settings) -> None:
+def test_a_key_holds_as_many_connections_as_it_may(at, settings):
     file = KeyFile(settings.key_file)
     one, other = bearing(file.add("one", connections=1)), bearing(file.add("other"))
     body = {"inputs": {"wish": {"mode": "hang"}}}
@@ -217,7 +210,7 @@ def test_a_key_holds_as_many_connections_as_it_may(at: str, settings: Settings) 
         until(lambda: http.get("/v1/jobs", headers=one).status_code == 200)
 
 
-def test_every_access_leaves_a_line_and_none_the_key(settings: Settings) -> None:
+def test_every_access_leaves_a_line_and_none_the_key(settings):
     file, kept = KeyFile(settings.key_file), structlog.testing.LogCapture()
     structlog.configure(processors=[structlog.contextvars.merge_contextvars, kept])
     reader = file.add("reader", project="axle", scopes=["read"])
@@ -249,7 +242,7 @@ def test_every_access_leaves_a_line_and_none_the_key(settings: Settings) -> None
     assert not any(secret in str(kept.entries) for secret in (reader, ended, "guessed"))
 
 
-def test_a_key_that_asks_too_often_is_in_the_log_too(settings: Settings) -> None:
+def test_a_key_that_asks_too_often_is_in_the_log_too(settings):
     file, kept = KeyFile(settings.key_file), structlog.testing.LogCapture()
     structlog.configure(processors=[structlog.contextvars.merge_contextvars, kept])
     key = bearing(file.add("bench", requests_per_minute=1))

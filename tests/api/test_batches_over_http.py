@@ -1,10 +1,6 @@
 """Batches: one request, many jobs, one job for all of them; all are entered or none."""
 
-from __future__ import annotations
-
 import json
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -20,14 +16,14 @@ ENDED = ("successful", "failed", "dismissed")
 
 
 @pytest.fixture
-def http(tmp_path: Path) -> Iterator[TestClient]:
+def http(tmp_path):
     settings = Settings(data_directory=tmp_path, workers=2, queue_limit=6)
     with TestClient(create_app(settings, REGISTRY)) as found:
         yield found
 
 
 @pytest.fixture
-def idle(tmp_path: Path) -> TestClient:
+def idle(tmp_path):
     """An app whose scheduler does not run: jobs stay as they are put."""
     return TestClient(create_app(Settings(data_directory=tmp_path, queue_limit=6), REGISTRY))
 
@@ -56,7 +52,7 @@ def count(http: TestClient) -> int:
 
 
 @pytest.mark.law
-def test_a_batch_is_a_job_whose_results_are_those_of_its_jobs_in_order(http: TestClient) -> None:
+def test_a_batch_is_a_job_whose_results_are_those_of_its_jobs_in_order(http):
     texts = ["c", "a", "b"]
     answer = submitted(http, *({"text": text} for text in texts))
     assert answer.status_code == 201
@@ -72,7 +68,7 @@ def test_a_batch_is_a_job_whose_results_are_those_of_its_jobs_in_order(http: Tes
     assert {job["parentID"] for job in children(http, batch["jobID"])} == {batch["jobID"]}
 
 
-def test_each_job_of_a_batch_is_set_apart_from_the_one_before_it(http: TestClient) -> None:
+def test_each_job_of_a_batch_is_set_apart_from_the_one_before_it(http):
     batch = submitted(http, {"text": "a"}, {"text": "b"}, {"text": "b"}).json()
     first, second, third = children(http, batch["jobID"])
     assert first["differences"]["number"] == 0
@@ -85,10 +81,10 @@ def test_each_job_of_a_batch_is_set_apart_from_the_one_before_it(http: TestClien
     assert [job["jobID"] for job in http.get("/v1/jobs").json()["jobs"]] == [batch["jobID"]]
 
 
-def test_jobs_are_differences_from_what_they_share(http: TestClient) -> None:
+def test_jobs_are_differences_from_what_they_share(http):
     batch = submitted(http, {}, {"number": 2.0}, {"text": None}, text="shared", number=1.0).json()["jobID"]
     assert ended(http, batch)["status"] == "successful"
-    submissions = http.app.state.context.submissions  # type: ignore[attr-defined]
+    submissions = http.app.state.context.submissions
     wishes = [json.loads(job.inputs)["wish"] for job in submissions.children(batch)]
     assert [(wish["text"], wish["number"]) for wish in wishes] == [
         ("shared", 1.0),
@@ -97,7 +93,7 @@ def test_jobs_are_differences_from_what_they_share(http: TestClient) -> None:
     ]
 
 
-def test_a_failed_job_is_said_and_the_rest_goes_on(http: TestClient) -> None:
+def test_a_failed_job_is_said_and_the_rest_goes_on(http):
     batch = submitted(http, {"text": "a"}, {"mode": "input"}, {"text": "b"}).json()["jobID"]
     end = ended(http, batch)
     assert (end["status"], end["progress"], end["message"]) == (
@@ -115,11 +111,11 @@ def test_a_failed_job_is_said_and_the_rest_goes_on(http: TestClient) -> None:
     ]
 
 
-def test_equal_jobs_and_those_of_others_share_their_computation(http: TestClient, tmp_path: Path) -> None:
+def test_equal_jobs_and_those_of_others_share_their_computation(http, tmp_path):
     alone = http.post(EXECUTION, json={"inputs": {"wish": {"text": "x"}}}).json()
     batch = submitted(http, {"text": "x"}, {"text": "x"}, {"text": "y"}).json()["jobID"]
     assert ended(http, batch)["status"] == "successful"
-    submissions = http.app.state.context.submissions  # type: ignore[attr-defined]
+    submissions = http.app.state.context.submissions
     jobs = submissions.children(batch)
     assert jobs[0].computation == jobs[1].computation == submissions.find(alone["jobID"]).computation
     assert len({job.id for job in jobs}) == 3
@@ -128,7 +124,7 @@ def test_equal_jobs_and_those_of_others_share_their_computation(http: TestClient
     assert (again["status"], again["progress"]) == ("successful", 100)  # all from the store, at once
 
 
-def test_one_bad_job_keeps_all_out_and_each_is_named(idle: TestClient) -> None:
+def test_one_bad_job_keeps_all_out_and_each_is_named(idle):
     answer = submitted(
         idle, {"text": "a"}, {"mode": "refuse"}, {"number": 11.0}, {"other": 1, "number": -1.0}
     )
@@ -153,13 +149,13 @@ def test_one_bad_job_keeps_all_out_and_each_is_named(idle: TestClient) -> None:
         ({"jobs": [{}]}, "process"),
     ],
 )
-def test_what_is_no_batch_is_refused_by_name(idle: TestClient, body: dict[str, Any], field: str) -> None:
+def test_what_is_no_batch_is_refused_by_name(idle, body, field):
     answer = idle.post("/v1/batches", json=body)
     assert answer.status_code == 422
     assert field in [fault["field"] for fault in answer.json()["errors"]]
 
 
-def test_deep_differences_are_refused_as_others(idle: TestClient) -> None:
+def test_deep_differences_are_refused_as_others(idle):
     deep: Any = 1
     for _ in range(300):
         deep = {"wish": deep}
@@ -167,7 +163,7 @@ def test_deep_differences_are_refused_as_others(idle: TestClient) -> None:
     assert answer.status_code == 422
 
 
-def test_the_limits_count_the_jobs_in_batches(idle: TestClient, tmp_path: Path) -> None:
+def test_the_limits_count_the_jobs_in_batches(idle, tmp_path):
     never = submitted(idle, *({"number": n / 10} for n in range(7)))
     assert (never.status_code, never.json()["errors"][0]["field"]) == (422, "jobs")
     assert submitted(idle, *({"number": n / 10} for n in range(4))).status_code == 201
@@ -180,7 +176,7 @@ def test_the_limits_count_the_jobs_in_batches(idle: TestClient, tmp_path: Path) 
     assert shared.status_code == 201  # two new computations
 
 
-def test_the_limit_of_a_key_counts_the_jobs_in_batches(tmp_path: Path) -> None:
+def test_the_limit_of_a_key_counts_the_jobs_in_batches(tmp_path):
     key = KeyFile(tmp_path / "keys.json").add("bench", unfinished_jobs=3)
     http = TestClient(create_app(Settings(data_directory=tmp_path), REGISTRY))
     http.headers["Authorization"] = f"Bearer {key}"
@@ -191,7 +187,7 @@ def test_the_limit_of_a_key_counts_the_jobs_in_batches(tmp_path: Path) -> None:
     assert submitted(http, {"number": 0.4}).status_code == 429
 
 
-def test_the_same_request_is_the_same_batch(idle: TestClient) -> None:
+def test_the_same_request_is_the_same_batch(idle):
     wishes = [{"number": 0.1}, {"number": 0.2}]
     first, again = submitted(idle, *wishes, name="one"), submitted(idle, *wishes, name="one")
     assert first.json()["jobID"] == again.json()["jobID"] and count(idle) == 1
@@ -201,7 +197,7 @@ def test_the_same_request_is_the_same_batch(idle: TestClient) -> None:
     assert count(idle) == 2
 
 
-def test_dismissal_of_a_batch_is_that_of_its_jobs(http: TestClient) -> None:
+def test_dismissal_of_a_batch_is_that_of_its_jobs(http):
     done = submitted(http, {"text": "kept"}).json()["jobID"]
     ended(http, done)
     alone = http.post(EXECUTION, json={"inputs": {"wish": {"text": "o", "mode": "hang"}}})
@@ -213,18 +209,18 @@ def test_dismissal_of_a_batch_is_that_of_its_jobs(http: TestClient) -> None:
     assert [result["status"] for result in results] == ["successful", "dismissed", "dismissed"]
     assert http.get(alone.headers["location"]).json()["status"] in ("accepted", "running")
     http.delete(alone.headers["location"])
-    counts = http.app.state.context.submissions.counts  # type: ignore[attr-defined]
+    counts = http.app.state.context.submissions.counts
     until(lambda: not {"accepted", "running"} & set(counts()))
 
 
-def test_a_batch_whose_jobs_are_dismissed_one_by_one_ends(http: TestClient) -> None:
+def test_a_batch_whose_jobs_are_dismissed_one_by_one_ends(http):
     batch = submitted(http, {"text": "a"}, {"mode": "hang"}).json()["jobID"]
     http.delete(f"/v1/jobs/{children(http, batch)[1]['jobID']}")
     end = ended(http, batch)
     assert (end["status"], end["message"]) == ("dismissed", "2 of 2 jobs have ended, 1 dismissed.")
 
 
-def test_events_tell_of_the_whole_and_progress_never_falls(http: TestClient) -> None:
+def test_events_tell_of_the_whole_and_progress_never_falls(http):
     batch = submitted(http, {"mode": "slow", "text": "a"}, {"mode": "die_once"}, {"text": "b"}).json()[
         "jobID"
     ]
@@ -236,7 +232,7 @@ def test_events_tell_of_the_whole_and_progress_never_falls(http: TestClient) -> 
     assert states[-1]["status"] == "successful"
 
 
-def test_results_of_a_batch_wait_for_its_last_job(idle: TestClient) -> None:
+def test_results_of_a_batch_wait_for_its_last_job(idle):
     batch = submitted(idle, {"text": "a"}).json()["jobID"]
     answer = idle.get(f"/v1/jobs/{batch}/results")
     assert (answer.status_code, answer.json()["title"]) == (404, "The result is not ready")

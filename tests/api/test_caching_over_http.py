@@ -1,11 +1,8 @@
 """What caches may keep: with keys nothing that is shared, without keys results for ever (RFC 9111)."""
 
-from __future__ import annotations
-
 import shutil
 import socket
 import subprocess
-from collections.abc import Iterator
 from pathlib import Path
 
 import httpx2
@@ -25,7 +22,7 @@ PUBLIC = ("/health", "/ready")  # requested without a key, and as old as the ans
 
 
 @pytest.fixture(scope="module")
-def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[TestClient, dict[str, str]]]:
+def service(tmp_path_factory):
     """A caller of a service that has keys and a result of every kind, and the header with a key."""
     directory = tmp_path_factory.mktemp("kept")
     secret = KeyFile(directory / "keys.json").add("bench")
@@ -56,7 +53,7 @@ def kept_for_its_caller_alone(answer: Response) -> bool:
 
 def paths(client: TestClient) -> list[str]:
     """Return every GET path of the description, of results that are and of some that are not."""
-    described = client.app.openapi()["paths"]  # type: ignore[attr-defined]
+    described = client.app.openapi()["paths"]
     named = [path for path, methods in described.items() if "get" in methods and path not in PUBLIC]
     held = [path.replace("{key}", KEY) for path in named if "{key}" in path and "figures" not in path]
     missing = [path.replace("{key}", ABSENT).replace("{process_id}", "analyze") for path in named]
@@ -64,7 +61,7 @@ def paths(client: TestClient) -> list[str]:
 
 
 @pytest.mark.law
-def test_with_keys_no_shared_cache_keeps_any_answer(service: tuple[TestClient, dict[str, str]]) -> None:
+def test_with_keys_no_shared_cache_keeps_any_answer(service):
     client, bearer = service
     kept, statuses = {}, set()
     for path in paths(client):
@@ -76,9 +73,7 @@ def test_with_keys_no_shared_cache_keeps_any_answer(service: tuple[TestClient, d
     assert {200, 404} <= statuses
 
 
-def test_with_keys_a_known_version_is_confirmed_to_who_may_have_it(
-    service: tuple[TestClient, dict[str, str]],
-) -> None:
+def test_with_keys_a_known_version_is_confirmed_to_who_may_have_it(service):
     client, bearer = service
     path, accept = f"/v1/results/{KEY}", {"Accept": NETCDF}
     first = client.get(path, headers=bearer | accept)
@@ -90,14 +85,14 @@ def test_with_keys_a_known_version_is_confirmed_to_who_may_have_it(
     assert refused.status_code == 401 and directives(refused) == {"no-store"}
 
 
-def test_an_event_stream_is_kept_by_nobody(service: tuple[TestClient, dict[str, str]]) -> None:
+def test_an_event_stream_is_kept_by_nobody(service):
     client, bearer = service
-    job = client.app.state.context.submissions.submit("analyze", KEY, {}, stored=True)  # type: ignore[attr-defined]
+    job = client.app.state.context.submissions.submit("analyze", KEY, {}, stored=True)
     answer = client.get(f"/v1/jobs/{job.id}/events", headers=bearer)
     assert answer.status_code == 200 and "no-store" in directives(answer)
 
 
-def test_what_needs_no_key_holds_nothing_secret(service: tuple[TestClient, dict[str, str]]) -> None:
+def test_what_needs_no_key_holds_nothing_secret(service):
     client, _ = service
     assert [directives(client.get(path)) for path in PUBLIC] == [{"no-store"}] * 2
     for path in ("/", "/page/api.js"):
@@ -105,7 +100,7 @@ def test_what_needs_no_key_holds_nothing_secret(service: tuple[TestClient, dict[
         assert answer.status_code == 200 and directives(answer) == {"no-cache"}
 
 
-def test_without_keys_results_are_kept_for_ever_and_refusals_never(tmp_path: Path) -> None:
+def test_without_keys_results_are_kept_for_ever_and_refusals_never(tmp_path):
     app = create_app(Settings(data_directory=tmp_path), works=False)
     file = tmp_path / "file.nc"
     file.write_text("{}")
@@ -143,7 +138,7 @@ http {{
 
 
 @pytest.fixture
-def cached(tmp_path: Path) -> Iterator[httpx2.Client]:
+def cached(tmp_path):
     """A caller behind a cache, which keeps what RFC 9111 allows it; the service has a result and no keys."""
     if NGINX is None:
         pytest.skip("nginx is not installed")
@@ -174,13 +169,13 @@ def _listens(path: Path) -> bool:
         return caller.connect_ex(str(path)) == 0
 
 
-def test_a_cache_keeps_results_of_an_open_service(cached: httpx2.Client) -> None:
+def test_a_cache_keeps_results_of_an_open_service(cached):
     """So that the test below can fail: this cache does keep what it may."""
     answers = [cached.get(PATH) for _ in range(2)]
     assert [answer.headers["x-cache"] for answer in answers] == ["MISS", "HIT"]
 
 
-def test_a_cache_serves_nobody_what_was_given_for_a_key(cached: httpx2.Client, tmp_path: Path) -> None:
+def test_a_cache_serves_nobody_what_was_given_for_a_key(cached, tmp_path):
     keys = KeyFile(tmp_path / "data" / "keys.json")
     bearer = {"Authorization": f"Bearer {keys.add('bench')}"}
     allowed = [cached.get(PATH, headers=bearer) for _ in range(2)]

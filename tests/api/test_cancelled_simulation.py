@@ -1,9 +1,6 @@
 """A long simulation as a job: progress, memory that does not grow, and an end when it is cancelled."""
 
-from __future__ import annotations
-
 import os
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -26,17 +23,17 @@ SAMPLE_BYTES = 8 * 2 * 5  # displacements and rates of five freedoms
 
 
 @pytest.fixture(scope="module", autouse=True)
-def warm_once() -> None:
+def warm_once():
     """Have a warm process of its own: the worker is found by its parent."""
 
 
 @pytest.fixture
-def data(tmp_path: Path) -> Path:
+def data(tmp_path):
     return tmp_path / "data"
 
 
 @pytest.fixture
-def client(tmp_path: Path, data: Path) -> Iterator[LineOfActionClient]:
+def client(tmp_path, data):
     app = create_app(Settings(data_directory=data))
     scene_file(tmp_path)
     with (
@@ -71,9 +68,7 @@ def written(data: Path) -> float:
 
 
 @pytest.mark.law
-def test_a_long_run_keeps_its_memory_and_ends_when_cancelled(
-    client: LineOfActionClient, tmp_path: Path, data: Path
-) -> None:
+def test_a_long_run_keeps_its_memory_and_ends_when_cancelled(client, tmp_path, data):
     given = read_model(SceneInput, scene_file(tmp_path, duration=DURATION, rate=RATE))
     (mesh,) = given.meshes
     mesh = mesh.model_copy(update={"database_file": None, "database_hash": KEY})

@@ -4,8 +4,6 @@ Every study of the registry has a row in tests/fakes/study_rows.py. Each asks a 
 what all tests here say is said of these answers. What a study refuses is in test_refusals_of_studies.py.
 """
 
-from __future__ import annotations
-
 import csv
 import io
 import json
@@ -14,7 +12,7 @@ import signal
 import struct
 import tomllib
 import uuid
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from contextlib import contextmanager
 from html import escape, unescape
 from pathlib import Path
@@ -29,11 +27,9 @@ from running_service import until
 from small_inputs import small_inputs
 from study_rows import ROWS, StudyRow
 from study_runs import StudyRuns, unmeasured, without_file
-from study_service import Served
 from typer.main import get_command
 from typer.testing import CliRunner
 
-from fe_contact.ste import SteDatabase
 from lineofaction.cli.commands import app
 from lineofaction.gearbox import workbench
 from lineofaction.gearbox.registry import STUDIES, figures_model
@@ -67,14 +63,12 @@ def check_effects_shown(ledger: Mapping[str, Any], printed: str, report: str) ->
 
 
 @pytest.fixture(scope="module")
-def table() -> SteDatabase:
+def table():
     return workbench.analyze(small_inputs("analyze")["case"])
 
 
 @pytest.fixture(scope="module", params=ROWS, ids=str)
-def runs(
-    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, served: Served
-) -> Iterator[StudyRuns]:
+def runs(request, tmp_path_factory, served):
     row: StudyRow = request.param
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(surface_view, "ACROSS", 90)  # pictures of surfaces are coarse
@@ -87,7 +81,7 @@ def verb_writes(runs: StudyRuns) -> None:
         pytest.skip("loa listen takes runs and writes sounds: tests/api/test_housed_runs_over_http.py")
 
 
-def test_every_study_has_a_row_for_each_of_its_subjects() -> None:
+def test_every_study_has_a_row_for_each_of_its_subjects():
     rows = {(row.study, row.subject) for row in ROWS}
     assert rows == {(s.name, subject) for s in STUDIES.values() for subject in s.takes.subject.split(" or ")}
     csv_rows = {row.study for row in ROWS if row.columns is not None}
@@ -97,7 +91,7 @@ def test_every_study_has_a_row_for_each_of_its_subjects() -> None:
 # The same figures each way.
 
 
-def test_figures_are_in_the_units_of_their_names(runs: StudyRuns, table: SteDatabase) -> None:
+def test_figures_are_in_the_units_of_their_names(runs, table):
     figures, result = runs.python.figures, runs.python.result
     pairs = list(runs.row.witness(figures, result, table))
     assert len(pairs) >= 2
@@ -108,7 +102,7 @@ def test_figures_are_in_the_units_of_their_names(runs: StudyRuns, table: SteData
             assert told == expected
 
 
-def test_the_verb_prints_the_figures_of_python_as_json(runs: StudyRuns) -> None:
+def test_the_verb_prints_the_figures_of_python_as_json(runs):
     verb_writes(runs)
     printed, figures = runs.printed, without_file(runs.python.figures)
     assert unmeasured(without_file(printed), runs.row.own) == unmeasured(figures, runs.row.own)
@@ -116,7 +110,7 @@ def test_the_verb_prints_the_figures_of_python_as_json(runs: StudyRuns) -> None:
     assert isinstance(printed["warnings"], list)
 
 
-def test_a_job_has_the_figures_of_python(runs: StudyRuns) -> None:
+def test_a_job_has_the_figures_of_python(runs):
     told, figures = runs.job.figures, without_file(runs.python.figures)
     assert unmeasured(without_file(told), runs.row.own) == unmeasured(figures, runs.row.own)
     check_declared(runs.study.kind, told)
@@ -125,8 +119,8 @@ def test_a_job_has_the_figures_of_python(runs: StudyRuns) -> None:
     assert told["warnings"] == [*runs.job.status["warnings"], *own][: len(told["warnings"])]
 
 
-def test_measured_times_are_there(runs: StudyRuns) -> None:
-    def times(value: Any) -> Iterator[float]:
+def test_measured_times_are_there(runs):
+    def times(value):
         inner = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
         for entry in inner:
             yield from times(entry)
@@ -226,7 +220,7 @@ def headlines_shown(page: Page, text: str) -> None:
         assert headline.name in shown and headline.value in shown
 
 
-def test_every_ending_of_the_registry_says_the_same(runs: StudyRuns) -> None:
+def test_every_ending_of_the_registry_says_the_same(runs):
     verb_writes(runs)
     for ending in runs.study.endings:
         file, printed = runs.written(ending)
@@ -234,7 +228,7 @@ def test_every_ending_of_the_registry_says_the_same(runs: StudyRuns) -> None:
         assert str(file) in printed or runs.study.folder
 
 
-def test_the_terminal_shows_tables_headlines_and_files(runs: StudyRuns) -> None:
+def test_the_terminal_shows_tables_headlines_and_files(runs):
     verb_writes(runs)
     shown = presentation_of(runs.study)
     file, printed = runs.written(".nc")
@@ -257,7 +251,7 @@ def test_the_terminal_shows_tables_headlines_and_files(runs: StudyRuns) -> None:
         assert any(re.match(words, line) for line in lines[:4]), lines[:4]
 
 
-def test_strict_ends_by_whether_there_are_warnings(runs: StudyRuns, tmp_path: Path) -> None:
+def test_strict_ends_by_whether_there_are_warnings(runs, tmp_path):
     """Of the question, and of one whose subject is implausible; files carry what is printed."""
     verb_writes(runs)
     assert runs.printed  # the result that both are told of
@@ -281,7 +275,7 @@ def implausible(runs: StudyRuns) -> Any:
     return runs.subject | {"pair": runs.subject["pair"] | {"pinion": relieved}}
 
 
-def test_the_help_says_what_every_option_is_and_has_an_example(runs: StudyRuns) -> None:
+def test_the_help_says_what_every_option_is_and_has_an_example(runs):
     command = LOA.get_command(Context(LOA), runs.study.name)
     text = CliRunner().invoke(app, [runs.study.name, "--help"], terminal_width=400).stdout
     told = "".join(text.split())
@@ -299,17 +293,15 @@ def test_the_help_says_what_every_option_is_and_has_an_example(runs: StudyRuns) 
 # What can go wrong by the verb.
 
 
-def test_an_interrupted_verb_says_so_and_leaves_no_file(
-    runs: StudyRuns, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_interrupted_verb_says_so_and_leaves_no_file(runs, monkeypatch):
     """It reports progress, and Ctrl-C is heeded there; who can end with the best so far writes that."""
     verb_writes(runs)
     own = {name for name, _ in runs.study.stages}
     seen: list[str] = []
 
     @contextmanager
-    def interrupting(_stages: object) -> Iterator[Callable[[str, float], None]]:
-        def report(stage: str, _fraction: float) -> None:
+    def interrupting(_stages):
+        def report(stage, _fraction):
             seen.append(stage)
             if stage in own and seen.count(stage) == 1:
                 signal.raise_signal(signal.SIGINT)
@@ -329,9 +321,7 @@ def test_an_interrupted_verb_says_so_and_leaves_no_file(
         assert done.stdout == "" and not list(runs.folder.glob("stopped*"))
 
 
-def test_outputs_that_cannot_be_are_refused_before_the_work(
-    runs: StudyRuns, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_outputs_that_cannot_be_are_refused_before_the_work(runs, monkeypatch):
     verb_writes(runs)
     monkeypatch.setattr(runs.study.run, "compute", None)  # called: a defect, exit code 5
     for name in ("x.odd", "no/such/x.nc"):
@@ -343,7 +333,7 @@ def test_outputs_that_cannot_be_are_refused_before_the_work(
         assert not (runs.folder / name).exists()
 
 
-def test_another_kind_of_file_is_refused_with_what_it_holds(runs: StudyRuns, tmp_path: Path) -> None:
+def test_another_kind_of_file_is_refused_with_what_it_holds(runs, tmp_path):
     verb_writes(runs)
     if " or " in runs.study.takes.subject:
         return
@@ -360,7 +350,7 @@ def test_another_kind_of_file_is_refused_with_what_it_holds(runs: StudyRuns, tmp
 # The job.
 
 
-def test_a_job_is_served_as_figures_as_its_file_and_as_a_report(runs: StudyRuns) -> None:
+def test_a_job_is_served_as_figures_as_its_file_and_as_a_report(runs):
     job, http = runs.job, runs.served.http
     figures = figures_model(runs.study.kind).model_validate_json(json.dumps(job.figures))
     runs.served.has_figures_and_file(runs.study.kind, figures, job.status["jobID"])
@@ -378,14 +368,14 @@ def test_a_job_is_served_as_figures_as_its_file_and_as_a_report(runs: StudyRuns)
         assert told == [(line.name, line.value) for line in shown.headlines]
 
 
-def test_its_process_is_listed_and_described(runs: StudyRuns) -> None:
+def test_its_process_is_listed_and_described(runs):
     name, http = runs.study.name, runs.served.http
     assert name in [process["id"] for process in http.get("/v1/processes").json()["processes"]]
     inputs = http.get(f"/v1/processes/{name}").json()["inputs"]
     assert set(inputs) == {*runs.study.takes.subject.split(" or "), *runs.study.inputs.model_fields}
 
 
-def test_progress_goes_through_the_stages_and_never_falls(runs: StudyRuns) -> None:
+def test_progress_goes_through_the_stages_and_never_falls(runs):
     stages = default_registry()[runs.study.name].stages
     declared = [stage.name for stage in stages]
     reported = list(dict.fromkeys(stage_name(stage).partition(",")[0] for stage, _ in runs.python.reported))
@@ -402,7 +392,7 @@ def test_progress_goes_through_the_stages_and_never_falls(runs: StudyRuns) -> No
     assert runs.job.status["processID"] == runs.study.name
 
 
-def test_the_same_question_is_one_result_however_it_is_put(runs: StudyRuns) -> None:
+def test_the_same_question_is_one_result_however_it_is_put(runs):
     """Defaults written out, and another order of names; with a key the same request is one job."""
     varied = {name: value for name, value in runs.body.items() if name != runs.row.subject}
     whole = runs.study.inputs.model_validate_json(json.dumps(varied)).model_dump(mode="json")
@@ -425,7 +415,7 @@ def changed(runs: StudyRuns) -> Any:
     return runs.subject | {"loads": [runs.subject["loads"][0] | {"torque_n_m": [0.75]}]}
 
 
-def test_a_dismissed_job_has_no_result(runs: StudyRuns) -> None:
+def test_a_dismissed_job_has_no_result(runs):
     http = runs.served.http
     entered = runs.execute({**runs.body, runs.row.subject: changed(runs)})
     assert (entered.status_code, entered.json()["status"]) == (201, "accepted"), entered.text
@@ -434,12 +424,12 @@ def test_a_dismissed_job_has_no_result(runs: StudyRuns) -> None:
     gone = http.get(f"{place}/results")
     assert (gone.status_code, gone.headers["content-type"]) == (410, "application/problem+json")
     assert gone.json()["type"].endswith("job-dismissed")
-    counts = http.app.state.context.submissions.counts  # type: ignore[attr-defined]
+    counts = http.app.state.context.submissions.counts
     until(lambda: not {"accepted", "running"} & set(counts()))
     assert http.get(place).json()["status"] == "dismissed"
 
 
-def test_the_client_reads_the_result_that_python_has(runs: StudyRuns) -> None:
+def test_the_client_reads_the_result_that_python_has(runs):
     client, result = runs.served.client, runs.python.result
     process = getattr(client, runs.study.package)
     further = {"run": runs.body["run"]} if runs.study.name == "listen" else {}

@@ -1,7 +1,5 @@
 """Every operation against every caller that may not: of another project, no scope, expired, revoked."""
 
-from __future__ import annotations
-
 import json
 import tempfile
 from collections.abc import Iterator
@@ -106,7 +104,7 @@ class Two:
 
 
 @pytest.fixture(scope="module")
-def two() -> Any:
+def two():
     """The service with keys of two projects, and one key of each that is refused."""
     rights = {
         "owner": {"project": "axle"},
@@ -116,7 +114,7 @@ def two() -> Any:
         "revoked": {"project": "axle"},
     }
     rights |= {f"no {s}": {"project": "axle", "scopes": [o for o in Scope if o != s]} for s in Scope}
-    keys = {who: _keys.add(who.replace(" ", "-"), **of) for who, of in rights.items()}  # type: ignore[arg-type]
+    keys = {who: _keys.add(who.replace(" ", "-"), **of) for who, of in rights.items()}
     _keys.remove("revoked")
     _let_expire("expired")
     with TestClient(APP, raise_server_exceptions=False) as http:
@@ -136,26 +134,26 @@ def _let_expire(name: str) -> None:
     _settings.key_file.write_text(json.dumps(content))
 
 
-def test_every_route_says_what_it_needs() -> None:
+def test_every_route_says_what_it_needs():
     assert len(ROUTES) > 35
     assert all(isinstance(walked.route, ScopedRoute) for walked in ROUTES)
     assert {walked.route.scope for walked in ROUTES} == {*Scope, OPEN_TO_ALL}
 
 
-def test_a_route_that_says_nothing_cannot_be_defined() -> None:
+def test_a_route_that_says_nothing_cannot_be_defined():
     from fastapi import APIRouter  # noqa: PLC0415
 
     with pytest.raises(AttributeError, match="scope"):
         APIRouter(route_class=ScopedRoute).get("/forgotten")(lambda: None)
 
 
-def test_what_is_open_to_all_is_what_no_key_is_asked_for() -> None:
+def test_what_is_open_to_all_is_what_no_key_is_asked_for():
     open_to_all = {walked.path for walked in ROUTES if walked.route.scope is OPEN_TO_ALL}
     assert open_to_all == {*OPEN_PATHS, f"{OPEN_FOLDER}{{name}}"}
 
 
 @pytest.mark.law
-def test_the_description_names_the_scopes() -> None:
+def test_the_description_names_the_scopes():
     document = APP.openapi()
     for walked in ROUTES:
         operation = document["paths"].get(walked.path, {}).get(walked.method.lower())
@@ -170,7 +168,7 @@ def test_the_description_names_the_scopes() -> None:
 
 @pytest.mark.law
 @pytest.mark.parametrize("walked", CLOSED, ids=str)
-def test_a_missing_scope_is_refused_and_named(two: Two, walked: WalkedRoute) -> None:
+def test_a_missing_scope_is_refused_and_named(two, walked):
     scope = walked.route.scope
     refused = two.send(f"no {scope}", walked)
     assert (refused.status_code, refused.json()["type"]) == (403, MissingScope.type)
@@ -181,7 +179,7 @@ def test_a_missing_scope_is_refused_and_named(two: Two, walked: WalkedRoute) -> 
 
 
 @pytest.mark.parametrize("walked", CLOSED, ids=str)
-def test_an_expired_and_a_revoked_key_are_refused(two: Two, walked: WalkedRoute) -> None:
+def test_an_expired_and_a_revoked_key_are_refused(two, walked):
     expired, revoked = two.send("expired", walked), two.send("revoked", walked)
     assert (expired.status_code, expired.json()["type"]) == (401, KeyExpired.type)
     assert "has expired" in expired.json()["detail"]
@@ -194,7 +192,7 @@ def test_an_expired_and_a_revoked_key_are_refused(two: Two, walked: WalkedRoute)
 
 @pytest.mark.parametrize("who", ["stranger", "anybody"])
 @pytest.mark.parametrize("walked", CLOSED, ids=str)
-def test_nothing_of_another_project_is_found(two: Two, walked: WalkedRoute, who: str) -> None:
+def test_nothing_of_another_project_is_found(two, walked, who):
     """Whatever its owner gets: a stranger gets what there is of no such thing, to the letter."""
     found, refused = two.send("owner", walked), two.send(who, walked)
     nothing = two.send(who, walked, job=NO_JOB, key=NO_KEY)
@@ -211,7 +209,7 @@ def _without(answer: Response, job: str, key: str) -> str:
     return answer.text.replace(job, "JOB").replace(key, "KEY")
 
 
-def test_lists_show_what_is_the_callers(two: Two) -> None:
+def test_lists_show_what_is_the_callers(two):
     """The walk above proves nothing of lists that are empty anyway."""
     lists = [walked for walked in CLOSED if walked.route.name in ("list_jobs", "list_databases")]
     shown = [two.send("owner", walked).text for walked in lists]
@@ -221,7 +219,7 @@ def test_lists_show_what_is_the_callers(two: Two) -> None:
         assert two.send("newcomer", walked).json()[field] == []
 
 
-def test_a_report_compares_nothing_with_another_projects(two: Two) -> None:
+def test_a_report_compares_nothing_with_another_projects(two):
     APP.state.context.within("drum").store.put(NO_KEY, "database", _table("other.nc"))
     (walked,) = [walked for walked in CLOSED if walked.path == "/v1/results/{key}/figures"]
     headers = {"Authorization": f"Bearer {two.keys['stranger']}"}
@@ -235,7 +233,7 @@ def _table(name: str) -> Path:
     return file
 
 
-def test_a_scene_takes_no_table_of_another_project(two: Two) -> None:
+def test_a_scene_takes_no_table_of_another_project(two):
     """Checked by the worker too: `tests/unit/service/test_projects.py`."""
     from lineofaction.gearbox.problems import BadInput  # noqa: PLC0415
     from lineofaction.gearbox.schemas.meshes import MeshInput  # noqa: PLC0415
@@ -247,17 +245,17 @@ def test_a_scene_takes_no_table_of_another_project(two: Two) -> None:
         _check_source("mesh", mesh, APP.state.context.within("drum").store)
 
 
-def test_readiness_tells_nobody_how_much_there_is(two: Two) -> None:
+def test_readiness_tells_nobody_how_much_there_is(two):
     assert two.http.get("/ready").json() == {"status": "ready"}
 
 
-def test_a_job_of_others_in_the_project_is_theirs_to_dismiss_or_the_operators(two: Two) -> None:
+def test_a_job_of_others_in_the_project_is_theirs_to_dismiss_or_the_operators(two):
     headers = {
         who: {"Authorization": f"Bearer {two.keys[who]}"} for who in ("owner", "no operate", "no dismiss")
     }
     body = {"inputs": {"wish": {"mode": "hang"}}}
 
-    def enter(who: str) -> str:
+    def enter(who):
         return str(two.http.post(EXECUTION, json=body, headers=headers[who]).headers["location"])
 
     theirs, own = enter("owner"), enter("no operate")

@@ -1,11 +1,7 @@
 """Databases as resources: metadata and file of a real table; force queries: test_queries_over_http.py."""
 
-from __future__ import annotations
-
 import base64
 import hashlib
-from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from fastapi.testclient import TestClient
@@ -22,7 +18,7 @@ NETCDF = {"Accept": "application/x-netcdf"}
 
 
 @pytest.fixture
-def client(tmp_path: Path) -> Iterator[TestClient]:
+def client(tmp_path):
     app = create_app(Settings(data_directory=tmp_path))
     file = tmp_path / "table.nc"
     small_table().to_netcdf(file)
@@ -31,7 +27,7 @@ def client(tmp_path: Path) -> Iterator[TestClient]:
         yield found
 
 
-def test_the_file_is_the_table_and_its_digest_is_told(client: TestClient, tmp_path: Path) -> None:
+def test_the_file_is_the_table_and_its_digest_is_told(client, tmp_path):
     answer = client.get(f"/v1/results/{KEY}", headers=NETCDF)
     digest = base64.b64encode(hashlib.sha256(answer.content).digest()).decode()
     assert answer.headers["content-digest"] == f"sha-256=:{digest}:"
@@ -40,7 +36,7 @@ def test_the_file_is_the_table_and_its_digest_is_told(client: TestClient, tmp_pa
     assert SteDatabase.from_netcdf(file).identical(small_table())
 
 
-def test_the_kind_is_that_of_the_store(client: TestClient, tmp_path: Path) -> None:
+def test_the_kind_is_that_of_the_store(client, tmp_path):
     assert client.get(f"/v1/results/{KEY}").headers["result-kind"] == "database"
     wire = client._transport
     local = LineOfActionClient("http://testserver", cache_dir=tmp_path / "cache", transport=wire)
@@ -50,7 +46,7 @@ def test_the_kind_is_that_of_the_store(client: TestClient, tmp_path: Path) -> No
     assert kind == "database" and SteDatabase.from_netcdf(file).identical(small_table())
 
 
-def test_metadata_is_the_default_and_in_boundary_units(client: TestClient) -> None:
+def test_metadata_is_the_default_and_in_boundary_units(client):
     answer = client.get(f"/v1/results/{KEY}").json()
     table = small_table()
     assert answer["hash"] == KEY
@@ -62,8 +58,8 @@ def test_metadata_is_the_default_and_in_boundary_units(client: TestClient) -> No
     )
 
 
-def test_a_damaged_table_is_refused_not_served(client: TestClient) -> None:
-    store = client.app.state.context.store  # type: ignore[attr-defined]
+def test_a_damaged_table_is_refused_not_served(client):
+    store = client.app.state.context.store
     path = store.verified(KEY, "database").path
     path.write_bytes(path.read_bytes()[:-1] + b"?")
     answer = client.get(f"/v1/results/{KEY}", headers=NETCDF)
@@ -71,5 +67,5 @@ def test_a_damaged_table_is_refused_not_served(client: TestClient) -> None:
     assert client.get(f"/v1/results/{KEY}", headers=NETCDF).status_code == 404
 
 
-def test_effects_are_listed(client: TestClient) -> None:
+def test_effects_are_listed(client):
     assert "corner_contact" in [effect["name"] for effect in client.get("/v1/effects").json()]

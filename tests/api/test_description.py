@@ -1,7 +1,5 @@
 """The description of the API: what a generator, a linter and a reader expect of it."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess
@@ -13,7 +11,6 @@ from typing import Any
 
 import pytest
 from described_api import DESCRIPTION
-from fastapi.dependencies.models import Dependant
 from fastapi.routing import APIRoute
 
 from lineofaction.gearbox import problems
@@ -51,25 +48,25 @@ RULES = {
 
 
 @pytest.mark.law
-def test_it_is_openapi() -> None:
+def test_it_is_openapi():
     from openapi_spec_validator import OpenAPIV31SpecValidator  # noqa: PLC0415 (a second that each worker would pay)
 
     assert [error.message for error in OpenAPIV31SpecValidator(DESCRIPTION).iter_errors()] == []
 
 
-def test_operations_are_named_by_words_and_processes_by_their_names() -> None:
+def test_operations_are_named_by_words_and_processes_by_their_names():
     assert len(OPERATIONS) == sum(len(methods) for methods in DESCRIPTION["paths"].values())
     assert all(name.isidentifier() and name.islower() and "v1" not in name for name in OPERATIONS)
     assert {name.replace("-", "_") for name in default_registry()} <= set(OPERATIONS)
 
 
-def test_every_tag_is_explained() -> None:
+def test_every_tag_is_explained():
     used = {tag for operation in OPERATIONS.values() for tag in operation["tags"]}
     explained = {tag["name"]: tag["description"] for tag in DESCRIPTION["tags"]}
     assert used == set(explained) and all(explained.values())
 
 
-def test_every_operation_says_its_refusals() -> None:
+def test_every_operation_says_its_refusals():
     for name, operation in OPERATIONS.items():
         closed = {"401", "429"} if operation.get("security") != [] else set()
         body = {"413", "415", "422"} if "requestBody" in operation else set()
@@ -77,7 +74,7 @@ def test_every_operation_says_its_refusals() -> None:
         assert always | closed | body <= set(operation["responses"]), name
 
 
-def test_every_answer_says_its_headers() -> None:
+def test_every_answer_says_its_headers():
     components = DESCRIPTION["components"]
     for name, operation in OPERATIONS.items():
         for status, response in operation["responses"].items():
@@ -86,7 +83,7 @@ def test_every_answer_says_its_headers() -> None:
             assert expected <= set(entry["headers"]) <= set(components["headers"]), (name, status)
 
 
-def test_a_problem_that_says_when_to_try_again_has_a_status_that_does() -> None:
+def test_a_problem_that_says_when_to_try_again_has_a_status_that_does():
     kinds = [kind for kind in vars(problems).values() if isinstance(kind, type)]
     later = {
         kind.status for kind in kinds if issubclass(kind, ServiceError) and kind.retry_after_s is not None
@@ -94,7 +91,7 @@ def test_a_problem_that_says_when_to_try_again_has_a_status_that_does() -> None:
     assert later and all("Retry-After" in OF_STATUS[status] for status in later)
 
 
-def test_a_job_leads_to_its_results() -> None:
+def test_a_job_leads_to_its_results():
     executions = [OPERATIONS[name.replace("-", "_")] for name in default_registry()]
     for operation in (*executions, OPERATIONS["job_status"], OPERATIONS["dismiss_job"]):
         (answer,) = (entry for status, entry in operation["responses"].items() if status in ("200", "201"))
@@ -104,7 +101,7 @@ def test_a_job_leads_to_its_results() -> None:
             assert link["parameters"] == {parameter["name"]: "$response.body#/jobID"}
 
 
-def test_results_are_typed_by_process() -> None:
+def test_results_are_typed_by_process():
     content = OPERATIONS["job_results"]["responses"]["200"]["content"]
     assert list(content) == ["application/json", "application/x-netcdf"]
     typed = {entry["$ref"].rpartition("/")[2] for entry in content["application/json"]["schema"]["anyOf"]}
@@ -126,11 +123,11 @@ def linted(tmp_path: Path, linter: str, *options: str) -> str:
 
 
 @pytest.mark.nightly  # half a minute; what it asks for beyond the specification is tested by name
-def test_spectral_has_nothing_to_say(tmp_path: Path) -> None:
+def test_spectral_has_nothing_to_say(tmp_path):
     assert linted(tmp_path, "spectral", "--ruleset", "rules.json", "--fail-severity", "warn") == ""
 
 
-def test_redocly_finds_no_error(tmp_path: Path) -> None:
+def test_redocly_finds_no_error(tmp_path):
     assert linted(tmp_path, "redocly") == ""
 
 
@@ -178,7 +175,7 @@ def untyped(schema: dict[str, Any], where: str, met: set[str]) -> Iterator[str]:
             yield from untyped(schema[kind], f"{where}{mark}", met)
 
 
-def test_answers_are_typed_but_for_what_others_define() -> None:
+def test_answers_are_typed_but_for_what_others_define():
     met: set[str] = set()
     places = [
         place
@@ -193,10 +190,10 @@ def test_answers_are_typed_but_for_what_others_define() -> None:
     assert len(met) > 30 and sorted(places) == sorted(OPEN)
 
 
-def test_no_operation_needs_a_thread_for_what_it_depends_on() -> None:
+def test_no_operation_needs_a_thread_for_what_it_depends_on():
     """A dependency that is no coroutine costs one, for which the loop waits beside busy threads."""
 
-    def calls(dependant: Dependant) -> Iterator[object]:
+    def calls(dependant):
         for dependency in dependant.dependencies:
             yield dependency.call
             yield from calls(dependency)

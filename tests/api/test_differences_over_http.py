@@ -1,9 +1,5 @@
 """Differences of jobs from those before them: of the same caller and process, on each database."""
 
-from __future__ import annotations
-
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -22,7 +18,7 @@ Json = dict[str, Any]
 
 
 @pytest.fixture
-def client(tmp_path: Path, database_url: str | None) -> Iterator[TestClient]:
+def client(tmp_path, database_url):
     """A client of an app whose scheduler does not run, on each database."""
     app = create_app(Settings(data_directory=tmp_path, database_url=database_url))
     yield TestClient(app)
@@ -34,7 +30,7 @@ def entered(client: TestClient, process: str = "analyze", relief: float = 0.0, *
     body = {"inputs": {"case": CASE | {"pair": CASE["pair"] | {"pinion": pinion}}}}
     answer = client.post(f"/v1/processes/{process}/execution", json=body, headers=headers)
     assert answer.status_code == 201, answer.text
-    return answer.json()  # type: ignore[no-any-return]
+    return answer.json()
 
 
 def relieved(before: float, value: float) -> list[Json]:
@@ -42,7 +38,7 @@ def relieved(before: float, value: float) -> list[Json]:
 
 
 @pytest.mark.law
-def test_a_job_is_compared_with_the_one_before_of_its_process(client: TestClient) -> None:
+def test_a_job_is_compared_with_the_one_before_of_its_process(client):
     first = entered(client, relief=10.0)
     entered(client, "flank", relief=30.0)
     second, third = entered(client, relief=20.0), entered(client, relief=20.0)
@@ -53,7 +49,7 @@ def test_a_job_is_compared_with_the_one_before_of_its_process(client: TestClient
     assert {job["subject"] for job in listed} == {"20/20, module 4 mm, up to 400 N m"}
 
 
-def test_the_first_job_is_compared_with_the_defaults(client: TestClient) -> None:
+def test_the_first_job_is_compared_with_the_defaults(client):
     first = entered(client, relief=10.0)["differences"]
     assert first["since"] is None
     stated = {difference["field"]: difference["value"] for difference in first["first"]}
@@ -63,14 +59,14 @@ def test_the_first_job_is_compared_with_the_defaults(client: TestClient) -> None
     assert all(difference["before"] is None for difference in first["first"])
 
 
-def test_differences_outlast_the_job_before(client: TestClient) -> None:
+def test_differences_outlast_the_job_before(client):
     first, second = entered(client), entered(client, relief=20.0)
-    with writing(client.app.state.context.engine) as connection:  # type: ignore[attr-defined]
+    with writing(client.app.state.context.engine) as connection:
         connection.execute(delete(jobs).where(jobs.c.id == first["jobID"]))
     assert client.get(f"/v1/jobs/{second['jobID']}").json()["differences"] == second["differences"]
 
 
-def test_callers_are_compared_with_their_own_jobs(tmp_path: Path, client: TestClient) -> None:
+def test_callers_are_compared_with_their_own_jobs(tmp_path, client):
     keys = {name: KeyFile(tmp_path / "keys.json").add(name) for name in ("ann", "ben")}
     of = {name: {"Authorization": f"Bearer {key}"} for name, key in keys.items()}
     entered(client, relief=10.0, **of["ann"])
@@ -78,7 +74,7 @@ def test_callers_are_compared_with_their_own_jobs(tmp_path: Path, client: TestCl
     assert entered(client, relief=20.0, **of["ann"])["differences"]["first"] == relieved(10.0, 20.0)
 
 
-def test_the_client_has_them(client: TestClient, tmp_path: Path) -> None:
+def test_the_client_has_them(client, tmp_path):
     entered(client, relief=10.0)
     entered(client, relief=20.0)
     found = LineOfActionClient("http://testserver", cache_dir=tmp_path / "c", transport=client._transport)

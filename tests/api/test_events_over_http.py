@@ -1,7 +1,5 @@
 """Server-sent events: the status now and at every change, the final one last, a bounded number of streams."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 from collections.abc import Callable, Coroutine
@@ -10,7 +8,6 @@ from functools import partial
 from itertools import pairwise
 from typing import Any
 
-import pytest
 from fastapi.testclient import TestClient
 from running_service import until
 from service_fakes import EXECUTION
@@ -29,7 +26,7 @@ def documents(text: str) -> list[dict[str, Any]]:
     return [json.loads(block.partition("data: ")[2]) for block in blocks]
 
 
-def test_the_stream_tells_every_change_once_and_ends_with_the_job(client: TestClient) -> None:
+def test_the_stream_tells_every_change_once_and_ends_with_the_job(client):
     location = execute(client, text="table")
     answer = client.get(f"{location}/events")
     told = documents(answer.text)
@@ -41,15 +38,13 @@ def test_the_stream_tells_every_change_once_and_ends_with_the_job(client: TestCl
     assert all(one != other for one, other in pairwise(told))
 
 
-def test_who_comes_after_the_end_gets_the_final_state(client: TestClient) -> None:
+def test_who_comes_after_the_end_gets_the_final_state(client):
     location = execute(client, text="table")
     first = documents(client.get(f"{location}/events").text)
     assert documents(client.get(f"{location}/events").text) == first[-1:]
 
 
-def test_who_names_the_last_event_is_not_sent_it_again(
-    client: TestClient, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_who_names_the_last_event_is_not_sent_it_again(client, monkeypatch):
     monkeypatch.setattr(events, "HEARTBEAT_S", 0.05)
     location = execute(client, mode="hang")
     until(lambda: client.get(location).json()["stage_progress"] > 0)  # nothing more happens by itself
@@ -59,7 +54,7 @@ def test_who_names_the_last_event_is_not_sent_it_again(
     assert [status["status"] for status in documents(sent.decode())] == ["dismissed"]
 
 
-def test_a_browser_that_has_the_final_event_is_told_to_connect_no_more(client: TestClient) -> None:
+def test_a_browser_that_has_the_final_event_is_told_to_connect_no_more(client):
     location = execute(client, text="table")
     text = client.get(f"{location}/events").text
     last = text.rpartition("id: ")[2].partition("\n")[0]
@@ -68,22 +63,22 @@ def test_a_browser_that_has_the_final_event_is_told_to_connect_no_more(client: T
     assert client.get(f"{location}/events", headers={"Last-Event-ID": "another"}).status_code == 200
 
 
-def test_a_service_that_stops_ends_its_streams(client: TestClient) -> None:
+def test_a_service_that_stops_ends_its_streams(client):
     location = execute(client, mode="hang")
     until(lambda: client.get(location).json()["stage_progress"] > 0)
-    stop = client.app.state.context.stop_waiting  # type: ignore[attr-defined]
+    stop = client.app.state.context.stop_waiting
     sent = _apart(_listen_and_leave(client.app, f"{location}/events", b"never", after=stop))
     assert documents(sent.decode())[-1]["status"] in ("accepted", "running")
     client.delete(location)
 
 
-def test_an_unknown_job_has_no_stream(client: TestClient) -> None:
+def test_an_unknown_job_has_no_stream(client):
     answer = client.get("/v1/jobs/nothing/events")
     assert (answer.status_code, answer.headers["content-type"]) == (404, "application/problem+json")
 
 
-def test_streams_are_bounded_and_given_back(client: TestClient) -> None:
-    streams = client.app.state.context.streams  # type: ignore[attr-defined]
+def test_streams_are_bounded_and_given_back(client):
+    streams = client.app.state.context.streams
     location = execute(client, text="table")
     streams.maximum = 1
     assert client.get(f"{location}/events").status_code == 200
@@ -95,9 +90,9 @@ def test_streams_are_bounded_and_given_back(client: TestClient) -> None:
     assert client.get(f"{location}/events").status_code == 200
 
 
-def test_a_caller_who_leaves_frees_the_stream_while_the_job_goes_on(client: TestClient) -> None:
+def test_a_caller_who_leaves_frees_the_stream_while_the_job_goes_on(client):
     location = execute(client, mode="hang")
-    streams = client.app.state.context.streams  # type: ignore[attr-defined]
+    streams = client.app.state.context.streams
     sent = _apart(_listen_and_leave(client.app, f"{location}/events"))
     assert documents(sent.decode())[0]["status"] in ("accepted", "running")
     assert streams._open == 0
@@ -105,7 +100,7 @@ def test_a_caller_who_leaves_frees_the_stream_while_the_job_goes_on(client: Test
     client.delete(location)
 
 
-def test_comments_keep_a_quiet_stream_open(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_comments_keep_a_quiet_stream_open(client, monkeypatch):
     monkeypatch.setattr(events, "HEARTBEAT_S", 0.0)
     location = execute(client, mode="hang")
     sent = _apart(_listen_and_leave(client.app, f"{location}/events", wanted=b": the job goes on\n\n"))
@@ -141,13 +136,13 @@ async def _listen_and_leave(
     }
     asked = iter([{"type": "http.request", "body": b"", "more_body": False}])
 
-    async def receive() -> dict[str, Any]:
+    async def receive():
         for message in asked:
             return message
         await enough.wait()
         return {"type": "http.disconnect"}
 
-    async def send(message: dict[str, Any]) -> None:
+    async def send(message):
         heard.append(message.get("body", b""))
         if len(heard) == 2:
             asyncio.get_running_loop().run_in_executor(None, after)

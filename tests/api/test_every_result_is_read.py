@@ -6,12 +6,10 @@ its row. By day one result of a fifth of the kinds is read, and images are left 
 with all their images.
 """
 
-from __future__ import annotations
-
 import copy
 import json
 import pickle
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
 from io import BytesIO
@@ -41,7 +39,6 @@ from lineofaction.gearbox.problems import ServiceError
 from lineofaction.gearbox.registry import study_of
 from lineofaction.gearbox.result_files import stamp
 from lineofaction.report.document import read_stored
-from lineofaction.report.drawing.figure import Figure
 from lineofaction.report.presentation import presentation_of
 from service.app import create_app
 from service.settings import Settings
@@ -82,7 +79,6 @@ def _verb(*arguments: object) -> None:
 
 def figures_as_json(reading: Reading) -> None:
     answer = _got(reading, "")
-    assert answer is not None
     check_declared(reading.result.kind, answer.json())
 
 
@@ -235,14 +231,14 @@ def make(home: Path, process: str, inputs: Json) -> list[StoredResult]:
 
 
 @pytest.fixture(scope="module")
-def home(tmp_path_factory: pytest.TempPathFactory, condensed_bodies: Path) -> Path:
+def home(tmp_path_factory, condensed_bodies):
     folder = tmp_path_factory.mktemp("read")
     find_condensed(condensed_bodies, folder)
     return folder
 
 
 @pytest.fixture(scope="module")
-def http(home: Path) -> Iterator[TestClient]:
+def http(home):
     with TestClient(create_app(Settings(data_directory=home)), raise_server_exceptions=False) as client:
         yield client
 
@@ -273,10 +269,8 @@ def read(home: Path, http: TestClient, process: str, count: int, folder: Path) -
 @pytest.mark.law
 @pytest.mark.drawn
 @pytest.mark.parametrize("process", PROCESSES)
-def test_a_few_of_every_kind_are_read(
-    home: Path, http: TestClient, process: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def undrawn(_figure: Figure, across: int = 1) -> bytes:
+def test_a_few_of_every_kind_are_read(home, http, process, tmp_path, monkeypatch):
+    def undrawn(_figure, across=1, *, half=False):
         content = BytesIO()
         Image.new("RGB", (across, 1)).save(content, "PNG")
         return content.getvalue()
@@ -287,5 +281,5 @@ def test_a_few_of_every_kind_are_read(
 
 @pytest.mark.nightly
 @pytest.mark.parametrize("process", PROCESSES)
-def test_many_of_every_kind_are_read(home: Path, http: TestClient, process: str, tmp_path: Path) -> None:
+def test_many_of_every_kind_are_read(home, http, process, tmp_path):
     assert read(home, http, process, MANY, tmp_path) >= MANY

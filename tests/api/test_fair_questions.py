@@ -1,14 +1,11 @@
 """A key that floods the live workers, beside one that asks a few."""
 
-from __future__ import annotations
-
 import threading
 from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
-from pathlib import Path
 
 import httpx2
 import pytest
@@ -34,7 +31,7 @@ def flooded(address: str, key: dict[str, str], pool: QuestionPool) -> Iterator[C
     """Ask on many connections what is never answered; give the statuses of what is."""
     statuses, ended = Counter[int](), threading.Event()
 
-    def ask(number: int) -> None:
+    def ask(number):
         body = {"inputs": {"case": CASE, "time_budget_s": 1.0}, "caller": f"slider-{number}"}
         with httpx2.Client(base_url=address, timeout=PATIENCE_S, headers=key) as http:
             while not ended.is_set():
@@ -52,9 +49,7 @@ def flooded(address: str, key: dict[str, str], pool: QuestionPool) -> Iterator[C
 
 
 @pytest.mark.law
-def test_a_flood_of_one_key_takes_nothing_from_another(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_flood_of_one_key_takes_nothing_from_another(tmp_path, monkeypatch):
     monkeypatch.setattr(service.routes.queries, "PLAN", PLAN)
     registry = default_registry()
     registry = Registry(replace(registry["analyze"], plan=PLAN))

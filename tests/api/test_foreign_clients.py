@@ -5,13 +5,10 @@ is computed, but inputs and their checks are those of the service; at night all 
 inputs.
 """
 
-from __future__ import annotations
-
 import importlib
 import json
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -42,13 +39,13 @@ CONFIG = {
 
 
 @pytest.fixture(scope="module")
-def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+def service(tmp_path_factory):
     with written_service(tmp_path_factory.mktemp("foreign")) as running:
         yield running
 
 
 @pytest.fixture(scope="module")
-def generated(service: Service, tmp_path_factory: pytest.TempPathFactory) -> Iterator[ModuleType]:
+def generated(service, tmp_path_factory):
     """The client that is generated from the description; a warning of the generator is an error."""
     if not GENERATOR.exists():
         pytest.skip("no openapi-python-client on this machine: scripts/test installs it")
@@ -70,7 +67,7 @@ def part(name: str) -> ModuleType:
     return importlib.import_module(f"{PACKAGE}.{name}")
 
 
-def test_every_process_is_run() -> None:
+def test_every_process_is_run():
     assert set(INPUTS) == set(default_registry())
 
 
@@ -108,12 +105,12 @@ def check_run_by_owslib(service: Service, process: str, inputs: Json) -> None:
 @pytest.mark.law
 @pytest.mark.drawn
 @pytest.mark.parametrize("process", INPUTS)
-def test_a_generated_client_runs_a_process(service: Service, generated: ModuleType, process: str) -> None:
+def test_a_generated_client_runs_a_process(service, generated, process):
     attributes = run_by_generated_client(service, generated, process, INPUTS[process])
     assert attributes["kind"] == default_registry()[process].kind
 
 
-def test_a_generated_client_reads_a_refusal(service: Service, generated: ModuleType) -> None:
+def test_a_generated_client_reads_a_refusal(service, generated):
     with generated.AuthenticatedClient(service.url, "no key", raise_on_unexpected_status=True) as stranger:
         problem = part("api.jobs.list_jobs").sync(client=stranger)
     assert (type(problem), problem.status) == (part("models").ProblemBody, 401)
@@ -122,19 +119,19 @@ def test_a_generated_client_reads_a_refusal(service: Service, generated: ModuleT
 @pytest.mark.law
 @pytest.mark.drawn
 @pytest.mark.parametrize("process", INPUTS)
-def test_owslib_runs_a_process(service: Service, process: str) -> None:
+def test_owslib_runs_a_process(service, process):
     check_run_by_owslib(service, process, INPUTS[process])
 
 
 @pytest.fixture(scope="module")
-def working(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+def working(tmp_path_factory):
     with running_service(tmp_path_factory.mktemp("working"), default_registry()) as running:
         yield running
 
 
 @pytest.mark.nightly
 @pytest.mark.parametrize("process", INPUTS)
-def test_foreign_clients_get_what_is_computed(working: Service, generated: ModuleType, process: str) -> None:
+def test_foreign_clients_get_what_is_computed(working, generated, process):
     inputs = small_inputs(process)
     if process == "listen":
         with LineOfActionClient(working.url, key=working.key) as client:

@@ -4,13 +4,11 @@ A few with every change, 10 000 at night. No worker runs what is accepted. Plans
 worker of their own: they are asked at night, of an analyzed pair.
 """
 
-from __future__ import annotations
-
 import copy
 import json
 import random
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -56,7 +54,7 @@ class Target:
 
 
 @pytest.fixture
-def target(tmp_path: Path) -> Target:
+def target(tmp_path):
     """An app whose scheduler does not run."""
     app = create_app(Settings(data_directory=tmp_path, queue_limit=100_000))
     file = tmp_path / "table.nc"
@@ -66,7 +64,7 @@ def target(tmp_path: Path) -> Target:
 
 
 @pytest.fixture
-def whole(tmp_path: Path) -> Iterator[Target]:
+def whole(tmp_path):
     """One whose plans and live questions are answered."""
     found = whole_service(tmp_path)
     yield Target(TestClient(found.app, raise_server_exceptions=False, headers=found.headers), found.key)
@@ -165,12 +163,12 @@ def _without_surrogates(value: Any) -> Any:
 
 
 @pytest.mark.law
-def test_no_spoiled_body_is_a_defect(target: Target) -> None:
+def test_no_spoiled_body_is_a_defect(target):
     check_answers(150, target, TARGETS)
 
 
 @pytest.mark.nightly
-def test_none_of_ten_thousand_is_a_defect(whole: Target) -> None:
+def test_none_of_ten_thousand_is_a_defect(whole):
     statuses = check_answers(10_000, whole, TARGETS | LIVE_TARGETS)
     Path("out").mkdir(exist_ok=True)
     Path("out/fuzzed_bodies.json").write_text(json.dumps(dict(sorted(statuses.items()))))

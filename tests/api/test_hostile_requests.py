@@ -1,14 +1,11 @@
 """Requests that are made to hurt: refused in the one shape, at little cost, telling nothing secret."""
 
-from __future__ import annotations
-
 import gzip
 import json
 import re
 import tempfile
 import time
 import tracemalloc
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -31,7 +28,7 @@ QUERY = f"/v1/databases/{KEY}/query"
 
 
 @pytest.fixture(scope="module")
-def http() -> Iterator[TestClient]:
+def http():
     """A caller of a service without keys that holds a table."""
     with tempfile.TemporaryDirectory(prefix="loa-hostile-") as directory:
         app = create_app(Settings(data_directory=Path(directory)))
@@ -60,16 +57,14 @@ TOML = {
 
 
 @pytest.mark.parametrize("kind", TOML)
-def test_toml_that_costs_much_is_refused(http: TestClient, kind: str) -> None:
+def test_toml_that_costs_much_is_refused(http, kind):
     problem = assert_refused(http.post("/v1/cases/from-toml", json={"toml": TOML[kind]}), 422)
     assert len(problem["errors"]) <= 50
     if "long" in kind:
         assert problem["errors"][0]["bound"] == "TOML with keys of at most 32 parts"
 
 
-def test_beyond_so_many_requests_at_once_the_service_answers_for_its_health_alone(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_beyond_so_many_requests_at_once_the_service_answers_for_its_health_alone(tmp_path, monkeypatch):
     monkeypatch.setattr("service.app.capacity", lambda _workers: Capacity(1))
     app = create_app(Settings(data_directory=tmp_path), works=False)
     with TestClient(app) as http:
@@ -79,7 +74,7 @@ def test_beyond_so_many_requests_at_once_the_service_answers_for_its_health_alon
     assert 'loa_problems_total{problem="too-many-requests"}' in app.state.metrics.text().decode()
 
 
-def test_keys_as_long_as_they_may_be_and_rows_of_numbers_are_read() -> None:
+def test_keys_as_long_as_they_may_be_and_rows_of_numbers_are_read():
     numbers = ", ".join(["0.125"] * 500)
     text = f"{'.'.join('a' * 32)} = 1\n[b]\nrows = [\n  [{numbers}],\n  [{numbers}]\n]\n"
     assert toml_table(text, "toml")["b"]["rows"][1][499] == 0.125
@@ -87,7 +82,7 @@ def test_keys_as_long_as_they_may_be_and_rows_of_numbers_are_read() -> None:
         toml_table(".".join("a" * 33) + " = 1", "toml")
 
 
-def test_a_body_of_many_unknown_fields_gets_some_faults(http: TestClient) -> None:
+def test_a_body_of_many_unknown_fields_gets_some_faults(http):
     case = CASE | {f"field{number}": 0 for number in range(20_000)}
     problem = assert_refused(http.post("/v1/cases/outline", json={"inputs": {"case": case}}), 422)
     assert len(problem["errors"]) == 50
@@ -103,9 +98,7 @@ NAMES = {
 
 
 @pytest.mark.parametrize("kind", NAMES)
-def test_unknown_fields_with_hostile_names_are_refused_in_few_plain_words(
-    http: TestClient, kind: str
-) -> None:
+def test_unknown_fields_with_hostile_names_are_refused_in_few_plain_words(http, kind):
     pinion = CASE["pair"]["pinion"] | dict.fromkeys(NAMES[kind], 0)
     case = CASE | {"pair": CASE["pair"] | {"pinion": pinion}}
     body = json.dumps({"inputs": {"case": case}})
@@ -123,7 +116,7 @@ def test_unknown_fields_with_hostile_names_are_refused_in_few_plain_words(
 
 @pytest.mark.parametrize("process", ["analyze", "sensitivity"])
 @pytest.mark.parametrize("field", ["bore_diameter_mm", "face_width_mm"])
-def test_a_gear_without_width_is_refused(http: TestClient, process: str, field: str) -> None:
+def test_a_gear_without_width_is_refused(http, process, field):
     """Its compliance would be infinite (found by spoiling bodies)."""
 
     pair = CASE["pair"] | {name: CASE["pair"][name] | {field: 1e-300} for name in ("pinion", "wheel")}
@@ -142,7 +135,7 @@ def test_a_gear_without_width_is_refused(http: TestClient, process: str, field: 
     ],
 )
 @pytest.mark.parametrize("path", ["/v1/processes/analyze/execution", QUERY])
-def test_json_that_is_deep_or_long_is_refused(http: TestClient, path: str, body: bytes) -> None:
+def test_json_that_is_deep_or_long_is_refused(http, path, body):
     assert_refused(http.post(path, content=body, headers={"Content-Type": "application/json"}), 400, 413, 422)
 
 
@@ -161,7 +154,7 @@ CBOR = {
 
 
 @pytest.mark.parametrize("kind", CBOR)
-def test_cbor_that_announces_much_is_refused_without_room_for_it(http: TestClient, kind: str) -> None:
+def test_cbor_that_announces_much_is_refused_without_room_for_it(http, kind):
     tracemalloc.start()
     answer = http.post(QUERY, content=CBOR[kind], headers={"Content-Type": "application/cbor"})
     _, peak = tracemalloc.get_traced_memory()
@@ -171,7 +164,7 @@ def test_cbor_that_announces_much_is_refused_without_room_for_it(http: TestClien
 
 
 @pytest.mark.parametrize("path", ["/v1/cases/from-toml", QUERY])
-def test_a_packed_body_is_refused(http: TestClient, path: str) -> None:
+def test_a_packed_body_is_refused(http, path):
     """Also one that would be read as something else: packed columns are columns of other numbers."""
     packed = gzip.compress(b"\0" * 1600, mtime=0)
     kind = "application/octet-stream" if path == QUERY else "application/json"
@@ -185,7 +178,7 @@ def test_a_packed_body_is_refused(http: TestClient, path: str) -> None:
 @pytest.mark.parametrize(
     "host", ["localhost", "LOCALHOST:8321", "127.0.0.1:1", "127.9.9.9", "[::1]:80", "testserver"]
 )
-def test_a_host_that_is_this_machine_is_answered(http: TestClient, host: str) -> None:
+def test_a_host_that_is_this_machine_is_answered(http, host):
     assert http.get("/v1/jobs", headers={"Host": host}).status_code == 200
 
 
@@ -200,25 +193,25 @@ def test_a_host_that_is_this_machine_is_answered(http: TestClient, host: str) ->
         "[::2]",
     ],
 )
-def test_a_page_of_another_site_does_not_reach_a_service_without_keys(http: TestClient, host: str) -> None:
+def test_a_page_of_another_site_does_not_reach_a_service_without_keys(http, host):
     for path in ("/v1/jobs", "/", "/health", "/v1/jobs/"):
         answer = http.get(path, headers={"Host": host}, follow_redirects=False)
         assert_refused(answer, 421)
 
 
-def test_a_live_torque_that_is_next_to_nothing_is_refused(http: TestClient) -> None:
+def test_a_live_torque_that_is_next_to_nothing_is_refused(http):
     """Its force is none (found by generated bodies)."""
     problem = assert_refused(http.post(f"/v1/databases/{KEY}/ste", json={"torque_n_m": [5e-324]}), 422)
     assert problem["errors"][0]["field"] == "torque_n_m[0]"
 
 
-def test_a_parameter_that_a_body_does_not_need_is_checked_all_the_same(http: TestClient) -> None:
+def test_a_parameter_that_a_body_does_not_need_is_checked_all_the_same(http):
     body = {"position": [0.0], "deflection_um": [5.0]}
     problem = assert_refused(http.post(QUERY, json=body, params={"columns": "a" * 101}), 422)
     assert problem["errors"][0]["field"] == "columns"
 
 
-def test_with_keys_any_host_may_be_named(tmp_path: Path) -> None:
+def test_with_keys_any_host_may_be_named(tmp_path):
     secret = KeyFile(tmp_path / "keys.json").add("bench")
     app = create_app(Settings(data_directory=tmp_path), works=False)
     headers = {"Host": "gears.example", "Authorization": f"Bearer {secret}"}
@@ -226,7 +219,7 @@ def test_with_keys_any_host_may_be_named(tmp_path: Path) -> None:
 
 
 @pytest.mark.law
-def test_no_other_origin_is_allowed_anything(http: TestClient) -> None:
+def test_no_other_origin_is_allowed_anything(http):
     origin = {"Origin": "http://other.example", "Access-Control-Request-Method": "DELETE"}
     for method, path in (("OPTIONS", "/v1/jobs"), ("GET", "/v1/jobs"), ("GET", "/"), ("GET", "/v1/none")):
         answer = http.request(method, path, headers=origin)
@@ -237,7 +230,7 @@ def test_no_other_origin_is_allowed_anything(http: TestClient) -> None:
 @pytest.mark.parametrize(
     "kind", ["text/plain", "application/x-www-form-urlencoded", "multipart/form-data; boundary=a"]
 )
-def test_what_a_form_of_another_site_can_send_starts_nothing(http: TestClient, kind: str) -> None:
+def test_what_a_form_of_another_site_can_send_starts_nothing(http, kind):
     body = json.dumps({"inputs": {"case": CASE}})
     before = http.get("/v1/jobs").json()["jobs"]
     answer = http.post("/v1/processes/analyze/execution", content=body, headers={"Content-Type": kind})
@@ -245,7 +238,7 @@ def test_what_a_form_of_another_site_can_send_starts_nothing(http: TestClient, k
     assert http.get("/v1/jobs").json()["jobs"] == before
 
 
-def test_no_file_of_the_service_is_read_for_a_caller(http: TestClient) -> None:
+def test_no_file_of_the_service_is_read_for_a_caller(http):
     (mesh,) = SCENE["meshes"]
     by_file = {name: value for name, value in mesh.items() if name != "case"} | {
         "database_file": "/etc/passwd"
@@ -263,7 +256,7 @@ def test_no_file_of_the_service_is_read_for_a_caller(http: TestClient) -> None:
 @pytest.mark.parametrize(
     "url", ["s3://id:hush@bucket/prefix", "https://id:hush@host/bucket", "s3://hush@bucket"]
 )
-def test_what_is_secret_in_an_address_of_results_is_not_shown(tmp_path: Path, url: str) -> None:
+def test_what_is_secret_in_an_address_of_results_is_not_shown(tmp_path, url):
     with pytest.raises(BadInput) as caught:
         result_files(tmp_path, url)
     assert "hush" not in f"{caught.value} {caught.value.as_json()}"
@@ -278,7 +271,7 @@ def test_what_is_secret_in_an_address_of_results_is_not_shown(tmp_path: Path, ur
         "hush",
     ],
 )
-def test_what_is_secret_in_an_address_of_a_database_is_not_shown(tmp_path: Path, url: str) -> None:
+def test_what_is_secret_in_an_address_of_a_database_is_not_shown(tmp_path, url):
     settings = load_settings(data_directory=tmp_path, database_url=url)
     assert "hush" not in repr(settings)
     with pytest.raises((BadInput, DatabaseUnavailable)) as caught:

@@ -1,10 +1,7 @@
 """What runs do to housings over HTTP: the figures of the command line, to the last bit."""
 
-from __future__ import annotations
-
 import json
 import shutil
-from collections.abc import Iterator
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
@@ -52,7 +49,7 @@ class Moved:
 
 
 @pytest.fixture(scope="module")
-def moved(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Moved]:
+def moved(tmp_path_factory):
     folder = tmp_path_factory.mktemp("moved")
     write_block(folder / "block.step")
     scene = housed_scene(folder)
@@ -75,9 +72,7 @@ def moved(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Moved]:
     ("name", "inputs", "options"),
     [("noise", {"boundary_elements": False}, ("--no-boundary-elements",)), ("vibration", {}, ())],
 )
-def test_levels_and_velocities_of_a_run_are_those_of_the_command_line(
-    moved: Moved, name: str, inputs: dict[str, bool], options: tuple[str, ...]
-) -> None:
+def test_levels_and_velocities_of_a_run_are_those_of_the_command_line(moved, name, inputs, options):
     figures = getattr(moved.client, name).submit(moved.scene, run=moved.key, orders=2, **inputs).figures()
     printed = moved.printed(name, "--run", moved.run, "--orders", 2, *options)
     served = json.loads(figures.model_dump_json(by_alias=True, exclude_unset=True))
@@ -85,7 +80,7 @@ def test_levels_and_velocities_of_a_run_are_those_of_the_command_line(
     assert without(OWN, served) == without(OWN, printed)
 
 
-def test_a_run_is_part_of_the_address_of_a_result(moved: Moved) -> None:
+def test_a_run_is_part_of_the_address_of_a_result(moved):
     of_run = moved.client.vibration.submit(moved.scene, run=moved.key, orders=2).wait()
     linear = moved.client.vibration.submit(moved.scene, speed_rpm=[1500.0], orders=2).wait()
     assert of_run.key != linear.key
@@ -101,7 +96,7 @@ def heard(moved: Moved, *options: object) -> tuple[dict[str, Any], Path]:
     return answer, file
 
 
-def test_a_microphone_hears_over_http_what_it_hears_by_the_command_line(moved: Moved) -> None:
+def test_a_microphone_hears_over_http_what_it_hears_by_the_command_line(moved):
     """Figures and file, to the last bit; steady, so that there are tones."""
     job = moved.client.listen.submit(moved.scene, run=moved.key, microphone_mm=[40, 60, 400])
     served = json.loads(job.figures().model_dump_json(by_alias=True, exclude_unset=True))
@@ -118,7 +113,7 @@ def test_a_microphone_hears_over_http_what_it_hears_by_the_command_line(moved: M
     assert (recording.unit, recording.peak) == ("Pa", served["full_scale"])
 
 
-def test_a_point_is_heard_along_its_direction(moved: Moved) -> None:
+def test_a_point_is_heard_along_its_direction(moved):
     for option, direction in (((), None), (("--direction", "z"), "z")):
         job = moved.client.listen.submit(moved.scene, run=moved.key, point="cover", direction=direction)
         printed, file = heard(moved, "--point", "cover", *option)
@@ -128,7 +123,7 @@ def test_a_point_is_heard_along_its_direction(moved: Moved) -> None:
         assert moved.client.sound(job.wait().key) == file.read_bytes()
 
 
-def test_two_recordings_are_on_one_full_scale(moved: Moved) -> None:
+def test_two_recordings_are_on_one_full_scale(moved):
     """Sample 1 is the peak of the louder one in both files."""
     near, far = (
         moved.client.listen.submit(moved.scene, run=moved.key, microphone_mm=[40, 60, z]) for z in (400, 4000)
@@ -142,7 +137,7 @@ def test_two_recordings_are_on_one_full_scale(moved: Moved) -> None:
     assert expected < 0.3
 
 
-def test_a_run_that_moved_in_another_housing_is_named(moved: Moved) -> None:
+def test_a_run_that_moved_in_another_housing_is_named(moved):
     """The housing of the scene is of another material than that of the run."""
     scene = json.loads(moved.scene.read_text())
     scene["housings"][0]["material"] = "cast_aluminum"
@@ -156,7 +151,7 @@ def test_a_run_that_moved_in_another_housing_is_named(moved: Moved) -> None:
     assert any(said in alarm for alarm in moved.client.report(job.wait().key).alarms)
 
 
-def test_the_report_of_a_recording_is_its_level_over_the_run_with_a_player(moved: Moved) -> None:
+def test_the_report_of_a_recording_is_its_level_over_the_run_with_a_player(moved):
     job = moved.client.listen.submit(moved.scene, run=moved.key, microphone_mm=[40, 60, 1000])
     report = moved.client.report(job.wait().key)
     level = job.figures().sound.level_db_a
@@ -190,15 +185,13 @@ def test_the_report_of_a_recording_is_its_level_over_the_run_with_a_player(moved
         ("noise", {"run": None, "sensitivities": True, "speed_rpm": []}, ("speed_rpm", "300, 600")),
     ],
 )
-def test_what_names_no_run_is_refused_at_the_request(
-    moved: Moved, process: str, options: dict[str, Any], words: tuple[str, ...]
-) -> None:
+def test_what_names_no_run_is_refused_at_the_request(moved, process, options, words):
     said = moved.refused(process, **options)
     for word in words:
         assert word in said, said
 
 
-def test_what_cannot_be_heard_is_refused(moved: Moved) -> None:
+def test_what_cannot_be_heard_is_refused(moved):
     """A point that no housing has at the request; a microphone in the wall by its job."""
     assert "known: cover" in moved.refused("listen", run=moved.key, point="roof")
     job = moved.client.listen.submit(moved.scene, run=moved.key, microphone_mm=[40, 0, 110])
@@ -213,5 +206,5 @@ def test_what_cannot_be_heard_is_refused(moved: Moved) -> None:
         moved.client.sound(TABLE)
 
 
-def test_sensitivities_of_a_run_are_refused_at_the_request(moved: Moved) -> None:
+def test_sensitivities_of_a_run_are_refused_at_the_request(moved):
     assert "left out with a run" in moved.refused("noise", run=moved.key, sensitivities=True)

@@ -1,10 +1,7 @@
 """Scenes on the solid of a housing over HTTP: its file goes along, the worker reduces it, faults return."""
 
-from __future__ import annotations
-
 import copy
 import json
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +27,7 @@ Served = tuple[LineOfActionClient, TestClient, Path]
 
 
 @pytest.fixture(scope="module")
-def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+def served(tmp_path_factory):
     """A client of a running service that holds the table, the bare HTTP one, a folder with the STEP file."""
     folder = tmp_path_factory.mktemp("scene")
     write_block(folder / "block.step")
@@ -50,7 +47,7 @@ def scene_file(folder: Path, **fields: Any) -> Path:
     return file
 
 
-def test_modes_on_a_solid_are_those_of_the_command_line(served: Served, monkeypatch) -> None:
+def test_modes_on_a_solid_are_those_of_the_command_line(served, monkeypatch):
     """The effect on; the housing is a stage of the work, and in the service's cache afterwards."""
     client, _, folder = served
     monkeypatch.setenv("XDG_CACHE_HOME", str(folder / "cache"))
@@ -68,13 +65,12 @@ def test_modes_on_a_solid_are_those_of_the_command_line(served: Served, monkeypa
     kept = sorted((folder / "data" / "housings").glob("*.nc"))
     assert [each.name[:4] for each in kept] == ["hous", "mesh"]
     cost = ReducedHousing.from_netcdf(kept[0]).cost
-    assert cost is not None
     own = found.metadata["reduction_cost"]["case"]
     assert (own["seconds"], own["predicted_seconds"]) == (cost.seconds, cost.predicted_seconds)
 
 
 @pytest.mark.law
-def test_the_content_of_a_file_is_part_of_the_address_of_a_result(served: Served) -> None:
+def test_the_content_of_a_file_is_part_of_the_address_of_a_result(served):
     """Another solid of the same name is another question."""
     client, _, folder = served
     first = client.submit("modes", scene_inputs(scene_file(folder)))
@@ -87,7 +83,7 @@ def test_the_content_of_a_file_is_part_of_the_address_of_a_result(served: Served
     assert keys[0] == keys[2] != keys[1]
 
 
-def test_a_bore_that_is_not_there_is_a_fault_of_the_job(served: Served) -> None:
+def test_a_bore_that_is_not_there_is_a_fault_of_the_job(served):
     client, _, folder = served
     seats = housing()["seats"]
     wrong = [seats[0], seats[1] | SEAT | {"bore_diameter_mm": 55.0}]
@@ -100,7 +96,7 @@ def test_a_bore_that_is_not_there_is_a_fault_of_the_job(served: Served) -> None:
 
 
 @pytest.mark.parametrize("field", ["step_file", "modes_file"])
-def test_the_name_of_a_file_is_refused_at_the_request(served: Served, field: str) -> None:
+def test_the_name_of_a_file_is_refused_at_the_request(served, field):
     """A service reads no files of its callers."""
     client, http, folder = served
     inputs = scene_inputs(scene_file(folder))
@@ -115,7 +111,7 @@ def test_the_name_of_a_file_is_refused_at_the_request(served: Served, field: str
         client.submit("modes", inputs)
 
 
-def test_a_body_beyond_the_limit_is_refused_by_its_size(served: Served) -> None:
+def test_a_body_beyond_the_limit_is_refused_by_its_size(served):
     _, http, folder = served
     inputs = scene_inputs(scene_file(folder))
     inputs["scene"]["housings"][0]["step_file"]["content"] += 4_000_000 * "A"

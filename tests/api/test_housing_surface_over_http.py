@@ -1,14 +1,10 @@
 """The surface of housings before anything is computed: where it stands, its size, and what files try."""
 
-from __future__ import annotations
-
 import base64
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
 from itertools import permutations
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -38,7 +34,7 @@ gmsh.write(sys.argv[1])
 
 
 @pytest.fixture(scope="module")
-def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
+def served(tmp_path_factory):
     found = whole_service(tmp_path_factory.mktemp("service"))
     yield found
     found.app.state.context.reader.stop()
@@ -46,12 +42,12 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
 
 
 @pytest.fixture(scope="module")
-def client(served: Any) -> TestClient:
+def client(served):
     return TestClient(served.app, headers=served.headers)
 
 
 @pytest.fixture(scope="module")
-def block(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def block(tmp_path_factory):
     return write_block(tmp_path_factory.mktemp("step") / "block.step")
 
 
@@ -83,7 +79,7 @@ def volume(place: np.ndarray, facets: np.ndarray) -> float:
 
 
 @pytest.mark.law
-def test_the_surface_of_a_solid_closes_around_its_volume(client: TestClient, block: Path) -> None:
+def test_the_surface_of_a_solid_closes_around_its_volume(client, block):
     place, normal, facets = drawn(client, solid("block.step", block.read_bytes()))
     np.testing.assert_allclose([place.min(axis=0), place.max(axis=0)], [LOW, HIGH], atol=1e-3)
     bores = 2 * np.pi * 20.0**2 * 30.0
@@ -95,7 +91,7 @@ def test_the_surface_of_a_solid_closes_around_its_volume(client: TestClient, blo
 
 
 @pytest.mark.law
-def test_a_surface_stands_where_its_housing_does(client: TestClient, block: Path) -> None:
+def test_a_surface_stands_where_its_housing_does(client, block):
     content = block.read_bytes()
     rest, _, facets = drawn(client, solid("block.step", content))
     fields = {"origin_mm": [10.0, 20.0, 30.0], "x_axis": [0.0, 1.0, 0.0], "z_axis": [1.0, 0.0, 0.0]}
@@ -117,7 +113,7 @@ def mesh_of(points: Any, cells: Any) -> bytes:
     return f"*NODE\n{nodes}*ELEMENT, TYPE=C3D4\n{elements}".encode()
 
 
-def test_a_mesh_gives_its_surface_and_matrices_give_none(client: TestClient) -> None:
+def test_a_mesh_gives_its_surface_and_matrices_give_none(client):
     place, _, facets = drawn(client, solid("cube.inp", mesh_of(CUBE, FIVE)))
     assert (len(place), len(facets)) == (8, 12)
     in_m = solid("m.inp", mesh_of(1e-3 * np.array(CUBE), FIVE), mesh_unit="m", origin_mm=[0.0, 0.0, 1.0])
@@ -127,7 +123,7 @@ def test_a_mesh_gives_its_surface_and_matrices_give_none(client: TestClient) -> 
     assert client.post(ROUTE, json={"housings": [matrices]}).json() == {"surface": None}
 
 
-def test_equal_files_are_read_once(client: TestClient, served: Any, block: Path, monkeypatch) -> None:
+def test_equal_files_are_read_once(client, served, block, monkeypatch):
     own = solid("block.step", block.read_bytes(), origin_mm=[1.0, 2.0, 3.0])
     first = client.post(ROUTE, json={"housings": [own]})
     monkeypatch.setattr(served.app.state.context.reader, "ask", None)
@@ -160,17 +156,13 @@ ATTACKS = {
 
 
 @pytest.mark.parametrize(("own", "field"), ATTACKS.values(), ids=ATTACKS)
-def test_a_file_that_is_no_solid_is_refused_by_its_field(
-    client: TestClient, own: dict[str, Any], field: str
-) -> None:
+def test_a_file_that_is_no_solid_is_refused_by_its_field(client, own, field):
     answer = client.post(ROUTE, json={"housings": [own]})
     assert answer.status_code == 422, answer.text
     assert answer.json()["errors"][0]["field"] == field, answer.text
 
 
-def test_a_step_file_is_refused_cut_off_or_with_two_solids(
-    client: TestClient, block: Path, tmp_path: Path
-) -> None:
+def test_a_step_file_is_refused_cut_off_or_with_two_solids(client, block, tmp_path):
     whole = block.read_bytes()
     two = write_block(tmp_path / "two.step", "two").read_bytes()
     huge = whole.replace(b"CARTESIAN_POINT('',(-40.", b"CARTESIAN_POINT('',(-1.E300")
@@ -184,7 +176,7 @@ def test_a_step_file_is_refused_cut_off_or_with_two_solids(
     assert client.post(ROUTE, json={"housings": [damaged]}).status_code == 422
 
 
-def test_many_faces_are_drawn_by_fewer_triangles(client: TestClient, tmp_path: Path) -> None:
+def test_many_faces_are_drawn_by_fewer_triangles(client, tmp_path):
     """Of some 500 faces as STEP; of 40 800 triangles as a mesh."""
     step = tmp_path / "towers.step"
     subprocess.run([sys.executable, "-c", MANY, str(step), "10"], check=True, capture_output=True)

@@ -1,7 +1,5 @@
 """A submission with an ``Idempotency-Key`` is one job, however often it arrives."""
 
-from __future__ import annotations
-
 import uuid
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
@@ -21,7 +19,7 @@ def jobs(client: TestClient) -> int:
     return len(client.get("/v1/jobs").json()["jobs"])
 
 
-def test_the_same_request_is_the_same_job(client: TestClient) -> None:
+def test_the_same_request_is_the_same_job(client):
     with ThreadPoolExecutor(8) as pool:
         answers = list(pool.map(lambda _: entered(client, "one", text="x"), range(16)))
     assert {answer.status_code for answer in answers} == {201}
@@ -34,18 +32,18 @@ def test_the_same_request_is_the_same_job(client: TestClient) -> None:
 
 
 @pytest.mark.parametrize("name", ["", "x" * 256])
-def test_a_name_has_a_length(client: TestClient, name: str) -> None:
+def test_a_name_has_a_length(client, name):
     assert entered(client, name, text="x").status_code == 422
     assert jobs(client) == 0
 
 
-def test_a_submission_may_take_the_equal_job(client: TestClient) -> None:
+def test_a_submission_may_take_the_equal_job(client):
     with ThreadPoolExecutor(8) as pool:
         answers = list(pool.map(lambda _: entered(client, None, reuse=True, text="x"), range(16)))
     assert len({answer.json()["jobID"] for answer in answers}) == jobs(client) == 1
 
 
-def test_the_inputs_of_a_job_are_as_its_caller_stated_them(client: TestClient) -> None:
+def test_the_inputs_of_a_job_are_as_its_caller_stated_them(client):
     job = entered(client, None, text="x").json()["jobID"]
     long = entered(client, None, text="x" * 70_000).json()["jobID"]
     assert client.get(f"/v1/jobs/{job}/inputs").json() == {

@@ -1,9 +1,6 @@
 """What the API refuses: a full queue, bodies too long or unusable, paths and methods, in one error shape."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -17,7 +14,7 @@ from service.settings import Settings
 
 
 @pytest.fixture
-def client(tmp_path: Path) -> Iterator[TestClient]:
+def client(tmp_path):
     app = create_app(Settings(data_directory=tmp_path, queue_limit=2, body_limit=5000), REGISTRY)
     with TestClient(app, raise_server_exceptions=False) as found:
         yield found
@@ -38,7 +35,7 @@ def assert_problem(answer: Response, status: int) -> dict[str, Any]:
     return body
 
 
-def test_a_full_queue_answers_429_with_a_time_to_come_back(client: TestClient) -> None:
+def test_a_full_queue_answers_429_with_a_time_to_come_back(client):
     answers = [execute(client, mode="hang", number=n) for n in range(5)]
     refused = [answer for answer in answers if answer.status_code != 201]
     assert refused
@@ -50,13 +47,13 @@ def test_a_full_queue_answers_429_with_a_time_to_come_back(client: TestClient) -
             client.delete(answer.headers["location"])
 
 
-def test_a_body_beyond_the_limit_answers_413(client: TestClient) -> None:
+def test_a_body_beyond_the_limit_answers_413(client):
     assert (
         assert_problem(execute(client, text="x" * 6000), 413)["type"] == "urn:lineofaction:problem:too-large"
     )
 
 
-def test_a_body_that_does_not_tell_its_length_is_counted(client: TestClient) -> None:
+def test_a_body_that_does_not_tell_its_length_is_counted(client):
     pieces: Callable[[], Iterator[bytes]] = lambda: (b"x" * 1000 for _ in range(100))  # noqa: E731
     answer = client.post(EXECUTION, content=pieces(), headers={"Content-Type": "application/json"})
     assert_problem(answer, 413)
@@ -82,14 +79,14 @@ def test_a_body_that_does_not_tell_its_length_is_counted(client: TestClient) -> 
         ("", "body"),
     ],
 )
-def test_a_body_that_cannot_be_used_is_one_fault_by_name(client: TestClient, text: str, field: str) -> None:
+def test_a_body_that_cannot_be_used_is_one_fault_by_name(client, text, field):
     answer = client.post(EXECUTION, content=text, headers={"Content-Type": "application/json"})
     (fault,) = assert_problem(answer, 422)["errors"]
     assert fault["field"] == field
     assert fault["bound"]
 
 
-def test_bytes_that_are_no_text_are_a_problem_too(client: TestClient) -> None:
+def test_bytes_that_are_no_text_are_a_problem_too(client):
     answer = client.post(EXECUTION, content=b"\xff\xfe\x00", headers={"Content-Type": "application/json"})
     assert_problem(answer, 400)
 
@@ -105,18 +102,14 @@ def test_bytes_that_are_no_text_are_a_problem_too(client: TestClient) -> None:
         ("PUT", "/v1/jobs", 405, "about:blank"),
     ],
 )
-def test_every_refusal_is_a_problem(
-    client: TestClient, method: str, path: str, status: int, kind: str
-) -> None:
+def test_every_refusal_is_a_problem(client, method, path, status, kind):
     assert assert_problem(client.request(method, path), status)["type"] == kind
 
 
-def test_an_unknown_exception_becomes_a_reference(
-    client: TestClient, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    context = client.app.state.context  # type: ignore[attr-defined]
+def test_an_unknown_exception_becomes_a_reference(client, monkeypatch):
+    context = client.app.state.context
 
-    def explode(_identifier: str) -> None:
+    def explode(_identifier):
         raise RuntimeError(SECRET)
 
     monkeypatch.setattr(context.submissions, "find", explode)
@@ -127,7 +120,7 @@ def test_an_unknown_exception_becomes_a_reference(
     assert body["reference"] in body["detail"]
 
 
-def test_a_stopped_scheduler_is_not_ready(tmp_path: Path) -> None:
+def test_a_stopped_scheduler_is_not_ready(tmp_path):
     app = create_app(Settings(data_directory=tmp_path), REGISTRY)
     client = TestClient(app)  # not entered: nothing is started
     assert_problem(client.get("/ready"), 503)

@@ -4,14 +4,11 @@ No job is lost, none ends with another result, no process is left, no partial fi
 each database at night, figures in out/kills_*.json; a few on one with every change.
 """
 
-from __future__ import annotations
-
 import json
 import random
 import sys
 import time
 from collections import Counter
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -33,7 +30,7 @@ FIGURES = Path(__file__).parents[2] / "out"
 
 
 @pytest.fixture
-def service(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[KilledService]:
+def service(request, tmp_path):
     """On a SQLite file, with the workers of Dask beside it or not, or on PostgreSQL over a relay.
 
     A Dask worker and its scheduler are killed, too; PostgreSQL has connections ended by its administrator,
@@ -71,9 +68,7 @@ def service(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[KilledSe
         pytest.param("dask", 50, marks=pytest.mark.nightly),
     ],
 )
-def test_nothing_is_lost_when_parts_are_killed_at_random_moments(
-    service: KilledService, tmp_path: Path, database: str, moments: int
-) -> None:
+def test_nothing_is_lost_when_parts_are_killed_at_random_moments(service, tmp_path, database, moments):
     chance, began = random.Random(SEED), time.monotonic()
     kinds = [kind for _ in range(moments) for kind in chance.sample(service.kinds, len(service.kinds))]
     with service:
@@ -86,7 +81,7 @@ def test_nothing_is_lost_when_parts_are_killed_at_random_moments(
         ends = service.settled()
         assert {end["status"] for end in ends.values()} == {"successful"}, ends
         for text in {*service.jobs.values()}:
-            until(lambda text=text: text in service.witness.served)  # type: ignore[misc]
+            until(lambda text=text: text in service.witness.served)
         revived = service.server.revived
         assert service.stop() == 0
         until(lambda: service.marked() == [])
@@ -114,7 +109,7 @@ def test_nothing_is_lost_when_parts_are_killed_at_random_moments(
     sys.stdout.write(f"{figures}\n")
 
 
-def test_the_witness_knows_a_partial_file_and_a_second_result() -> None:
+def test_the_witness_knows_a_partial_file_and_a_second_result():
     """The test above can fail: results of two attempts differ, and a part of one is none."""
     from service_fake_work import is_slow_content, slow_content  # noqa: PLC0415
 
@@ -131,14 +126,14 @@ def starts(folder: Path) -> int:
 
 
 @pytest.mark.law
-def test_kills_of_the_server_cost_a_job_no_attempt(tmp_path: Path) -> None:
+def test_kills_of_the_server_cost_a_job_no_attempt(tmp_path):
     """Under default settings, which give a job two attempts."""
     service, kills = KilledService(tmp_path, {}), 2
     with service:
         service.measure("undisturbed")
         service.submit("struck")
         for number in range(kills):
-            until(lambda number=number: service.revive() or starts(tmp_path) > 1 + number)  # type: ignore[misc]
+            until(lambda number=number: service.revive() or starts(tmp_path) > 1 + number)
             service.kill()
         ends = service.settled().values()
     assert starts(tmp_path) == 1 + kills + 1
@@ -154,7 +149,7 @@ BATCH_SEED = 20261122
 def ended(service: KilledService, batch: str) -> dict[str, Any]:
     found: dict[str, Any] = {}
 
-    def over() -> bool:
+    def over():
         service.revive()
         found.update(service.request("GET", f"/v1/jobs/{batch}").json())
         return found["status"] in ("successful", "failed", "dismissed")
@@ -164,7 +159,7 @@ def ended(service: KilledService, batch: str) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("moments", [3, pytest.param(30, marks=pytest.mark.nightly)])
-def test_batches_are_whole_whatever_is_killed(tmp_path: Path, moments: int) -> None:
+def test_batches_are_whole_whatever_is_killed(tmp_path, moments):
     chance = random.Random(BATCH_SEED)
     place = {"LOA_DATABASE_URL": f"sqlite:///{tmp_path / 'shared.sqlite3'}"}
     place["LOA_RESULTS_URL"] = (tmp_path / "results").as_uri()

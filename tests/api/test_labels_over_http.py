@@ -1,9 +1,5 @@
 """Titles and tags of jobs: kept, shown everywhere, searched, changed; on each database."""
 
-from __future__ import annotations
-
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -19,7 +15,7 @@ from service.settings import Settings
 
 
 @pytest.fixture
-def client(tmp_path: Path, database_url: str | None) -> Iterator[TestClient]:
+def client(tmp_path, database_url):
     """A client of an app whose scheduler does not run, on each database."""
     app = create_app(Settings(data_directory=tmp_path, database_url=database_url), REGISTRY)
     yield TestClient(app)
@@ -37,7 +33,7 @@ def listed(client: TestClient, **wanted: Any) -> list[str]:
     return [job["title"] for job in answer.json()["jobs"]]
 
 
-def test_a_label_is_in_status_list_and_events(client: TestClient) -> None:
+def test_a_label_is_in_status_list_and_events(client):
     job = entered(client, title="  Tip relief 20 µm ", tags=["EV-3", "draft", "ev-3"]).json()
     assert (job["title"], job["tags"]) == ("Tip relief 20 µm", ["ev-3", "draft"])
     path = f"/v1/jobs/{job['jobID']}"
@@ -47,13 +43,13 @@ def test_a_label_is_in_status_list_and_events(client: TestClient) -> None:
     assert "Tip relief 20 µm" in client.get(f"{path}/events").text
 
 
-def test_jobs_that_share_work_have_labels_of_their_own(client: TestClient) -> None:
+def test_jobs_that_share_work_have_labels_of_their_own(client):
     for title in ("mine", "yours", ""):
         entered(client, title=title)
     assert listed(client) == ["", "yours", "mine"]
 
 
-def test_the_list_is_searched_by_whole_tags_and_by_words(client: TestClient) -> None:
+def test_the_list_is_searched_by_whole_tags_and_by_words(client):
     entered(client, title="Größe 3, 100 % torque", tags=["ev-3", "draft"])
     entered(client, title="Noise of stage_2", tags=["ev-33", "draft"])
     entered(client, title="noise and torque")
@@ -69,7 +65,7 @@ def test_the_list_is_searched_by_whole_tags_and_by_words(client: TestClient) -> 
     assert listed(client, title="e%t") == listed(client, title="noise_of") == []
 
 
-def test_a_label_is_changed_in_parts(client: TestClient) -> None:
+def test_a_label_is_changed_in_parts(client):
     path = f"/v1/jobs/{entered(client, title='first', tags=['a']).json()['jobID']}"
     client.delete(path)
     for change, title, tags in (
@@ -95,7 +91,7 @@ def test_a_label_is_changed_in_parts(client: TestClient) -> None:
         ({"tags": [f"t{n}" for n in range(17)]}, "tags"),
     ],
 )
-def test_a_label_beyond_its_bounds_is_refused(client: TestClient, terms: dict[str, Any], field: str) -> None:
+def test_a_label_beyond_its_bounds_is_refused(client, terms, field):
     kept = entered(client, title="kept").json()["jobID"]
     for answer in (entered(client, **terms), client.patch(f"/v1/jobs/{kept}", json=terms)):
         assert answer.status_code == 422
@@ -104,7 +100,7 @@ def test_a_label_beyond_its_bounds_is_refused(client: TestClient, terms: dict[st
     assert listed(client) == ["kept"]
 
 
-def test_a_repeated_request_keeps_the_first_label(client: TestClient) -> None:
+def test_a_repeated_request_keeps_the_first_label(client):
     headers = {"Idempotency-Key": "once"}
     for title in ("first", "second"):
         body = {"inputs": {"wish": {}}, "title": title}
@@ -112,7 +108,7 @@ def test_a_repeated_request_keeps_the_first_label(client: TestClient) -> None:
     assert listed(client) == ["first"]
 
 
-def test_the_client_labels_what_it_submits(client: TestClient, tmp_path: Path) -> None:
+def test_the_client_labels_what_it_submits(client, tmp_path):
     plain = LineOfActionClient("http://testserver", cache_dir=tmp_path / "c", transport=client._transport)
     state = plain.with_terms(title="Study 7", tags=["ev-3"]).submit("fake", {"wish": {}})
     assert (state.title, state.tags) == ("Study 7", ("ev-3",))
@@ -122,7 +118,7 @@ def test_the_client_labels_what_it_submits(client: TestClient, tmp_path: Path) -
     assert plain.status(state.id).title == "Study 8"
 
 
-def test_the_verb_labels_what_it_submits(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_verb_labels_what_it_submits(client, monkeypatch):
     plain = LineOfActionClient("http://testserver", transport=client._transport)
     monkeypatch.setattr("lineofaction.cli.submit.LineOfActionClient", lambda _: plain)
     monkeypatch.setattr(
@@ -135,7 +131,7 @@ def test_the_verb_labels_what_it_submits(client: TestClient, monkeypatch: pytest
     assert (job["title"], job["tags"]) == ("Study 7", ["ev-3", "draft"])
 
 
-def test_a_priority_is_shown_and_bounded_by_the_key(client: TestClient, tmp_path: Path) -> None:
+def test_a_priority_is_shown_and_bounded_by_the_key(client, tmp_path):
     assert entered(client, priority=9).json()["priority"] == 9
     for beyond in (10, -10, 0.5):
         assert [fault["field"] for fault in entered(client, priority=beyond).json()["errors"]] == ["priority"]

@@ -1,11 +1,7 @@
 """Live curves and plans over HTTP: those of a whole analysis, and clear refusals."""
 
-from __future__ import annotations
-
 import html
 import json
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,8 +9,7 @@ import pytest
 from fastapi.testclient import TestClient
 from running_service import PATIENCE_S, REFERENCES, until
 
-from fe_contact.analysis.flanks.flank_results import flank_results
-from fe_contact.options import AnalysisOptions, OperatingPoint
+from fe_contact import AnalysisOptions, OperatingPoint, flank_results
 from lineofaction.client import LineOfActionClient
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.problems import ServiceError
@@ -41,7 +36,7 @@ def case(**pinion: Any) -> dict[str, Any]:
 
 
 @pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+def client(tmp_path_factory):
     with TestClient(create_app(Settings(data_directory=tmp_path_factory.mktemp("service")))) as found:
         yield found
 
@@ -56,16 +51,16 @@ def analyzed(client: TestClient, asked: dict[str, Any]) -> str:
 
 
 @pytest.fixture(scope="module")
-def key(client: TestClient) -> str:
+def key(client):
     return analyzed(client, case())
 
 
 @pytest.mark.law
-def test_a_live_curve_is_that_of_an_analysis_of_its_own(client: TestClient, key: str) -> None:
+def test_a_live_curve_is_that_of_an_analysis_of_its_own(client, key):
     live = client.post(f"/v1/databases/{key}/ste", json={"torque_n_m": [0.5, 1.0], "pinion": RELIEF}).json()
-    store = client.app.state.context.store  # type: ignore[attr-defined]
+    store = client.app.state.context.store
     other = analyzed(client, case(**RELIEF))
-    table = client.app.state.context.databases.get(store, other).database  # type: ignore[attr-defined]
+    table = client.app.state.context.databases.get(store, other).database
     for curve in live["curves"]:
         whole = table.curve(torque=curve["torque_n_m"])
         assert curve["ste_um"] == pytest.approx((1e6 * whole.ste).tolist(), rel=1e-12, abs=0.0)
@@ -73,20 +68,18 @@ def test_a_live_curve_is_that_of_an_analysis_of_its_own(client: TestClient, key:
     assert live["effects"]["profile_modification"] and live["beyond_load_patches"] == 0
 
 
-def test_figures_that_were_drawn_once_need_no_live_worker(
-    client: TestClient, key: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_figures_that_were_drawn_once_need_no_live_worker(client, key, monkeypatch):
     where = f"/v1/results/{key}/figures"
     drawn = client.get(where)
     assert [section["title"] for section in drawn.json()["sections"]]
-    monkeypatch.setattr(type(client.app.state.context.live), "ask", None)  # type: ignore[attr-defined]
+    monkeypatch.setattr(type(client.app.state.context.live), "ask", None)
     again = client.get(where)
     assert again.content == drawn.content
     assert again.headers["ETag"] == drawn.headers["ETag"]
     assert client.get(where, headers={"If-None-Match": drawn.headers["ETag"]}).status_code == 304
 
 
-def test_two_results_are_compared_as_figures(client: TestClient, key: str) -> None:
+def test_two_results_are_compared_as_figures(client, key):
     """With itself, nothing differs; with the relieved pair, the relief is named."""
     where = f"/v1/results/{key}/figures"
     itself = client.get(where, params={"against": key}).json()
@@ -101,7 +94,7 @@ def test_two_results_are_compared_as_figures(client: TestClient, key: str) -> No
     assert client.get(where, params={"against": "nonsense"}).status_code == 422
 
 
-def test_a_report_to_print_is_a_page_in_which_nothing_runs(client: TestClient, key: str) -> None:
+def test_a_report_to_print_is_a_page_in_which_nothing_runs(client, key):
     """As a browser's address bar sends it; program and page of one result have tags of their own."""
     where, typed = f"/v1/results/{key}/figures", "text/html,application/xhtml+xml,*/*;q=0.8"
     for query in ({}, {"against": key}):
@@ -122,7 +115,7 @@ def test_a_report_to_print_is_a_page_in_which_nothing_runs(client: TestClient, k
             assert {own, client.get(where, params=query, headers=other).status_code} == {200, 304}
 
 
-def test_a_preview_states_no_errors_and_has_every_other_position(client: TestClient, key: str) -> None:
+def test_a_preview_states_no_errors_and_has_every_other_position(client, key):
     question = {"torque_n_m": [1.0], "pinion": RELIEF, "flanks": True, "passage": True}
     answers = [
         client.post(f"/v1/databases/{key}/ste", json=question | {"preview": preview}).json()
@@ -136,9 +129,7 @@ def test_a_preview_states_no_errors_and_has_every_other_position(client: TestCli
 
 
 @pytest.mark.law
-def test_pairs_within_a_class_are_solved_in_parts_and_spread_more_in_a_coarser_class(
-    client: TestClient, key: str
-) -> None:
+def test_pairs_within_a_class_are_solved_in_parts_and_spread_more_in_a_coarser_class(client, key):
     width = {}
     for chosen in (4, 8):
         question = {"torque_n_m": [1.0], "preview": True, "tolerance_class": chosen}
@@ -155,20 +146,20 @@ def test_pairs_within_a_class_are_solved_in_parts_and_spread_more_in_a_coarser_c
 
 
 @pytest.mark.parametrize("chosen", [0, 12, 6.5, "six", True, [6], {"tolerance_class": 6}, 1e9, -1])
-def test_a_class_that_is_none_is_refused(client: TestClient, key: str, chosen: object) -> None:
+def test_a_class_that_is_none_is_refused(client, key, chosen):
     refused = client.post(f"/v1/databases/{key}/ste", json={"torque_n_m": [1.0], "tolerance_class": chosen})
     assert refused.status_code == 422
     assert refused.json()["errors"][0]["field"].startswith("tolerance_class")
 
 
-def test_pairs_are_drawn_at_one_torque(client: TestClient, key: str) -> None:
+def test_pairs_are_drawn_at_one_torque(client, key):
     question = {"torque_n_m": [0.5, 1.0], "tolerance_class": 6}
     refused = client.post(f"/v1/databases/{key}/ste", json=question)
     assert refused.status_code == 422
     assert refused.json()["errors"][0]["field"] == "tolerance_class"
 
 
-def test_an_answer_knows_how_wrong_it_is_and_what_it_cost(client: TestClient, key: str) -> None:
+def test_an_answer_knows_how_wrong_it_is_and_what_it_cost(client, key):
     questions = [{"torque_n_m": [0.5, 1.0], "pinion": RELIEF | {"tip_relief_um": x}} for x in (4.0, 5.0)]
     first, again = (client.post(f"/v1/databases/{key}/ste", json=question).json() for question in questions)
     for curve in again["curves"]:
@@ -191,7 +182,7 @@ def test_an_answer_knows_how_wrong_it_is_and_what_it_cost(client: TestClient, ke
     LiveOutput.model_validate_json(json.dumps(first))
 
 
-def test_a_passage_meets_what_all_pairs_carry(client: TestClient, key: str) -> None:
+def test_a_passage_meets_what_all_pairs_carry(client, key):
     question = {"torque_n_m": [0.5, 1.0], "pinion": RELIEF, "flanks": True, "passage": True}
     answer = client.post(f"/v1/databases/{key}/ste", json=question).json()
     LiveOutput.model_validate_json(json.dumps(answer))
@@ -211,7 +202,7 @@ def test_a_passage_meets_what_all_pairs_carry(client: TestClient, key: str) -> N
         assert 0.0 < apart[pressure > 0].mean() < curve["mean_um"]  # the rest is the approach of the flanks
 
 
-def test_the_flanks_of_an_answer_are_those_of_the_study_of_flanks(client: TestClient, key: str) -> None:
+def test_the_flanks_of_an_answer_are_those_of_the_study_of_flanks(client, key):
     question = {"torque_n_m": [0.5, 1.0], "pinion": RELIEF}
     plain, full = (
         client.post(f"/v1/databases/{key}/ste", json=question | more).json()
@@ -237,21 +228,19 @@ def test_the_flanks_of_an_answer_are_those_of_the_study_of_flanks(client: TestCl
     LiveOutput.model_validate_json(json.dumps(full))
 
 
-def test_a_live_center_distance_is_that_of_an_analysis_of_its_own(client: TestClient, key: str) -> None:
+def test_a_live_center_distance_is_that_of_an_analysis_of_its_own(client, key):
     question = {"torque_n_m": [1.0], "center_distance_change_mm": 0.05, "pinion": RELIEF}
     (curve,) = client.post(f"/v1/databases/{key}/ste", json=question).json()["curves"]
     asked = case(**RELIEF) | {"errors": {"center_distance_change_mm": [0.05]}}
-    context = client.app.state.context  # type: ignore[attr-defined]
+    context = client.app.state.context
     table = context.databases.get(context.store, analyzed(client, asked)).database
     whole = table.curve(torque=1.0, center_distance_change=0.05e-3)
     assert curve["center_distance_change_mm"] == 0.05
     assert curve["ste_um"] == pytest.approx((1e6 * whole.ste).tolist(), rel=1e-12, abs=0.0)
 
 
-def test_derivatives_are_the_changes_of_the_curve_in_the_units_of_the_question(
-    client: TestClient, key: str
-) -> None:
-    def curve(relief: float, torque: float, **more: Any) -> dict[str, Any]:
+def test_derivatives_are_the_changes_of_the_curve_in_the_units_of_the_question(client, key):
+    def curve(relief, torque, **more):
         question = {"torque_n_m": [torque], "pinion": RELIEF | {"tip_relief_um": relief}, **more}
         found = client.post(f"/v1/databases/{key}/ste", json=question).json()
         assert ("derivatives_cpu_seconds" in found["cost"]) == bool(more)
@@ -286,20 +275,18 @@ def test_derivatives_are_the_changes_of_the_curve_in_the_units_of_the_question(
         ({"torque_n_m": [1.0], "pinion": {"tip_relief_um": -1.0}}, "pinion.tip_relief_um"),
     ],
 )
-def test_a_question_that_cannot_be_answered_names_its_field(
-    client: TestClient, key: str, question: dict[str, Any], field: str
-) -> None:
+def test_a_question_that_cannot_be_answered_names_its_field(client, key, question, field):
     refused = client.post(f"/v1/databases/{key}/ste", json=question)
     assert refused.status_code == 422
     assert refused.headers["content-type"] == "application/problem+json"
     assert [fault["field"] for fault in refused.json()["errors"]] == [field]
 
 
-def test_a_table_that_is_unknown_or_removed_is_not_found(client: TestClient, key: str) -> None:
+def test_a_table_that_is_unknown_or_removed_is_not_found(client, key):
     question = {"torque_n_m": [1.0]}
     unknown = client.post(f"/v1/databases/{'0' * 64}/ste", json=question)
     assert unknown.status_code == 404 and "Submit its case" in unknown.json()["detail"]
-    context = client.app.state.context  # type: ignore[attr-defined]
+    context = client.app.state.context
     inputs = {"key": key, "file": "/removed", "cache": "/none", "question": question}
     assert client.post(f"/v1/databases/{key}/ste", json=question).status_code == 200
     known = context.live.ask(LiveOrder(STE, inputs)).result(timeout=PATIENCE_S)
@@ -310,13 +297,11 @@ def test_a_table_that_is_unknown_or_removed_is_not_found(client: TestClient, key
     assert gone.value.as_json()["status"] == 404
 
 
-def test_a_table_computed_elsewhere_is_condensed_here_when_asked_to(
-    client: TestClient, key: str, tmp_path: Path
-) -> None:
+def test_a_table_computed_elsewhere_is_condensed_here_when_asked_to(client, key, tmp_path):
     """Another service with the same database and results, and a cache of its own."""
     question = {"torque_n_m": [0.5, 1.0], "pinion": RELIEF}
     known = client.post(f"/v1/databases/{key}/ste", json=question).json()
-    folder = client.app.state.context.settings.data_directory  # type: ignore[attr-defined]
+    folder = client.app.state.context.settings.data_directory
     settings = Settings(
         data_directory=tmp_path,
         database_url=f"sqlite:///{folder / 'service.sqlite3'}",
@@ -337,14 +322,14 @@ def test_a_table_computed_elsewhere_is_condensed_here_when_asked_to(
         assert curve.peak_to_peak_error_um is not None and curve.peak_to_peak_error_um > 0.0
 
 
-def test_a_plan_is_that_of_the_command_line(client: TestClient) -> None:
+def test_a_plan_is_that_of_the_command_line(client):
     found = client.post("/v1/plans", json={"inputs": {"case": case()}}).json()
     assert [entry["level"] for entry in found["levels"]] == ["draft", "standard", "fine"]
     assert found["choice"]["level"] == "draft"
     assert {"corner_contact", "misalignment"} <= {entry["name"] for entry in found["effect_ledger"]}
 
 
-def test_a_plan_of_no_pair_names_the_field_as_an_execution_does(client: TestClient) -> None:
+def test_a_plan_of_no_pair_names_the_field_as_an_execution_does(client):
     asked = {"inputs": {"case": case(bore_diameter_mm=19.0)}}
     refused, as_job = (
         client.post(path, json=asked) for path in ("/v1/plans", "/v1/processes/analyze/execution")

@@ -1,19 +1,16 @@
 """The real processes, end to end over HTTP: a case to its database, a scene to its run."""
 
-from __future__ import annotations
-
 import copy
 import json
 import shutil
 import tomllib
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from declared_figures import check_declared, document
 from fastapi.testclient import TestClient
+from repository import EXAMPLES
 from running_service import until
 
 from dynamics.simulation import simulate
@@ -25,15 +22,13 @@ from lineofaction.gearbox.schemas import Case, validated
 from service.app import create_app
 from service.settings import Settings
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
-
 
 def table(name: str) -> dict[str, Any]:
     return tomllib.loads((EXAMPLES / name).read_text(encoding="utf-8"))
 
 
 @pytest.fixture(scope="module")
-def case() -> dict[str, Any]:
+def case():
     found = table("palermo_spur_20_20.toml")
     found["load"] = {"torque_n_m": [50, 100, 200]}
     found["accuracy"] = {"level": "draft", "positions": 16}
@@ -41,7 +36,7 @@ def case() -> dict[str, Any]:
 
 
 @pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LineOfActionClient]:
+def client(tmp_path_factory):
     """A client of a running service with its real processes."""
     directory = tmp_path_factory.mktemp("service")
     with TestClient(create_app(Settings(data_directory=directory / "data"))) as service:
@@ -63,10 +58,10 @@ def scene(case: dict[str, Any]) -> dict[str, Any]:
 
 
 @pytest.mark.law
-def test_the_service_gives_what_python_gives(client: LineOfActionClient, case: dict[str, Any]) -> None:
+def test_the_service_gives_what_python_gives(client, case):
     job, seen = client.analyze.submit(case), []
 
-    def ended() -> bool:
+    def ended():
         seen.append(client.status(job.id))
         return seen[-1].status == "successful"
 
@@ -81,28 +76,24 @@ def test_the_service_gives_what_python_gives(client: LineOfActionClient, case: d
     assert any(state.stage for state in seen)  # on a busy machine the first and last progress may be all
 
 
-def test_a_database_carries_the_hash_it_is_found_under(
-    client: LineOfActionClient, case: dict[str, Any]
-) -> None:
+def test_a_database_carries_the_hash_it_is_found_under(client, case):
     key = client.analysis_key(case)
     assert client.fetch(key).metadata.content_hash == key
 
 
-def test_a_scene_runs_on_the_stored_table(client: LineOfActionClient, case: dict[str, Any]) -> None:
+def test_a_scene_runs_on_the_stored_table(client, case):
     run = client.simulate(scene(case))
     force = run.to_xarray()["mesh_force"].to_numpy()
     assert force.mean() == pytest.approx(100.0 / (0.04 * np.cos(np.radians(20.0))), rel=0.02)
 
 
-def test_the_figures_of_a_run_and_of_its_table_are_as_declared(
-    client: LineOfActionClient, case: dict[str, Any]
-) -> None:
+def test_the_figures_of_a_run_and_of_its_table_are_as_declared(client, case):
     check_declared("run", document(client.simulate.submit(scene(case)).figures()))
     check_declared("database", document(client.analyze.submit(case).figures()))
 
 
 @pytest.mark.law
-def test_a_hash_serves_as_well_as_the_case(client: LineOfActionClient, case: dict[str, Any]) -> None:
+def test_a_hash_serves_as_well_as_the_case(client, case):
     by_hash = scene(case)
     del by_hash["meshes"][0]["case"]
     by_hash["meshes"][0]["database_hash"] = client.analysis_key(case)
@@ -112,9 +103,7 @@ def test_a_hash_serves_as_well_as_the_case(client: LineOfActionClient, case: dic
 
 @pytest.mark.law
 @pytest.mark.parametrize("how", ["case", "case_file", "database_hash", "database_file"])
-def test_a_scene_runs_here_on_tables_of_the_service(
-    client: LineOfActionClient, case: dict[str, Any], tmp_path: Path, how: str
-) -> None:
+def test_a_scene_runs_here_on_tables_of_the_service(client, case, tmp_path, how):
     """However a mesh takes its table, the run is bit by bit the one that the service makes."""
     given, mesh = scene(case), scene(case)["meshes"][0]
     key = client.analysis_key(case)
@@ -129,7 +118,7 @@ def test_a_scene_runs_here_on_tables_of_the_service(
     assert np.array_equal(here.bearing_force, there.bearing_force)
 
 
-def test_faults_of_tables_are_named_by_the_scene(client: LineOfActionClient, case: dict[str, Any]) -> None:
+def test_faults_of_tables_are_named_by_the_scene(client, case):
     wrong = copy.deepcopy(scene(case))
     wrong["meshes"][0]["case"]["pair"]["pinion"]["bore_diameter_mm"] = 95.0
     with pytest.raises(BadInput, match=r"meshes\[0\]\.case\.pair\.pinion\.bore_diameter_mm"):
@@ -140,9 +129,7 @@ def test_faults_of_tables_are_named_by_the_scene(client: LineOfActionClient, cas
         client.scene(wrong)
 
 
-def test_a_scene_that_cannot_be_is_refused_before_it_is_a_job(
-    client: LineOfActionClient, case: dict[str, Any]
-) -> None:
+def test_a_scene_that_cannot_be_is_refused_before_it_is_a_job(client, case):
     wrong = copy.deepcopy(scene(case))
     wrong["shafts"][1]["origin_mm"] = [81.0, 0.0, 0.0]
     with pytest.raises(BadInput, match=r"shafts\[1\]\.origin_mm"):
@@ -153,7 +140,7 @@ def test_a_scene_that_cannot_be_is_refused_before_it_is_a_job(
         client.simulate.submit(wrong)
 
 
-def test_the_service_opens_no_file_for_a_caller(client: LineOfActionClient, case: dict[str, Any]) -> None:
+def test_the_service_opens_no_file_for_a_caller(client, case):
     for field in ("case_file", "database_file"):
         wrong = scene(case)
         del wrong["meshes"][0]["case"]
@@ -162,7 +149,7 @@ def test_the_service_opens_no_file_for_a_caller(client: LineOfActionClient, case
             client.submit("simulate", {"scene": wrong})
 
 
-def test_a_hash_nobody_knows_is_refused(client: LineOfActionClient, case: dict[str, Any]) -> None:
+def test_a_hash_nobody_knows_is_refused(client, case):
     wrong = scene(case)
     del wrong["meshes"][0]["case"]
     wrong["meshes"][0]["database_hash"] = "ab" * 32

@@ -5,13 +5,11 @@ of 6 cases with every change, 200 of 20 at night. And to a server on SQLite by m
 none of which is refused.
 """
 
-from __future__ import annotations
-
 import random
 import re
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,7 +18,7 @@ import httpx2
 import pytest
 from fastapi.testclient import TestClient
 from killed_service import KilledService
-from postgres_server import PostgresServer, migrated
+from postgres_server import migrated
 from prometheus_client.parser import text_string_to_metric_families
 from running_service import PATIENCE_S, REFERENCES, until
 from service_fakes import EXECUTION, REGISTRY
@@ -43,7 +41,7 @@ class Asked:
 
 
 @pytest.fixture
-def one_process(tmp_path: Path) -> Iterator[Asked]:
+def one_process(tmp_path):
     """One process on SQLite with a queue shorter than the number of cases."""
     settings = Settings(data_directory=tmp_path, queue_limit=QUEUE, workers=2)
     with TestClient(create_app(settings, REGISTRY), raise_server_exceptions=False) as found:
@@ -51,7 +49,7 @@ def one_process(tmp_path: Path) -> Iterator[Asked]:
 
 
 @pytest.fixture
-def several_processes(tmp_path: Path, postgres: PostgresServer) -> Iterator[Asked]:
+def several_processes(tmp_path, postgres):
     """A server on PostgreSQL in a process of its own, and two callers with keys."""
     keys = KeyFile(tmp_path / "keys.json")
     settings = {
@@ -73,7 +71,7 @@ def several_processes(tmp_path: Path, postgres: PostgresServer) -> Iterator[Aske
 
 
 @pytest.fixture(params=["one_process", "several_processes"])
-def asked(request: pytest.FixtureRequest) -> Asked:
+def asked(request):
     found: Asked = request.getfixturevalue(request.param)
     return found
 
@@ -98,12 +96,12 @@ def submitted_at_once(asked: Asked, wishes: Sequence[str], meanwhile: Callable[[
 
 
 @pytest.mark.parametrize("cases", [6, pytest.param(20, marks=pytest.mark.nightly)])
-def test_equal_cases_are_computed_once_and_all_are_answered(asked: Asked, cases: int) -> None:
+def test_equal_cases_are_computed_once_and_all_are_answered(asked, cases):
     wishes = [f"case {n % cases}" for n in range(SUBMISSIONS_PER_CASE * cases)]
     random.Random(7).shuffle(wishes)
     client, waiting = asked.clients[0], []
 
-    def watch() -> bool:
+    def watch():
         time.sleep(0.2)
         states = re.findall(r'loa_computations{state="(.*)"} ([1-9].*)', client.get("/metrics").text)
         counts = {state: int(float(number)) for state, number in states}
@@ -132,7 +130,7 @@ def test_equal_cases_are_computed_once_and_all_are_answered(asked: Asked, cases:
         pytest.param(256, 1200, marks=pytest.mark.nightly),
     ],
 )
-def test_many_clients_at_once_are_all_answered(tmp_path: Path, clients: int, submissions: int) -> None:
+def test_many_clients_at_once_are_all_answered(tmp_path, clients, submissions):
     """Of 1200 six were told that the database cannot be reached: others had always come before them."""
     settings = {"LOA_QUEUE_LIMIT": str(submissions)}
     with KilledService(tmp_path, settings) as service, ThreadPoolExecutor(clients) as pool:
@@ -140,7 +138,7 @@ def test_many_clients_at_once_are_all_answered(tmp_path: Path, clients: int, sub
         limits = httpx2.Limits(max_connections=clients)
         with httpx2.Client(base_url=service.address, timeout=PATIENCE_S, limits=limits) as client:
 
-            def kind(number: int) -> str:
+            def kind(number):
                 answer = client.post(EXECUTION, json={"inputs": {"wish": {"text": f"case {number}"}}})
                 return str(answer.json().get("type", answer.status_code))
 

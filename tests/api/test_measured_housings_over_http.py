@@ -1,9 +1,6 @@
 """Measured housings over HTTP: the responses go along with the scene, a confined process reads them."""
 
-from __future__ import annotations
-
 import json
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +9,7 @@ import pytest
 from command_line import printed
 from measured_housings import universal_file
 from measured_scenes import mass_lines, measured_scene
-from study_service import KEY, Served, study_service
+from study_service import KEY, study_service
 
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.file_content import FileContentInput
@@ -22,7 +19,7 @@ SPEEDS = {"speed_rpm": [900.0, 1500.0], "orders": 4}
 
 
 @pytest.fixture(scope="module")
-def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Served, Path]]:
+def served(tmp_path_factory):
     folder = tmp_path_factory.mktemp("measured")
     with study_service(folder) as service:
         yield service, measured_scene(folder)
@@ -38,7 +35,7 @@ def inputs_of(scene: Path, **housing: Any) -> dict[str, Any]:
     return inputs | SPEEDS
 
 
-def test_velocities_are_those_of_the_command_line(served: tuple[Served, Path]) -> None:
+def test_velocities_are_those_of_the_command_line(served):
     service, scene = served
     job = service.client.submit("vibration", inputs_of(scene))
     done = service.client.wait(job.id)
@@ -67,9 +64,7 @@ ATTACKS = {
 
 
 @pytest.mark.parametrize("name", ATTACKS)
-def test_a_file_that_cannot_be_used_is_a_fault_of_the_job(
-    name: str, served: tuple[Served, Path], tmp_path: Path
-) -> None:
+def test_a_file_that_cannot_be_used_is_a_fault_of_the_job(name, served, tmp_path):
     service, scene = served
     changed, bound = ATTACKS[name]
     job = service.client.submit("vibration", inputs_of(scene, frf_file=sent(tmp_path, mass_lines(**changed))))
@@ -80,7 +75,7 @@ def test_a_file_that_cannot_be_used_is_a_fault_of_the_job(
     assert bound in fault.bound
 
 
-def test_a_node_that_is_not_there_is_a_fault_of_the_job(served: tuple[Served, Path]) -> None:
+def test_a_node_that_is_not_there_is_a_fault_of_the_job(served):
     service, scene = served
     job = service.client.submit("vibration", inputs_of(scene, point_nodes=[{"name": "lid", "node": 5}]))
     with pytest.raises(BadInput) as caught:
@@ -96,9 +91,7 @@ def test_a_node_that_is_not_there_is_a_fault_of_the_job(served: tuple[Served, Pa
         ({"name": "a.uff", "content": "AAAA"}, "frf_file.content"),
     ],
 )
-def test_what_is_no_file_is_refused_at_the_request(
-    file: Any, field: str, served: tuple[Served, Path]
-) -> None:
+def test_what_is_no_file_is_refused_at_the_request(file, field, served):
     """A service reads no files of its callers, and none of another kind or damaged."""
     service, scene = served
     inputs = inputs_of(scene)

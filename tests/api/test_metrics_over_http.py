@@ -1,10 +1,7 @@
 """Figures for Prometheus: text that its parser reads, true for all services of one database."""
 
-from __future__ import annotations
-
 import platform
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
 import pytest
 from fastapi.testclient import TestClient
@@ -45,7 +42,7 @@ def run(client: TestClient, mode: str, text: str) -> None:
 
 
 @pytest.mark.law
-def test_figures_are_valid_and_tell_what_was_done(client: TestClient) -> None:
+def test_figures_are_valid_and_tell_what_was_done(client):
     run(client, "write", "x" * 100)
     run(client, "write", "y" * 23)
     run(client, "die", "")
@@ -68,7 +65,7 @@ def test_figures_are_valid_and_tell_what_was_done(client: TestClient) -> None:
     assert value(found["loa_requests"], "_total", **job) >= 3
 
 
-def test_workers_store_and_build_are_told(client: TestClient) -> None:
+def test_workers_store_and_build_are_told(client):
     run(client, "write", "first")
     run(client, "write", "first")  # stored by now
     run(client, "die", "")
@@ -94,7 +91,7 @@ def test_workers_store_and_build_are_told(client: TestClient) -> None:
     assert value(found["process_open_fds"]) > 3
 
 
-def test_the_queue_is_told_by_process(client: TestClient) -> None:
+def test_the_queue_is_told_by_process(client):
     for text in ("runs", "waits"):
         client.post(EXECUTION, json={"inputs": {"wish": {"mode": "hang", "text": text}}})
     busy = lambda: value(families(client)["loa_workers_busy"])  # noqa: E731
@@ -104,23 +101,23 @@ def test_the_queue_is_told_by_process(client: TestClient) -> None:
         assert value(depth, state=state, process="fake") == 1
 
 
-def test_reads_of_the_compliance_cache_come_from_the_workers(client: TestClient) -> None:
+def test_reads_of_the_compliance_cache_come_from_the_workers(client):
     run(client, "condense", "")
     reads = families(client)["loa_compliance_cache_reads"]
     assert value(reads, "_total", outcome="miss") == 2
     assert value(reads, "_total", outcome="hit") == 1
 
 
-def test_warnings_of_workers_are_counted(client: TestClient) -> None:
+def test_warnings_of_workers_are_counted(client):
     run(client, "warn", "")
     assert value(families(client)["loa_worker_warnings"], "_total", process="fake") == 1
 
 
-def test_event_streams_are_no_requests_that_take_long(client: TestClient) -> None:
+def test_event_streams_are_no_requests_that_take_long(client):
     location = client.post(EXECUTION, json={"inputs": {"wish": {"mode": "hang"}}}).headers["location"]
     route = "/v1/jobs/{job_id}/events"
 
-    def streams() -> float:
+    def streams():
         open_streams = families(client)["loa_event_streams"]
         return sum(sample.value for sample in open_streams.samples if sample.labels == {"route": route})
 
@@ -138,7 +135,7 @@ def test_event_streams_are_no_requests_that_take_long(client: TestClient) -> Non
 
 
 @pytest.mark.law
-def test_callers_choose_no_label(client: TestClient) -> None:
+def test_callers_choose_no_label(client):
     client.get("/metrics")
     for n in range(50):
         client.request(f"METHOD{n}", f"/nowhere/{n}")
@@ -154,7 +151,7 @@ def test_callers_choose_no_label(client: TestClient) -> None:
     assert not [s for s in samples if any(word in str(s.labels) for word in ("METHOD", "nowhere", "caller"))]
 
 
-def test_without_a_database_there_are_figures_that_say_so(tmp_path: Path) -> None:
+def test_without_a_database_there_are_figures_that_say_so(tmp_path):
     with running_server() as server:
         url = server.new_database()
         Schema(engine := database_engine(url)).upgrade()

@@ -1,8 +1,5 @@
 """Motions of a unit over HTTP: modes of a stored analysis along its shafts, of such results alone."""
 
-from __future__ import annotations
-
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -38,7 +35,7 @@ class Stored:
 
 
 @pytest.fixture(scope="module")
-def stored(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Stored]:
+def stored(tmp_path_factory):
     folder = tmp_path_factory.mktemp("service")
     modes = modal_analysis(assemble(flexible_pair()), [0.0, 100.0])
     without = {"axis_shaft": np.empty(0, dtype=np.int64), "axis_position": np.empty(0)}
@@ -62,7 +59,7 @@ def stored(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Stored]:
 
 
 @pytest.mark.law
-def test_every_mode_is_listed_and_moves_the_shafts_as_the_analysis_says(stored: Stored) -> None:
+def test_every_mode_is_listed_and_moves_the_shafts_as_the_analysis_says(stored):
     listed = stored.get(MODES).json()
     assert listed["motion"] is None
     assert [group["name"] for group in listed["groups"]] == ["at rest", "at 0 rpm", "at 954.93 rpm"]
@@ -83,7 +80,7 @@ def test_every_mode_is_listed_and_moves_the_shafts_as_the_analysis_says(stored: 
 
 
 @pytest.mark.law
-def test_a_deflection_stands_under_every_load_case(stored: Stored) -> None:
+def test_a_deflection_stands_under_every_load_case(stored):
     (group,) = stored.get(BENT).json()["groups"]
     assert [name.partition(",")[0] for name in group["motions"]] == ["cruise", "top"]
     motion = stored.get(BENT, number=1).json()["motion"]
@@ -97,7 +94,7 @@ def test_a_deflection_stands_under_every_load_case(stored: Stored) -> None:
             np.testing.assert_allclose(np.array(shaft["real"])[:, k] * scale, expected, rtol=1e-5, atol=1e-12)
 
 
-def test_a_client_reads_what_the_service_answers(stored: Stored, tmp_path: Path) -> None:
+def test_a_client_reads_what_the_service_answers(stored, tmp_path):
     with Client("http://testserver", cache_dir=tmp_path, transport=stored.http._transport) as client:
         listed = client.motion(MODES)
         assert listed.motion is None and listed.groups[0].name == "at rest"
@@ -106,7 +103,7 @@ def test_a_client_reads_what_the_service_answers(stored: Stored, tmp_path: Path)
             client.motion(MODES, 100_000)
 
 
-def test_it_is_sent_once_to_who_has_it(stored: Stored) -> None:
+def test_it_is_sent_once_to_who_has_it(stored):
     first = stored.get(MODES, number=1)
     again = stored.http.get(
         f"/v1/results/{MODES}/motion",
@@ -130,15 +127,13 @@ def test_it_is_sent_once_to_who_has_it(stored: Stored) -> None:
         (BROKEN, 0, 500, "not finite"),
     ],
 )
-def test_what_is_no_motion_is_refused(
-    stored: Stored, key: str, number: object, status: int, words: str
-) -> None:
+def test_what_is_no_motion_is_refused(stored, key, number, status, words):
     answer = stored.get(key, **({} if number is None else {"number": number}))
     assert (answer.status_code, words in answer.text) == (status, True), answer.text
 
 
-def test_a_damaged_file_is_refused(stored: Stored) -> None:
-    file = Path(stored.http.app.state.context.store.verified(OLDER).path)  # type: ignore[attr-defined]
+def test_a_damaged_file_is_refused(stored):
+    file = Path(stored.http.app.state.context.store.verified(OLDER).path)
     file.write_bytes(file.read_bytes()[:500])
     answer = stored.get(OLDER, number=0)
     assert answer.json()["detail"]

@@ -1,7 +1,5 @@
 """Spoiled files of every format: a refusal that names the file or an answer, and nothing left behind."""
 
-from __future__ import annotations
-
 import base64
 import io
 import json
@@ -22,6 +20,7 @@ from fastapi.testclient import TestClient
 from housing_solid import housing, write_block
 from machine_texts import CHART, machine_text
 from reduced_housings import random_housing
+from repository import EXAMPLES
 from service_fakes import REGISTRY
 
 from host import child_environment, processes_in
@@ -29,7 +28,6 @@ from lineofaction.gearbox.schemas.toml import toml_text
 from service.app import create_app
 from service.settings import Settings
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 _NUMBER = re.compile(rb"-?\d+\.?\d*(?:[eE][-+]?\d+)?")
 FATAL = (11, 23)
 """Seeds of STEP files over which the native reader crashes."""
@@ -133,7 +131,7 @@ def _solid(name: str, field: str) -> Asked:
     if field == "mesh_file":
         fields |= {"element_size_mm": None, "mesh_unit": "mm"}
 
-    def ask(content: bytes) -> Request:
+    def ask(content):
         own = housing(**fields | {field: _packed(name, content)})
         return Request("/v1/scenes/housing-surface", {"housings": [own]}, name)
 
@@ -161,12 +159,12 @@ def _sheet(content: bytes) -> Request:
 
 
 @pytest.fixture(scope="module")
-def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def place(tmp_path_factory):
     return tmp_path_factory.mktemp("service")
 
 
 @pytest.fixture(scope="module")
-def http(place: Path) -> Iterator[TestClient]:
+def http(place):
     app = create_app(Settings(data_directory=place), REGISTRY)
     yield TestClient(app, raise_server_exceptions=False, headers={"Host": "localhost"})
     app.state.context.reader.stop()
@@ -174,7 +172,7 @@ def http(place: Path) -> Iterator[TestClient]:
 
 
 @pytest.fixture(scope="module")
-def files(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[str, bytes, Asked]]:
+def files(tmp_path_factory):
     return list(corpus(tmp_path_factory.mktemp("corpus")))
 
 
@@ -189,13 +187,8 @@ def left(place: Path) -> list[Any]:
 
 
 @pytest.mark.law
-def test_good_files_read_the_same_as_without_confinement(
-    http: TestClient,
-    files: list[tuple[str, bytes, Asked]],
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    pool, orders, answers = http.app.state.context.reader, [], []  # type: ignore[attr-defined]
+def test_good_files_read_the_same_as_without_confinement(http, files, tmp_path, monkeypatch):
+    pool, orders, answers = http.app.state.context.reader, [], []
     ask = pool.ask
     monkeypatch.setattr(pool, "ask", lambda order, *rest: orders.append(order) or ask(order, *rest))
     for name, content, request in files:
@@ -217,9 +210,7 @@ def test_good_files_read_the_same_as_without_confinement(
 
 @pytest.mark.law
 @pytest.mark.parametrize("seed", FATAL)
-def test_a_step_file_that_ends_its_reader_is_named(
-    http: TestClient, place: Path, files: list[tuple[str, bytes, Asked]], seed: int
-) -> None:
+def test_a_step_file_that_ends_its_reader_is_named(http, place, files, seed):
     _, content, ask = files[0]
     answer = answered(http, mutated(content, seed), ask)
     assert answer.status_code == 422, answer.text
@@ -231,9 +222,7 @@ def test_a_step_file_that_ends_its_reader_is_named(
 
 @pytest.mark.law
 @pytest.mark.parametrize("count", [12, pytest.param(480, marks=pytest.mark.nightly)])
-def test_spoiled_files_are_refused_or_read(
-    http: TestClient, place: Path, files: list[tuple[str, bytes, Asked]], count: int
-) -> None:
+def test_spoiled_files_are_refused_or_read(http, place, files, count):
     """As many of every format, of a mesh and a gear unit in turn of one of their files.
 
     All by one warm process, which is replaced after 500 forks.

@@ -1,7 +1,5 @@
 """Drafts and canaries: no temporary folder keeps a byte of a request, and no answer a byte of the service."""
 
-from __future__ import annotations
-
 import base64
 import copy
 import io
@@ -187,7 +185,7 @@ class Place:
         assert answer.status_code == 422
 
     def reader_killed(self, number: int) -> None:
-        future = self.http.app.state.context.reader.ask(_order(number))  # type: ignore[attr-defined]
+        future = self.http.app.state.context.reader.ask(_order(number))
         readers: list[int] = []
         until(lambda: bool(readers.extend(processes_in(self.drafts[1])) or readers) or future.done())
         for pid in readers:
@@ -235,7 +233,7 @@ def _order(number: int) -> Any:
 
 
 @pytest.fixture(scope="module")
-def place(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Place]:
+def place(tmp_path_factory):
     folder = tmp_path_factory.mktemp("drafts")
     (folder / "temporary").mkdir()
     write_block(folder / "block.step")
@@ -256,7 +254,7 @@ ENDS: list[Callable[[Place, int], None]] = [
 
 @pytest.mark.law
 @pytest.mark.parametrize("count", [8, pytest.param(200, marks=pytest.mark.nightly)])
-def test_nothing_is_left_of_requests_that_end_badly(place: Place, count: int) -> None:
+def test_nothing_is_left_of_requests_that_end_badly(place, count):
     for number, end in enumerate(islice(cycle(ENDS), count)):
         end(place, 1000 * count + number)
     assert place.is_empty()
@@ -266,7 +264,7 @@ def test_nothing_is_left_of_requests_that_end_badly(place: Place, count: int) ->
 
 
 @pytest.mark.law
-def test_no_question_brings_the_canary(place: Place) -> None:
+def test_no_question_brings_the_canary(place):
     http, folder = place.http, place.folder
     data = folder / "data"
     canary = write_canary(data)

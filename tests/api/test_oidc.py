@@ -1,7 +1,5 @@
 """Bearer tokens of an issuer: what is let in, what is refused, and when the issuer is asked."""
 
-from __future__ import annotations
-
 import base64
 import hashlib
 import hmac
@@ -12,7 +10,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from pathlib import Path
 from typing import Any
 
 import jwt
@@ -106,7 +103,7 @@ class LocalIssuer:
 @contextmanager
 def local_issuer() -> Iterator[LocalIssuer]:
     class Handler(BaseHTTPRequestHandler):
-        def do_GET(self) -> None:
+        def do_GET(self):
             issuer.asked.append(self.path)
             document = issuer.document(self.path) if issuer.answers else None
             content = json.dumps(document).encode()
@@ -115,7 +112,7 @@ def local_issuer() -> Iterator[LocalIssuer]:
             self.end_headers()
             self.wfile.write(content)
 
-        def log_message(self, *_arguments: object) -> None:
+        def log_message(self, *_arguments):
             """Log nothing."""
 
     server = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
@@ -139,7 +136,7 @@ def _base64(content: bytes) -> str:
 
 
 @pytest.fixture
-def issuer(monkeypatch: pytest.MonkeyPatch) -> Iterator[LocalIssuer]:
+def issuer(monkeypatch):
     with local_issuer() as found:
         monkeypatch.setenv("LOA_OIDC_ISSUER", found.url)
         monkeypatch.setenv("LOA_OIDC_AUDIENCE", AUDIENCE)
@@ -158,14 +155,14 @@ class Clock:
 
 
 @pytest.fixture
-def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+def clock(monkeypatch):
     found = Clock()
     monkeypatch.setattr(issuer_module.Issuer.__init__, "__defaults__", (None, found))
     return found
 
 
 @pytest.fixture
-def http(issuer: LocalIssuer, clock: Clock, tmp_path: Path) -> Iterator[TestClient]:
+def http(issuer, clock, tmp_path):
     settings = Settings(data_directory=tmp_path / "data")
     with TestClient(create_app(settings, REGISTRY, works=False), raise_server_exceptions=False) as found:
         yield found
@@ -175,7 +172,7 @@ def ask(http: TestClient, token: str, path: str = "/v1/jobs") -> Response:
     return http.get(path, headers={"Authorization": f"Bearer {token}"})
 
 
-def test_claims_are_name_project_and_scopes(http: TestClient, issuer: LocalIssuer) -> None:
+def test_claims_are_name_project_and_scopes(http, issuer):
     bearing = {"Authorization": f"Bearer {issuer.token()}"}
     job = http.post(EXECUTION, json={"inputs": {"wish": {}}}, headers=bearing).headers["location"]
     assert http.get(job, headers=bearing).status_code == 200
@@ -210,9 +207,7 @@ BAD: dict[str, Callable[[LocalIssuer], str]] = {
 
 
 @pytest.mark.parametrize("bad", BAD.values(), ids=BAD)
-def test_what_is_not_good_is_refused(
-    http: TestClient, issuer: LocalIssuer, bad: Callable[[LocalIssuer], str]
-) -> None:
+def test_what_is_not_good_is_refused(http, issuer, bad):
     assert ask(http, issuer.token()).status_code == 200
     header = b"Bearer " + bad(issuer).encode("latin-1")
     answer = http.get("/v1/jobs", headers={"Authorization": header})
@@ -221,14 +216,12 @@ def test_what_is_not_good_is_refused(
     assert "/elsewhere" not in issuer.asked, "an address in a token is not followed"
 
 
-def test_an_expired_token_says_so(http: TestClient, issuer: LocalIssuer) -> None:
+def test_an_expired_token_says_so(http, issuer):
     answer = ask(http, issuer.token(exp=1_700_000_000))
     assert (answer.status_code, answer.json()["type"]) == (401, KeyExpired.type)
 
 
-def test_keys_are_fetched_once_and_anew_when_they_rotate(
-    http: TestClient, issuer: LocalIssuer, clock: Clock
-) -> None:
+def test_keys_are_fetched_once_and_anew_when_they_rotate(http, issuer, clock):
     old = issuer.token()
     assert [ask(http, old).status_code for _ in range(5)] == [200] * 5
     assert issuer.asked == ["/.well-known/openid-configuration", "/keys"]
@@ -239,18 +232,14 @@ def test_keys_are_fetched_once_and_anew_when_they_rotate(
     assert ask(http, old).status_code == 401, "no longer published"
 
 
-def test_made_up_keys_do_not_make_us_ask_the_issuer(
-    http: TestClient, issuer: LocalIssuer, clock: Clock
-) -> None:
+def test_made_up_keys_do_not_make_us_ask_the_issuer(http, issuer, clock):
     for number in range(20):
         assert ask(http, issuer.token(kid=f"made-up-{number}")).status_code == 401
         clock.s += PAUSE_S / 10
     assert len(issuer.asked) <= 2 * 3
 
 
-def test_an_issuer_that_is_down_holds_nobody_up_for_a_day(
-    http: TestClient, issuer: LocalIssuer, clock: Clock
-) -> None:
+def test_an_issuer_that_is_down_holds_nobody_up_for_a_day(http, issuer, clock):
     token = issuer.token()
     assert ask(http, token).status_code == 200
     issuer.answers = False
@@ -270,18 +259,14 @@ def test_an_issuer_that_is_down_holds_nobody_up_for_a_day(
     ("field", "value"),
     [("issuer", "https://login.example"), ("jwks_uri", "http://localhost:{port}/keys"), ("jwks_uri", 3)],
 )
-def test_keys_come_from_the_issuer_alone(
-    http: TestClient, issuer: LocalIssuer, field: str, value: object
-) -> None:
+def test_keys_come_from_the_issuer_alone(http, issuer, field, value):
     port = issuer.url.rpartition(":")[2]
     issuer.changes = {field: value.format(port=port) if isinstance(value, str) else value}
     assert ask(http, issuer.token()).json()["type"] == IssuerUnavailable.type
     assert "/keys" not in issuer.asked
 
 
-def test_keys_of_the_file_are_good_beside_tokens(
-    http: TestClient, issuer: LocalIssuer, tmp_path: Path
-) -> None:
+def test_keys_of_the_file_are_good_beside_tokens(http, issuer, tmp_path):
     key = KeyFile(tmp_path / "data" / "keys.json").add("bench", scopes=["operate"])
     assert ask(http, key, "/metrics").status_code == 200
     assert ask(http, "loa_guessed").status_code == 401
@@ -289,7 +274,7 @@ def test_keys_of_the_file_are_good_beside_tokens(
     assert issuer.asked == []
 
 
-def test_claims_inside_claims(issuer: LocalIssuer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_claims_inside_claims(issuer, tmp_path, monkeypatch):
     for name, claim in (
         ("NAME", "user.mail"),
         ("PROJECT", "https://x.example/team"),
@@ -318,13 +303,11 @@ def test_claims_inside_claims(issuer: LocalIssuer, tmp_path: Path, monkeypatch: 
         ("AUDIENCE", ""),
     ],
 )
-def test_settings_that_let_others_in_are_refused(
-    issuer: LocalIssuer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, value: str
-) -> None:
+def test_settings_that_let_others_in_are_refused(issuer, tmp_path, monkeypatch, name, value):
     monkeypatch.setenv(f"LOA_OIDC_{name}", value)
     with pytest.raises(BadInput, match="oidc_"):
         open_identities(Settings(data_directory=tmp_path))
 
 
-def test_an_issuer_is_enough_to_be_reached_by_others(issuer: LocalIssuer, tmp_path: Path) -> None:
+def test_an_issuer_is_enough_to_be_reached_by_others(issuer, tmp_path):
     assert open_identities(Settings(host="0.0.0.0", data_directory=tmp_path))

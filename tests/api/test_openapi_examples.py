@@ -1,7 +1,5 @@
 """Every body of the API has an example: those sent are accepted, those answered are as their schemas say."""
 
-from __future__ import annotations
-
 import json
 import re
 import tempfile
@@ -70,7 +68,7 @@ def assert_conforms(example: Any, schema: dict[str, Any]) -> None:
     validator(json.dumps(schema)).validate(example)
 
 
-def test_every_reference_leads_somewhere() -> None:
+def test_every_reference_leads_somewhere():
     named = re.findall(r'"\$ref": "#/components/(\w+)/([\w-]+)"', text := json.dumps(DESCRIPTION))
     assert len(named) == text.count('"$ref"') > 0
     for part, name in named:
@@ -78,12 +76,12 @@ def test_every_reference_leads_somewhere() -> None:
 
 
 @pytest.mark.parametrize(("path", "kind", "body"), SENT, ids=[f"{path} {kind}" for path, kind, _ in SENT])
-def test_a_body_to_send_has_an_example_of_its_schema(path: str, kind: str, body: dict[str, Any]) -> None:
+def test_a_body_to_send_has_an_example_of_its_schema(path, kind, body):
     assert_conforms(body["example"], body["schema"])
 
 
 @pytest.mark.law
-def test_every_answer_has_an_example_of_its_schema() -> None:
+def test_every_answer_has_an_example_of_its_schema():
     for method, path, status, kind, body in ANSWERED:
         shown = (
             [body["example"]]
@@ -97,21 +95,21 @@ def test_every_answer_has_an_example_of_its_schema() -> None:
                 assert example["status"] == int(status)
 
 
-def test_every_field_has_examples_of_its_schema() -> None:
+def test_every_field_has_examples_of_its_schema():
     examples = [(field, example) for field in schemas(DESCRIPTION) for example in field.get("examples", [])]
     assert len(examples) > 400
     fields, told = ({str(n): pair[part] for n, pair in enumerate(examples)} for part in (0, 1))
     assert_conforms(told, {"properties": fields})
 
 
-def test_every_array_says_what_its_items_are() -> None:
+def test_every_array_says_what_its_items_are():
     arrays = [schema for schema in schemas(DESCRIPTION) if schema.get("type") == "array"]
     assert len(arrays) > 100
     assert [schema for schema in arrays if "items" not in schema] == []
 
 
 @pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+def client(tmp_path_factory):
     """A client of the app with a table, and what is taken for a run: nothing is computed here."""
     file = tmp_path_factory.mktemp("table") / "table.nc"
     small_table().to_netcdf(file)
@@ -130,9 +128,7 @@ OF_A_JOB = "/v1/jobs/{job_id}"
     [entry for entry in SENT if entry[0] not in (*LIVE, OF_A_JOB)],
     ids=[f"{path} {kind}" for path, kind, _ in SENT if path not in (*LIVE, OF_A_JOB)],
 )
-def test_the_example_of_a_body_is_accepted(
-    client: TestClient, path: str, kind: str, body: dict[str, Any]
-) -> None:
+def test_the_example_of_a_body_is_accepted(client, path, kind, body):
     url = path.replace("{key}", HASH)
     if kind == "application/cbor":
         answer = client.post(url, content=cbor2.dumps(body["example"]), headers={"Content-Type": kind})
@@ -141,7 +137,7 @@ def test_the_example_of_a_body_is_accepted(
     assert answer.status_code in (200, 201), answer.text
 
 
-def test_the_example_of_a_change_is_accepted(client: TestClient) -> None:
+def test_the_example_of_a_change_is_accepted(client):
     ((_, _, body),) = [entry for entry in SENT if entry[0] == OF_A_JOB]
     job = client.post("/v1/processes/analyze/execution", json=request_example("analyze/execution")).json()
     assert client.patch(f"/v1/jobs/{job['jobID']}", json=body["example"]).status_code == 200

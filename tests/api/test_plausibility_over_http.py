@@ -1,20 +1,15 @@
 """What is implausible is said before a job runs, in its status, and by every form of its result."""
 
-from __future__ import annotations
-
 import io
 import json
 import tomllib
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import h5netcdf
 import pytest
-from fastapi.testclient import TestClient
 from study_service import empty_service
 
-from lineofaction.client import LineOfActionClient
 from lineofaction.gearbox.schemas.plan import InputWarning
 
 GEAR = {"teeth": 20, "face_width_mm": 25.0, "bore_diameter_mm": 40.0}
@@ -28,7 +23,7 @@ ROTOR = tomllib.loads((Path(__file__).parents[2] / "examples" / "jeffcott_scene.
 
 
 @pytest.fixture(scope="module")
-def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[LineOfActionClient, TestClient]]:
+def served(tmp_path_factory):
     """A client of a running service with its real processes, and the bare HTTP one."""
     with empty_service(tmp_path_factory.mktemp("service") / "data") as found:
         yield found
@@ -38,7 +33,7 @@ def messages(body: dict[str, Any]) -> list[str]:
     return [warning["message"].partition(":")[0] for warning in body["warnings"]]
 
 
-def test_a_case_is_assessed_from_plan_to_result(served: tuple[LineOfActionClient, TestClient]) -> None:
+def test_a_case_is_assessed_from_plan_to_result(served):
     client, http = served
     said = ["pair.pinion.tip_relief_um = 0.02 µm"]
     inputs = {"inputs": {"case": CASE}}
@@ -56,9 +51,7 @@ def test_a_case_is_assessed_from_plan_to_result(served: tuple[LineOfActionClient
         assert messages({"warnings": json.loads(content.attrs["warnings"])}) == said
 
 
-def test_studies_in_json_and_netcdf_carry_it(
-    served: tuple[LineOfActionClient, TestClient], tmp_path: Path
-) -> None:
+def test_studies_in_json_and_netcdf_carry_it(served, tmp_path):
     client, http = served
     for process, kind, further in (
         ("flank", "flanks", {"torque_n_m": 100.0}),
@@ -72,9 +65,7 @@ def test_studies_in_json_and_netcdf_carry_it(
         assert messages(http.get(result.href).json()) == ["pair.pinion.tip_relief_um = 0.02 µm"]
 
 
-def test_what_an_import_left_out_goes_with_every_answer(
-    served: tuple[LineOfActionClient, TestClient],
-) -> None:
+def test_what_an_import_left_out_goes_with_every_answer(served):
     client, http = served
     said = "left out of the scene"
     scene = ROTOR | {"left_out": ["shaft 5 (line 143): nothing joins it to the train"]}
@@ -88,7 +79,7 @@ def test_what_an_import_left_out_goes_with_every_answer(
     assert http.get(f"{result.href}/figures").json()["alarms"][0].startswith(f"Warning: {said}")
 
 
-def test_a_plausible_case_has_an_empty_list(served: tuple[LineOfActionClient, TestClient]) -> None:
+def test_a_plausible_case_has_an_empty_list(served):
     _, http = served
     plain = CASE | {"pair": CASE["pair"] | {"pinion": GEAR}}
     assert http.post("/v1/plans", json={"inputs": {"case": plain}}).json()["warnings"] == []

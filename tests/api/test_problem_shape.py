@@ -1,9 +1,6 @@
 """Whatever is wrong with a request, to whichever route: one error shape, its status documented."""
 
-from __future__ import annotations
-
 import tempfile
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -42,7 +39,7 @@ DRAFTS, OF_FIELDS = "/v1/drafts/", ("unknown field", "deep")
 
 
 @pytest.fixture(scope="module")
-def client() -> Iterator[TestClient]:
+def client():
     yield TestClient(_app, raise_server_exceptions=False)
 
 
@@ -65,7 +62,7 @@ def assert_problem(answer: Any, *statuses: int) -> None:
 
 @pytest.mark.parametrize("path", [p for method, p in ROUTES if method == "POST" and "process_id" not in p])
 @pytest.mark.parametrize("sent", ["application/x-www-form-urlencoded", "text/plain", ""])
-def test_a_body_of_another_type_is_told_the_header_to_send(client: TestClient, path: str, sent: str) -> None:
+def test_a_body_of_another_type_is_told_the_header_to_send(client, path, sent):
     """As ``curl -d`` sends it: the body was called no object, which it was."""
     answer = client.post(
         named(path), content=b'{"inputs": {}}', headers={"Content-Type": sent} if sent else {}
@@ -77,7 +74,7 @@ def test_a_body_of_another_type_is_told_the_header_to_send(client: TestClient, p
 
 @pytest.mark.parametrize("wrong", WRONG_BODIES)
 @pytest.mark.parametrize("path", [path for method, path in ROUTES if method == "POST"])
-def test_a_wrong_body_is_a_problem_that_is_documented(client: TestClient, path: str, wrong: str) -> None:
+def test_a_wrong_body_is_a_problem_that_is_documented(client, path, wrong):
     content, headers = WRONG_BODIES[wrong]
     answer = client.post(named(path), content=content, headers=headers)
     if path.startswith(DRAFTS) and wrong in OF_FIELDS:
@@ -88,7 +85,7 @@ def test_a_wrong_body_is_a_problem_that_is_documented(client: TestClient, path: 
 
 
 @pytest.mark.parametrize("path", [path for _, path in ROUTES if "{" in path])
-def test_what_does_not_exist_is_a_problem(client: TestClient, path: str) -> None:
+def test_what_does_not_exist_is_a_problem(client, path):
     for method in [method for method, known in ROUTES if known == path and method != "POST"]:
         body = {"json": BODIES[path]} if method == "PATCH" else {}
         assert_problem(client.request(method, named(path), **body), 404)
@@ -97,17 +94,17 @@ def test_what_does_not_exist_is_a_problem(client: TestClient, path: str) -> None
 
 
 @pytest.mark.parametrize("path", sorted({path for _, path in ROUTES}))
-def test_a_method_that_is_none_is_a_problem_and_says_which_are(client: TestClient, path: str) -> None:
+def test_a_method_that_is_none_is_a_problem_and_says_which_are(client, path):
     known = {method for method, other in ROUTES if other == path}
     answer = client.request("PUT", named(path))
     assert_problem(answer, 405)
     assert known <= {method.strip() for method in answer.headers["allow"].split(",")}
 
 
-def test_results_that_never_change_say_so_to_caches(client: TestClient) -> None:
+def test_results_that_never_change_say_so_to_caches(client):
     file = Path(_directory.name) / "file.nc"
     file.write_bytes(b"table")
-    context = client.app.state.context  # type: ignore[attr-defined]
+    context = client.app.state.context
     context.store.put("1" * 64, "database", file)
     accept = {"Accept": "application/x-netcdf"}
     answer = client.get(f"/v1/results/{'1' * 64}", headers=accept)

@@ -1,13 +1,9 @@
 """Force queries: every encoding gives the database's own numbers to the last bit, and refuses the same."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import struct
-from collections.abc import Iterator
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import cbor2
@@ -17,7 +13,6 @@ from fastapi.testclient import TestClient
 from httpx2 import Response
 from sliced_face import sliced_database
 
-from fe_contact.ste import SteDatabase
 from lineofaction.client import LineOfActionClient
 from lineofaction.gearbox.schemas.query import LIMITS, MAX_POINTS
 from service.app import create_app
@@ -30,12 +25,12 @@ COUNT = 400
 
 
 @pytest.fixture(scope="module")
-def table() -> SteDatabase:
+def table():
     return sliced_database((-2e-5, 0.0, 1e-5), (-1e-4, 0.0, 1e-4), positions=6)
 
 
 @pytest.fixture(scope="module")
-def stated(table: SteDatabase) -> SteDatabase:
+def stated(table):
     """The table with errors at its nodes and between them."""
     draw = np.random.default_rng(11)
     nodes = table.static_transmission_error.shape
@@ -47,7 +42,7 @@ def stated(table: SteDatabase) -> SteDatabase:
 
 
 @pytest.fixture(scope="module")
-def client(stated: SteDatabase, tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+def client(stated, tmp_path_factory):
     directory = tmp_path_factory.mktemp("data")
     app = create_app(Settings(data_directory=directory))
     stated.to_netcdf(directory / "table.nc")
@@ -102,9 +97,7 @@ BODIES = {
 
 @pytest.mark.parametrize("accept", [JSON, CBOR, RAW])
 @pytest.mark.parametrize("sent", BODIES)
-def test_every_encoding_gives_the_numbers_of_the_database(
-    client: TestClient, table: SteDatabase, sent: str, accept: str
-) -> None:
+def test_every_encoding_gives_the_numbers_of_the_database(client, table, sent, accept):
     given = columns()
     answer = ask(client, *BODIES[sent](given), accept, columns=",".join(given))
     x, d, m, c = (np.array(column) for column in given.values())
@@ -116,9 +109,7 @@ def test_every_encoding_gives_the_numbers_of_the_database(
 
 
 @pytest.mark.parametrize("accept", [JSON, CBOR])
-def test_the_error_of_a_force_is_that_of_the_curve_through_its_point(
-    client: TestClient, stated: SteDatabase, accept: str
-) -> None:
+def test_the_error_of_a_force_is_that_of_the_curve_through_its_point(client, stated, accept):
     """In steps of the stiffness; none where the table holds no error."""
     given = columns()
     answer = ask(client, json.dumps(given).encode(), JSON, accept)
@@ -138,7 +129,7 @@ def test_the_error_of_a_force_is_that_of_the_curve_through_its_point(
         assert found["force_error_n"][k] == pytest.approx(expected, rel=1e-9)
 
 
-def test_the_client_gives_the_same(client: TestClient, tmp_path: Path) -> None:
+def test_the_client_gives_the_same(client, tmp_path):
     given = columns()
     wanted = ask(client, json.dumps(given).encode(), JSON).json()
     with LineOfActionClient("http://testserver", cache_dir=tmp_path, transport=client._transport) as light:
@@ -150,7 +141,7 @@ def test_the_client_gives_the_same(client: TestClient, tmp_path: Path) -> None:
     assert one.model_dump() == ask(client, json.dumps(body).encode(), JSON).json()
 
 
-def test_one_value_serves_all_points(client: TestClient) -> None:
+def test_one_value_serves_all_points(client):
     given = columns()
     alone = given | {"misalignment_um": 5.0, "center_distance_change_mm": [0.01]}
     repeated = given | {"misalignment_um": [5.0] * COUNT, "center_distance_change_mm": [0.01] * COUNT}
@@ -160,7 +151,7 @@ def test_one_value_serves_all_points(client: TestClient) -> None:
     )
 
 
-def test_large_and_small_batches_give_the_same(client: TestClient) -> None:
+def test_large_and_small_batches_give_the_same(client):
     given = {name: column * 20 for name, column in columns().items()}  # long enough for a thread
     names = ",".join(given)
     whole = numbers(ask(client, raw(given), RAW, columns=names))
@@ -179,9 +170,7 @@ def test_large_and_small_batches_give_the_same(client: TestClient) -> None:
         (f"{CBOR};q=0, */*", JSON),
     ],
 )
-def test_the_answer_is_of_the_type_preferred_else_that_of_the_body(
-    client: TestClient, accept: str | None, kind: str
-) -> None:
+def test_the_answer_is_of_the_type_preferred_else_that_of_the_body(client, accept, kind):
     body = cbor2.dumps({"position": [0.0], "deflection_um": [5.0]})
     assert ask(client, body, CBOR, accept).headers["content-type"] == kind
 
@@ -193,22 +182,20 @@ def assert_problem(answer: Response, status: int) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("kind", ["", "text/plain", "application/xml", "multipart/form-data", "json"])
-def test_other_bodies_are_415(client: TestClient, kind: str) -> None:
+def test_other_bodies_are_415(client, kind):
     found = assert_problem(ask(client, b'{"position": [0], "deflection_um": [0]}', kind), 415)
     assert all(known in found["detail"] for known in (JSON, CBOR, RAW))
 
 
 @pytest.mark.parametrize("accept", ["text/html", "image/*", f"{JSON};q=0", "*/*;q=0"])
-def test_other_answers_are_406(client: TestClient, accept: str) -> None:
+def test_other_answers_are_406(client, accept):
     assert_problem(ask(client, b'{"position": [0], "deflection_um": [0]}', JSON, accept), 406)
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), -float("inf"), 1.1e9])
 @pytest.mark.parametrize("name", LIMITS)
 @pytest.mark.parametrize("sent", BODIES)
-def test_a_value_that_is_no_number_or_too_large_is_named(
-    client: TestClient, sent: str, name: str, value: float
-) -> None:
+def test_a_value_that_is_no_number_or_too_large_is_named(client, sent, name, value):
     given = {column: [0.0] * 5 for column in LIMITS}
     given[name][3] = value
     answer = ask(client, *BODIES[sent](given), columns=",".join(given))
@@ -218,7 +205,7 @@ def test_a_value_that_is_no_number_or_too_large_is_named(
 
 
 @pytest.mark.parametrize("sent", BODIES)
-def test_too_many_points_are_one_clear_error(client: TestClient, sent: str) -> None:
+def test_too_many_points_are_one_clear_error(client, sent):
     given = dict.fromkeys(("position", "deflection_um"), [0] * (MAX_POINTS + 1))
     (fault,) = assert_problem(ask(client, *BODIES[sent](given)), 422)["errors"][:1]
     assert (fault["field"], fault["bound"]) == ("position", f"a list of at most {MAX_POINTS}")
@@ -258,9 +245,7 @@ def test_too_many_points_are_one_clear_error(client: TestClient, sent: str) -> N
         (b'{"position": [0], "deflection_um": [0], "misalignment_um": []}', JSON, "misalignment_um"),
     ],
 )
-def test_a_body_that_is_no_query_is_refused_by_name(
-    client: TestClient, body: bytes, kind: str, field: str
-) -> None:
+def test_a_body_that_is_no_query_is_refused_by_name(client, body, kind, field):
     answer = ask(client, body, kind)
     if field == "":  # one position serves all misalignments
         assert len(answer.json()["force_n"]) == 2
@@ -271,24 +256,24 @@ def test_a_body_that_is_no_query_is_refused_by_name(
 @pytest.mark.parametrize(
     "names", ["", "position", "position,position,deflection_um", "deflection_um,force_n,position", "x" * 5000]
 )
-def test_columns_that_make_no_query_are_refused(client: TestClient, names: str) -> None:
+def test_columns_that_make_no_query_are_refused(client, names):
     body = struct.pack("<6d", *range(6)) if names else struct.pack("<d", 1.0)
     (fault,) = assert_problem(ask(client, body, RAW, columns=names), 422)["errors"]
     assert fault["field"] == "columns"
 
 
 @pytest.mark.parametrize("key", ["ABC", "0" * 63, "0" * 65, "0" * 64 + "%0A"])
-def test_a_key_that_is_none_is_refused(client: TestClient, key: str) -> None:
+def test_a_key_that_is_none_is_refused(client, key):
     answer = client.post(f"/v1/databases/{key}/query", json={"position": [0.0], "deflection_um": [0.0]})
     assert [fault["field"] for fault in assert_problem(answer, 422)["errors"]] == ["key"]
 
 
-def test_an_unknown_table_is_not_found(client: TestClient) -> None:
+def test_an_unknown_table_is_not_found(client):
     answer = client.post(f"/v1/databases/{'0' * 64}/query", json={"position": [0.0], "deflection_um": [0.0]})
     assert assert_problem(answer, 404)["type"] == "urn:lineofaction:problem:not-found"
 
 
-def test_only_the_query_itself_passes_the_router_by(client: TestClient) -> None:
+def test_only_the_query_itself_passes_the_router_by(client):
     body = {"position": [0.3], "deflection_um": [5.0]}
     assert client.post(PATH, json=body).status_code == 200
     assert client.get(PATH).status_code == 405

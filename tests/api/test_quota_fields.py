@@ -1,11 +1,8 @@
 """RateLimit and RateLimit-Policy say what a key may still ask (draft-ietf-httpapi-ratelimit-headers)."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from contextlib import ExitStack, closing
-from pathlib import Path
 
 import httpx2
 import pytest
@@ -34,12 +31,12 @@ def shares(headers: Mapping[str, str]) -> tuple[Share, Share]:
 
 
 @pytest.fixture
-def file(tmp_path: Path) -> KeyFile:
+def file(tmp_path):
     return KeyFile(Settings(data_directory=tmp_path).key_file)
 
 
 @pytest.mark.law
-def test_a_key_may_ask_as_often_as_it_is_told(tmp_path: Path, file: KeyFile) -> None:
+def test_a_key_may_ask_as_often_as_it_is_told(tmp_path, file):
     """One that stops when nothing remains is never refused; the refusal says the same."""
     key = bearing(file.add("bench", requests_per_minute=7, connections=3))
     with TestClient(create_app(Settings(data_directory=tmp_path), REGISTRY, works=False)) as http:
@@ -59,7 +56,7 @@ def test_a_key_may_ask_as_often_as_it_is_told(tmp_path: Path, file: KeyFile) -> 
         assert int(refused.headers["retry-after"]) <= int(left["t"])
 
 
-def test_all_of_a_quota_is_there_again_when_it_says(file: KeyFile) -> None:
+def test_all_of_a_quota_is_there_again_when_it_says(file):
     instant = 0.0
     limits = RateLimits(clock=lambda: instant)
     file.add("bench", requests_per_minute=7)
@@ -72,11 +69,10 @@ def test_all_of_a_quota_is_there_again_when_it_says(file: KeyFile) -> None:
     before = limits.quota(holder)
     instant += 2.0
     after = limits.quota(holder)
-    assert before is not None and after is not None
     assert (before.left, after.left) == (6, 7)
 
 
-def test_requests_under_way_count_against_the_share_of_their_key(tmp_path: Path, file: KeyFile) -> None:
+def test_requests_under_way_count_against_the_share_of_their_key(tmp_path, file):
     one, other = (bearing(file.add(name, connections=3)) for name in ("one", "other"))
     app = create_app(Settings(data_directory=tmp_path), REGISTRY, works=False)
     with ExitStack() as stack:
@@ -91,7 +87,7 @@ def test_requests_under_way_count_against_the_share_of_their_key(tmp_path: Path,
         assert shares(http.get("/v1/processes", headers=other).headers)[1] == {"concurrent": {"r": "2"}}
 
 
-def test_who_has_no_share_is_told_of_none(tmp_path: Path) -> None:
+def test_who_has_no_share_is_told_of_none(tmp_path):
     with TestClient(create_app(Settings(data_directory=tmp_path), REGISTRY, works=False)) as http:
         for path in ("/v1/processes", "/health", "/v1/nowhere"):
             assert not {"ratelimit", "ratelimit-policy"} & set(http.get(path).headers)

@@ -4,17 +4,13 @@ Beside tests/api/test_contract_of_studies.py. The tables hold what a study refus
 single numbers are in tests/contract/test_every_bound.py. A study without a row here fails.
 """
 
-from __future__ import annotations
-
 import re
 import warnings
-from pathlib import Path
 from typing import Any
 
 import pytest
 from small_inputs import small_inputs
 from study_runs import refused_call, verb_call
-from study_service import Served
 
 from dynamics.accuracy import FIDELITIES as SCENE_FIDELITIES
 from lineofaction.gearbox.problems import BadInput
@@ -43,7 +39,7 @@ FEWER_TEETH: Json = CHANGE["after"] | {
 
 def factor(index: int, **changes: Any) -> Json:
     """Return the study with another factor; what is None is left out."""
-    factors = [dict(each) for each in GRID["factors"]]  # type: ignore[attr-defined]
+    factors = [dict(each) for each in GRID["factors"]]
     own = factors[index] | changes
     factors[index] = {name: value for name, value in own.items() if value is not None}
     return GRID | {"factors": factors}
@@ -217,14 +213,12 @@ def subject_of(study: str) -> tuple[str, Json]:
     return name, small_inputs(study)[name]
 
 
-def test_every_study_refuses_something() -> None:
+def test_every_study_refuses_something():
     assert set(REFUSED) == set(STUDIES) and all(REFUSED.values())
 
 
 @pytest.mark.parametrize(("study", "inputs", "field"), QUESTIONS)
-def test_a_question_is_refused_by_its_field_each_way(
-    served: Served, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, study: str, inputs: Json, field: str
-) -> None:
+def test_a_question_is_refused_by_its_field_each_way(served, tmp_path, monkeypatch, study, inputs, field):
     """Over HTTP in a document of its own type and before there is a job; the others compute nothing."""
     name, subject = subject_of(study)
     monkeypatch.setattr(STUDIES[study].run, "compute", None)
@@ -251,7 +245,7 @@ def test_a_question_is_refused_by_its_field_each_way(
 
 
 @EVERY
-def test_a_request_without_its_subject_or_with_an_odd_one_is_refused(served: Served, study: str) -> None:
+def test_a_request_without_its_subject_or_with_an_odd_one_is_refused(served, study):
     name, subject = subject_of(study)
     inputs = {key: value for key, value in small_inputs(study).items() if key != name}
     inputs |= {"run": ABSENT} if study == "listen" else {}
@@ -269,13 +263,13 @@ def test_a_request_without_its_subject_or_with_an_odd_one_is_refused(served: Ser
 @pytest.mark.parametrize(
     "study", [name for name, row in STUDIES.items() if row.takes.subject == "case or scene"]
 )
-def test_a_case_beside_a_scene_is_refused(served: Served, study: str) -> None:
+def test_a_case_beside_a_scene_is_refused(served, study):
     both = {"case": small_inputs("analyze")["case"], "scene": small_inputs("modes")["scene"]}
     with pytest.raises(BadInput, match=r"case.*left out beside one"):
         served.client.submit(study, both)
 
 
-def test_gears_too_narrow_for_tolerances_are_refused(served: Served) -> None:
+def test_gears_too_narrow_for_tolerances_are_refused(served):
     case = subject_of("scatter")[1]
     narrow = case["pair"]["wheel"] | {"face_width_mm": 3.0}
     served.assert_refused(
@@ -283,7 +277,7 @@ def test_gears_too_narrow_for_tolerances_are_refused(served: Served) -> None:
     )
 
 
-def test_a_sample_too_large_for_a_job_is_refused_by_the_service_alone(served: Served) -> None:
+def test_a_sample_too_large_for_a_job_is_refused_by_the_service_alone(served):
     served.assert_refused("scatter", {"case": subject_of("scatter")[1], "samples": 1_000_000}, "samples")
 
 
@@ -323,9 +317,7 @@ SAID: dict[str, list[tuple[list[str], str]]] = {
 @pytest.mark.parametrize(
     ("study", "options", "said"), [(name, *one) for name, refused in SAID.items() for one in refused]
 )
-def test_an_option_is_refused_in_one_line(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, study: str, options: list[str], said: str
-) -> None:
+def test_an_option_is_refused_in_one_line(tmp_path, monkeypatch, study, options, said):
     monkeypatch.setattr(STUDIES[study].run, "compute", None)  # called: a defect, exit code 5
     done = verb_call(study, subject_of(study)[1], tmp_path, *options, "-o", tmp_path / "x.nc")
     assert (done.exit_code, done.stdout) == (2, "")

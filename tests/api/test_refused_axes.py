@@ -1,10 +1,6 @@
 """Axes of a table that do not rise are refused by name, value, bound: in Python, by the verb, over HTTP."""
 
-from __future__ import annotations
-
 import json
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -46,23 +42,23 @@ def case(place: tuple[str, str], values: list[float]) -> dict[str, Any]:
 
 
 @pytest.fixture(scope="module")
-def http(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+def http(tmp_path_factory):
     with TestClient(create_app(Settings(data_directory=tmp_path_factory.mktemp("data")))) as found:
         yield found
 
 
 @pytest.mark.parametrize(("name", "values"), LIBRARY.items())
-def test_the_library_refuses_them(name: str, values: list[float]) -> None:
+def test_the_library_refuses_them(name, values):
     gear = Gear(20, 4e-3, 25e-3, 40e-3)
     loads = {} if name in ("torques", "normal_forces") else {"torques": [100.0]}
     with pytest.raises(InputError) as caught:
-        analyze(GearPair(gear, gear, 80e-3), **(loads | {name: values}))  # type: ignore[arg-type]
+        analyze(GearPair(gear, gear, 80e-3), **(loads | {name: values}))
     assert name in str(caught.value) and str(values) in str(caught.value)
     assert BOUND in str(caught.value)
 
 
 @pytest.mark.parametrize(("place", "values"), BOUNDARY.items(), ids=str)
-def test_a_case_refuses_them(place: tuple[str, str], values: list[float]) -> None:
+def test_a_case_refuses_them(place, values):
     with pytest.raises(BadInput) as caught:
         validated(Case, case(place, values))
     (fault,) = caught.value.faults
@@ -74,7 +70,7 @@ def test_a_case_refuses_them(place: tuple[str, str], values: list[float]) -> Non
 
 
 @pytest.mark.parametrize(("place", "values"), BOUNDARY.items(), ids=str)
-def test_the_verb_refuses_them(place: tuple[str, str], values: list[float], tmp_path: Path) -> None:
+def test_the_verb_refuses_them(place, values, tmp_path):
     file = tmp_path / "case.toml"
     file.write_text(toml_text(case(place, values)))
     done = loa("analyze", file)
@@ -84,9 +80,7 @@ def test_the_verb_refuses_them(place: tuple[str, str], values: list[float], tmp_
 
 
 @pytest.mark.parametrize(("place", "values"), BOUNDARY.items(), ids=str)
-def test_the_service_refuses_them_before_a_job_is(
-    place: tuple[str, str], values: list[float], http: TestClient
-) -> None:
+def test_the_service_refuses_them_before_a_job_is(place, values, http):
     body = json.dumps({"inputs": {"case": case(place, values)}})
     headers = {"Content-Type": "application/json"}
     answer = http.post("/v1/processes/analyze/execution", content=body, headers=headers)

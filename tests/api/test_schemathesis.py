@@ -9,14 +9,11 @@ questions and force queries of a table that exists too, with an access key; coun
 in out/generated_bodies.json.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import re
 import tempfile
 from collections import Counter
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -123,13 +120,13 @@ def as_long_as(examples: int) -> settings:
 
 
 @pytest.fixture(scope="module", autouse=True)
-def _ended() -> Iterator[None]:
+def _ended():
     yield
     service.app.state.context.stop_waiting()  # warm processes of readers and workers, too
 
 
 @pytest.fixture(autouse=True)
-def _counted() -> Iterator[None]:
+def _counted():
     """Keep the counts so far."""
     yield
     if BODIES:
@@ -160,10 +157,10 @@ def kind_of(fault: dict[str, Any]) -> str:
 
 @pytest.mark.drawn
 @parametrized(chosen)
-def test_a_request_is_answered_as_documented(operation: Operation) -> None:
+def test_a_request_is_answered_as_documented(operation):
     @as_long_as(max(EACH * 4 // 5, FEW))
     @given(operation.as_strategy(hooks=right))
-    def check_answer(case: schemathesis.Case) -> None:
+    def check_answer(case):
         if case.headers:  # drawn twice, it would be the name of another request
             case.headers.pop("Idempotency-Key", None)
         check_described(case)
@@ -174,10 +171,10 @@ def test_a_request_is_answered_as_documented(operation: Operation) -> None:
 
 @pytest.mark.drawn
 @parametrized([one for one in with_body if not one.path.startswith(DRAFTS)])  # there faults are an answer
-def test_a_body_that_breaks_its_schema_is_answered_as_documented(operation: Operation) -> None:
+def test_a_body_that_breaks_its_schema_is_answered_as_documented(operation):
     @as_long_as(max(-(-EACH // 5), FEW // 5))
     @given(operation.as_strategy(generation_mode=GenerationMode.NEGATIVE))
-    def check_answer(case: schemathesis.Case) -> None:
+    def check_answer(case):
         check_described(case)
 
     check_answer()
@@ -192,7 +189,7 @@ def accepted(*labels: str) -> float:
     return sum(sent[f"{label} 201"] for label in labels) / count
 
 
-def test_at_least_half_of_the_bodies_are_accepted() -> None:
+def test_at_least_half_of_the_bodies_are_accepted():
     if left := set(EXECUTIONS) - asked:
         pytest.skip(f"{len(left)} processes are left to the night, and with them their right bodies")
     assert accepted(*EXECUTIONS) >= 0.5
@@ -200,18 +197,18 @@ def test_at_least_half_of_the_bodies_are_accepted() -> None:
     assert all(share >= 0.5 for share in few.values()), few
 
 
-def test_so_many_bodies_were_sent() -> None:
+def test_so_many_bodies_were_sent():
     assert sent["bodies"] >= BODIES
 
 
 @pytest.mark.drawn
 @parametrized(with_body)
-def test_a_body_drawn_from_the_description_alone_is_answered_as_documented(operation: Operation) -> None:
+def test_a_body_drawn_from_the_description_alone_is_answered_as_documented(operation):
     """Last, as most of these are refused: they are not among those of which half are accepted."""
 
     @as_long_as(max(EACH // 5, FEW // 5))
     @given(operation.as_strategy())
-    def check_answer(case: schemathesis.Case) -> None:
+    def check_answer(case):
         check_described(case)
 
     check_answer()

@@ -3,19 +3,15 @@
 Schemathesis walks them at random from bodies that start from feasible pairs. Nothing is computed.
 """
 
-from __future__ import annotations
-
 import os
 from collections import Counter
-from collections.abc import Iterator
-from typing import Any
 
 import pytest
 import schemathesis
 from feasible_bodies import FeasibleBodies
 from hypothesis import HealthCheck, Phase, settings
 from running_service import until
-from written_service import Service, written_service
+from written_service import written_service
 
 BODIES = int(os.environ.get("LOA_GENERATED_BODIES", "0"))
 WALKS = max(BODIES // 100, 8)
@@ -26,48 +22,48 @@ FOLLOWED = ("status", "events", "results", "dismiss")
 
 
 @pytest.fixture(scope="module")
-def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+def service(tmp_path_factory):
     with written_service(tmp_path_factory.mktemp("links")) as running:
         yield running
 
 
 @pytest.mark.law
-def test_every_link_leads_to_what_it_says(service: Service) -> None:
+def test_every_link_leads_to_what_it_says(service):
     schema = schemathesis.openapi.from_dict(service.description)
     schema.config.update(base_url=service.url)
     feasible = FeasibleBodies(service.description, {})
     walked: Counter[tuple[str, int]] = Counter()
 
     @schema.hook
-    def before_generate_body(context: Any, strategy: Any) -> Any:
+    def before_generate_body(context, strategy):
         bodies = feasible.of(context.operation.path, context.operation.method)
         return strategy if bodies is None else bodies
 
     linked = schema.include(path_regex=rf"/{SUBMITTED}/execution$|^/v1/jobs/")
 
-    class Walk(linked.as_state_machine()):  # type: ignore[misc]
+    class Walk(linked.as_state_machine()):
         """Walks along links; a job ends before the next step."""
 
-        def get_call_kwargs(self, case: schemathesis.Case) -> dict[str, Any]:
+        def get_call_kwargs(self, case):
             return {"headers": service.headers, "timeout": 60.0}
 
-        def after_call(self, response: schemathesis.Response, case: schemathesis.Case) -> None:
+        def after_call(self, response, case):
             if response.status_code == 201:
                 job = case.operation.schema["/v1/jobs/{job_id}"]["GET"]
                 where = {"job_id": response.json()["jobID"]}
                 until(lambda: self.ended(job.Case(path_parameters=where)))
 
-        def ended(self, status: schemathesis.Case) -> bool:
+        def ended(self, status):
             return status.call(**self.get_call_kwargs(status)).json()["finished"] is not None
 
-        def step(self, taken: Any) -> Any:
+        def step(self, taken):
             output = super().step(taken)
             if taken.transition is not None and taken.is_applied:
                 link = taken.transition.id.split(" -> ")[1].rpartition(" ")[2]
                 walked[link, output.response.status_code] += 1
             return output
 
-        def validate_response(self, response: Any, case: Any, **options: Any) -> None:
+        def validate_response(self, response, case, **options):
             refusals = schemathesis.checks.CHECKS.get_one("positive_data_acceptance")
             case.validate_response(response, excluded_checks=[refusals])
 

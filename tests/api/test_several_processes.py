@@ -1,7 +1,5 @@
 """Several serving processes on one socket: one that is killed is replaced, jobs go on, all stop together."""
 
-from __future__ import annotations
-
 import http.client
 import json
 import os
@@ -35,7 +33,6 @@ def serving(folder: Path, **settings: str) -> Iterator[tuple[subprocess.Popen[st
     serve = ("-m", "lineofaction.cli", "serve", "--port", 0, "--processes", NUMBER)
     with (folder / "log").open("w") as log:
         process = python(*serve, "--data-directory", folder / "data", settings=settings, stderr=log)
-    assert process.stdout is not None
     address = process.stdout.readline().rpartition(" ")[2].strip()
     assert address, (folder / "log").read_text()
     try:
@@ -48,7 +45,7 @@ def serving(folder: Path, **settings: str) -> Iterator[tuple[subprocess.Popen[st
 
 
 @pytest.fixture
-def server(tmp_path: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
+def server(tmp_path):
     with serving(tmp_path) as found:
         yield found
 
@@ -88,9 +85,7 @@ class Caller(threading.Thread):
 
 
 @pytest.mark.law
-def test_a_killed_process_is_replaced_and_loses_only_what_it_answers(
-    server: tuple[subprocess.Popen[str], str],
-) -> None:
+def test_a_killed_process_is_replaced_and_loses_only_what_it_answers(server):
     process, address = server
     until(lambda: len(serving_pids(process.pid)) == NUMBER)
     job = _submitted(address)
@@ -112,7 +107,6 @@ def test_a_killed_process_is_replaced_and_loses_only_what_it_answers(
     assert all(caller.broken <= 2 for caller in callers)  # a request for each process that was killed
     figures = get(address, "/metrics").decode()
     counted = re.search(r'loa_requests_total\{[^}]*route="/v1/jobs",status="200"} ([\d.]+)', figures)
-    assert counted is not None
     answered = sum(len(caller.answers) for caller in callers)
     # A process counts an answer after it is sent: killed in between, it leaves one that is not counted.
     uncounted = len(victims[:2])
@@ -135,9 +129,7 @@ def _status(address: str, job: str) -> dict[str, Any]:
     return found
 
 
-def test_all_stop_within_five_seconds_of_a_signal(
-    server: tuple[subprocess.Popen[str], str], tmp_path: Path
-) -> None:
+def test_all_stop_within_five_seconds_of_a_signal(server, tmp_path):
     process, address = server
     until(lambda: len(serving_pids(process.pid)) == NUMBER)
     job = _submitted(address)
@@ -153,7 +145,7 @@ def test_all_stop_within_five_seconds_of_a_signal(
     assert "Traceback" not in (tmp_path / "log").read_text()
 
 
-def test_none_outlives_a_supervisor_that_is_killed(server: tuple[subprocess.Popen[str], str]) -> None:
+def test_none_outlives_a_supervisor_that_is_killed(server):
     process, _ = server
     until(lambda: len(serving_pids(process.pid)) == NUMBER)
     family = [*children(process.pid), *serving_pids(process.pid)]
@@ -163,11 +155,11 @@ def test_none_outlives_a_supervisor_that_is_killed(server: tuple[subprocess.Pope
     assert len(family) > NUMBER
 
 
-def test_processes_that_die_at_once_are_not_started_again_and_again(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_processes_that_die_at_once_are_not_started_again_and_again(monkeypatch):
     clock, started = [0.0], list[float]()
     dead = SimpleNamespace(is_alive=lambda: False, pid=1, exitcode=1)
 
-    def start(_self: ServingProcesses) -> Any:
+    def start(_self):
         started.append(clock[0])
         return dead
 
@@ -186,7 +178,7 @@ def test_processes_that_die_at_once_are_not_started_again_and_again(monkeypatch:
     )
 
 
-def test_one_management_port_tells_of_all_processes_and_of_their_scheduler(tmp_path: Path) -> None:
+def test_one_management_port_tells_of_all_processes_and_of_their_scheduler(tmp_path):
     with serving(tmp_path, LOA_MANAGEMENT_PORT="0") as (process, address):
         assert process.stdout is not None
         management = process.stdout.readline().rpartition(" ")[2].strip()

@@ -1,9 +1,6 @@
 """Sounds of stored runs over HTTP: those of `loa listen`, on one full scale, of runs alone."""
 
-from __future__ import annotations
-
 import importlib.util
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -37,7 +34,7 @@ class Stored:
 
 
 @pytest.fixture(scope="module")
-def stored(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Stored]:
+def stored(tmp_path_factory):
     spec = importlib.util.spec_from_file_location("closed_forms", CLOSED_FORMS)
     assert spec and spec.loader
     forms = importlib.util.module_from_spec(spec)
@@ -54,7 +51,7 @@ def stored(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Stored]:
         yield Stored(http, folder)
 
 
-def test_a_run_is_heard_at_its_level(stored: Stored) -> None:
+def test_a_run_is_heard_at_its_level(stored):
     """10 N and 20 N at two orders: no more than 30 N together."""
     heard = stored.heard(LOUD)
     assert heard.quantity.startswith("force on bearing right along (0.000, 1.000, 0.000)")
@@ -63,7 +60,7 @@ def test_a_run_is_heard_at_its_level(stored: Stored) -> None:
     assert heard.samples.size == pytest.approx(2.0 * heard.sample_rate, abs=2)
 
 
-def test_two_runs_are_on_one_full_scale(stored: Stored) -> None:
+def test_two_runs_are_on_one_full_scale(stored):
     files = [
         stored.http.get(f"/v1/results/{key}/sound", params={"bearing": "right", "against": other}).content
         for key, other in ((LOUD, QUIET), (QUIET, LOUD))
@@ -73,7 +70,7 @@ def test_two_runs_are_on_one_full_scale(stored: Stored) -> None:
     np.testing.assert_allclose(quiet, 0.25 * loud, atol=1e-6)
 
 
-def test_the_report_names_the_sound_as_the_path_takes_it(stored: Stored) -> None:
+def test_the_report_names_the_sound_as_the_path_takes_it(stored):
     report = stored.http.get(f"/v1/results/{LOUD}/figures").json()
     figures = {figure["key"]: figure for section in report["sections"] for figure in section["figures"]}
     sound = figures["order_map"]["sound"]
@@ -85,7 +82,7 @@ def test_the_report_names_the_sound_as_the_path_takes_it(stored: Stored) -> None
     assert figures["levels"]["sound"] is None
 
 
-def test_it_is_sent_once_to_who_has_it(stored: Stored) -> None:
+def test_it_is_sent_once_to_who_has_it(stored):
     path = f"/v1/results/{LOUD}/sound"
     tag = stored.http.get(path).headers["etag"]
     assert stored.http.get(path, headers={"If-None-Match": tag}).status_code == 304
@@ -102,16 +99,14 @@ def test_it_is_sent_once_to_who_has_it(stored: Stored) -> None:
         ({"direction": "up"}, "direction", "principal"),
     ],
 )
-def test_what_is_not_in_the_run_is_refused_by_its_name(
-    stored: Stored, query: dict[str, str], field: str, words: str
-) -> None:
+def test_what_is_not_in_the_run_is_refused_by_its_name(stored, query, field, words):
     answer = stored.http.get(f"/v1/results/{LOUD}/sound", params=query)
     assert answer.status_code == 422, answer.text
     assert words in answer.text
     assert answer.json()["errors"][0]["field"] == field
 
 
-def test_what_is_no_run_has_no_sound(stored: Stored) -> None:
+def test_what_is_no_run_has_no_sound(stored):
     for key, against in ((TABLE, LOUD), ("d" * 64, LOUD), (LOUD, TABLE)):
         answer = stored.http.get(f"/v1/results/{key}/sound", params={"against": against})
         assert answer.status_code == 404, answer.text

@@ -6,7 +6,7 @@ import json
 import socket
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, closing
 from dataclasses import dataclass
@@ -42,13 +42,12 @@ class Process:
 
 
 @pytest.fixture(scope="module")
-def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Process]:
+def service(tmp_path_factory):
     """A service that has loaded what it needs to read bodies."""
     directory = tmp_path_factory.mktemp("stall")
     settings, log = {"LOA_DATA_DIRECTORY": str(directory / "data")}, directory / "log"
     serve = ("-m", "lineofaction.cli", "serve", "--port", 0)
     with log.open("wb") as stream, python(*serve, settings=settings, stderr=stream) as process:
-        assert process.stdout is not None
         address = process.stdout.readline().rpartition(" ")[2].strip()
         try:
             answer = httpx2.post(f"{address}/v1/cases/from-toml", json={"toml": ""}, timeout=PATIENCE_S)
@@ -134,10 +133,10 @@ def log_lines(service: Process) -> list[dict[str, Any]]:
 
 
 @pytest.mark.parametrize("kind", EACH)
-def test_four_bodies_that_cost_much_hold_nobody_up(service: Process, kind: str) -> None:
+def test_four_bodies_that_cost_much_hold_nobody_up(service, kind):
     path, body = ATTACKS[kind]()
 
-    def post(_: int) -> httpx2.Response:
+    def post(_):
         headers = {"Content-Type": "application/json"}
         return httpx2.post(f"{service.address}{path}", content=body, headers=headers, timeout=PATIENCE_S)
 
@@ -150,14 +149,14 @@ def test_four_bodies_that_cost_much_hold_nobody_up(service: Process, kind: str) 
     watch.check()
 
 
-def test_texts_are_read_by_other_processes(service: Process) -> None:
+def test_texts_are_read_by_other_processes(service):
     """The cause of what is seen above: the service has a lock that reading holds."""
     (warm,) = [pid for pid in children(service.pid) if b"reading.child" in command(pid)]
     spent = family_cpu_seconds(warm)
     assert spent is not None and spent - cpu_seconds(warm) > 1.0
 
 
-def test_six_hundred_idle_connections_shut_nobody_out(service: Process) -> None:
+def test_six_hundred_idle_connections_shut_nobody_out(service):
     with ExitStack() as idle:
         for _ in range(600):
             idle.enter_context(socket.create_connection(service.place, timeout=PATIENCE_S))
@@ -169,7 +168,7 @@ def test_six_hundred_idle_connections_shut_nobody_out(service: Process) -> None:
     assert float(dropped.split()[1]) >= 100
 
 
-def test_refusals_are_counted_and_logged(service: Process) -> None:
+def test_refusals_are_counted_and_logged(service):
     body = b'{"toml": "' + b"[" * 60_000 + b'"}'
     headers = {"Content-Type": "application/json"}
     large = httpx2.post(f"{service.address}/v1/cases/from-toml", content=body, headers=headers)

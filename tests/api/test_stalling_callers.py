@@ -1,13 +1,10 @@
 """Callers that begin many requests and end none, beside one that has a small question."""
 
-from __future__ import annotations
-
 import select
 import socket
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
-from pathlib import Path
 
 import httpx2
 import pytest
@@ -26,7 +23,7 @@ ATTACKERS = 420
 
 
 @pytest.fixture
-def settings(tmp_path: Path) -> Settings:
+def settings(tmp_path):
     return Settings(data_directory=tmp_path / "data")
 
 
@@ -58,7 +55,7 @@ def check_stalled(port: int, key: str, number: int, held: int, status: bytes) ->
         yield
 
 
-def test_a_key_that_ends_no_body_leaves_the_others_theirs(settings: Settings) -> None:
+def test_a_key_that_ends_no_body_leaves_the_others_theirs(settings):
     """It was 503 for everybody for 30 s."""
     file = KeyFile(settings.key_file)
     slow, other = file.add("slow"), {"Authorization": f"Bearer {file.add('other')}"}
@@ -75,7 +72,7 @@ def test_a_key_that_ends_no_body_leaves_the_others_theirs(settings: Settings) ->
 
 
 @pytest.mark.law
-def test_bodies_that_do_not_end_take_no_place_of_requests_without_keys(settings: Settings) -> None:
+def test_bodies_that_do_not_end_take_no_place_of_requests_without_keys(settings):
     """All callers are one; what carries no body is answered."""
     app = create_app(settings, REGISTRY, works=False)
     maximum = Capacity().requests
@@ -85,14 +82,14 @@ def test_bodies_that_do_not_end_take_no_place_of_requests_without_keys(settings:
         assert refused.status_code == 503 and "bodies under way" in refused.json()["detail"]
 
 
-def test_a_limit_of_the_key_takes_the_place_of_the_share(settings: Settings) -> None:
+def test_a_limit_of_the_key_takes_the_place_of_the_share(settings):
     file = KeyFile(settings.key_file)
     app, key = create_app(settings, REGISTRY, works=False), file.add("few", connections=3)
     with served(app) as port, check_stalled(port, key, 5, 3, b"429"):
         pass
 
 
-def test_a_body_that_came_gives_its_place_back(settings: Settings) -> None:
+def test_a_body_that_came_gives_its_place_back(settings):
     key = KeyFile(settings.key_file).add("one", connections=1)
     app = create_app(settings, REGISTRY, works=False)
     with served(app) as port, client(port) as http:

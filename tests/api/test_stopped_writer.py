@@ -1,18 +1,14 @@
 """A process stopped (SIGSTOP) while it holds what all writers need: callers are told, readers served."""
 
-from __future__ import annotations
-
 import signal
 import subprocess
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
-from pathlib import Path
 from typing import Any
 
 import pytest
 import structlog
-from anyio import CapacityLimiter
 from anyio.to_thread import current_default_thread_limiter
 from fastapi.testclient import TestClient
 from own_process import python
@@ -40,7 +36,7 @@ LONG_AGO = "2020-01-01T00:00:00.000000Z"
 
 
 @pytest.fixture
-def address(tmp_path: Path, database_url: str | None, monkeypatch: pytest.MonkeyPatch) -> str:
+def address(tmp_path, database_url, monkeypatch):
     """A database on which nobody waits for long."""
     monkeypatch.setattr("service.store.dialects.PATIENCE_MS", 1000)
     monkeypatch.setattr("service.store.dialects._STALLED", "-c lock_timeout=1s")
@@ -60,7 +56,7 @@ def stopped_writer(address: str) -> Iterator[subprocess.Popen[str]]:
 
 
 @pytest.fixture
-def client(tmp_path: Path, address: str) -> Iterator[TestClient]:
+def client(tmp_path, address):
     settings: dict[str, Any] = {"data_directory": tmp_path, "database_url": address}
     with TestClient(create_app(Settings(**settings), REGISTRY), raise_server_exceptions=False) as found:
         yield found
@@ -71,7 +67,7 @@ def body(text: str) -> dict[str, Any]:
 
 
 @pytest.mark.law
-def test_writers_are_told_to_come_again_and_readers_notice_nothing(client: TestClient, address: str) -> None:
+def test_writers_are_told_to_come_again_and_readers_notice_nothing(client, address):
     location = client.post(EXECUTION, json=body("done")).headers["location"]
     until(lambda: client.get(location).json()["status"] == "successful")
     engine = database_engine(address)
@@ -106,20 +102,19 @@ def test_writers_are_told_to_come_again_and_readers_notice_nothing(client: TestC
     engine.dispose()
 
 
-def test_health_is_answered_while_every_thread_waits(tmp_path: Path) -> None:
+def test_health_is_answered_while_every_thread_waits(tmp_path):
     """Else a supervisor would restart a service that is well."""
     app = create_app(Settings(data_directory=tmp_path), REGISTRY)
     with TestClient(app) as client, ThreadPoolExecutor(2) as pool:
-        assert client.portal is not None
 
-        async def all_threads() -> tuple[CapacityLimiter, list[int]]:
+        async def all_threads():
             limiter = current_default_thread_limiter()
             tokens = list(range(int(limiter.available_tokens)))
             for token in tokens:
                 limiter.acquire_on_behalf_of_nowait(token)
             return limiter, tokens
 
-        async def given_back() -> None:
+        async def given_back():
             for token in tokens:
                 limiter.release_on_behalf_of(token)
 
@@ -133,7 +128,7 @@ def test_health_is_answered_while_every_thread_waits(tmp_path: Path) -> None:
         assert ready.result().status_code == 200
 
 
-def test_one_who_can_do_without_waits_for_a_fraction_of_the_time(address: str) -> None:
+def test_one_who_can_do_without_waits_for_a_fraction_of_the_time(address):
     engine = database_engine(address)
     of_server = "SELECT setting FROM pg_settings WHERE name = 'lock_timeout'"
     question = "PRAGMA busy_timeout" if address.startswith("sqlite") else of_server

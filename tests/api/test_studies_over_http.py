@@ -1,28 +1,23 @@
 """Studies as jobs beyond their contract: older files, rungs that fail, kept runs, rotors, textbooks."""
 
-from __future__ import annotations
-
 import hashlib
 import importlib
 import math
 import tomllib
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from study_service import CASE, Served, prepared, scene_by_hash, study_service
+from repository import EXAMPLES
+from study_service import CASE, prepared, scene_by_hash, study_service
 
-from dynamics.loads import TimeLaw
-from dynamics.results import RunResult
-from dynamics.simulation import simulate
+from dynamics import RunResult, TimeLaw, simulate
 from dynamics.study import Response, responses_of
+from fe_contact import SteDatabase
 from fe_contact.analysis.studies.frontier import FIDELITIES
 from fe_contact.errors import SolveError
-from fe_contact.ste import SteDatabase
-from lineofaction.client import LineOfActionClient
 from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.result_figures import figures_of
 from lineofaction.gearbox.stages import PacedFraction
@@ -32,7 +27,6 @@ from service.worker import study_work
 from service.worker.order import WorkOrder
 from service.worker.process import default_registry
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 FRONTIER = default_registry()["frontier"]
 CLOSED = ["iso6336", "thin_slices"]
 OLD = "0d" * 32
@@ -48,17 +42,17 @@ STUDY = {
 
 
 @pytest.fixture(scope="module")
-def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+def served(tmp_path_factory):
     with study_service(tmp_path_factory.mktemp("service")) as found:
         yield found
 
 
 @pytest.fixture(scope="module")
-def client(served: Served) -> LineOfActionClient:
+def client(served):
     return served.client
 
 
-def test_one_that_version_0_1_stored_as_json_is_to_be_computed_again(served: Served, tmp_path: Path) -> None:
+def test_one_that_version_0_1_stored_as_json_is_to_be_computed_again(served, tmp_path):
     old, store = tmp_path / "ablation.json", stored_results(served.data)
     old.write_text("{}", encoding="utf-8")
     digest = hashlib.sha256(b"{}").hexdigest()
@@ -87,18 +81,16 @@ def worked(inputs: dict[str, Any], workspace: Path) -> tuple[dict[str, Any], lis
 @pytest.mark.parametrize(
     ("failure", "said"), [(SolveError("no equilibrium"), "no equilibrium"), (MemoryError(), "out of memory")]
 )
-def test_a_rung_that_fails_is_named_and_the_others_survive(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, failure: Exception, said: str
-) -> None:
+def test_a_rung_that_fails_is_named_and_the_others_survive(tmp_path, monkeypatch, failure, said):
     class Failing:
         """The rung in the middle of the ladder, which fails as it runs."""
 
         name, title, family, element_size = "corrected", "fails", "auto", 1.0
 
-        def refusal(self, _checked: object) -> None:
+        def refusal(self, _checked):
             return None
 
-        def run(self, *_: object) -> SteDatabase:
+        def run(self, *_):
             raise failure
 
     rungs = [rung for rung in FIDELITIES if rung.name in CLOSED]
@@ -111,7 +103,7 @@ def test_a_rung_that_fails_is_named_and_the_others_survive(
     assert progress == sorted(progress) and progress[-1] == pytest.approx(1.0)
 
 
-def test_recorded_full_contact_stands_beside_the_ladder_of_its_pair(tmp_path: Path) -> None:
+def test_recorded_full_contact_stands_beside_the_ladder_of_its_pair(tmp_path):
     case = tomllib.loads((EXAMPLES / "palermo_spur_20_20.toml").read_text("utf-8"))
     case["load"]["torque_n_m"] = [50.0, 100.0]
     made, _ = worked(prepared(FRONTIER, case=case, rungs=CLOSED, full_contact=1), tmp_path)
@@ -123,7 +115,7 @@ def test_recorded_full_contact_stands_beside_the_ladder_of_its_pair(tmp_path: Pa
     assert all(rung["cpu_seconds"] > 0.0 for rung in made["rungs"])
 
 
-def test_a_pair_without_recorded_full_contact_says_how_to_get_it(tmp_path: Path) -> None:
+def test_a_pair_without_recorded_full_contact_says_how_to_get_it(tmp_path):
     made, _ = worked(prepared(FRONTIER, case=CASE, rungs=CLOSED, full_contact=1), tmp_path)
     assert made.get("full_contact") is None
     assert "python -m benchmarks.full_contact_records CASE" in made["left_out"]["full_contact"]
@@ -132,9 +124,7 @@ def test_a_pair_without_recorded_full_contact_says_how_to_get_it(tmp_path: Path)
 # Scenes.
 
 
-def test_a_study_has_the_bits_of_single_runs_and_keeps_its_worst_run(
-    client: LineOfActionClient, tmp_path: Path
-) -> None:
+def test_a_study_has_the_bits_of_single_runs_and_keeps_its_worst_run(client, tmp_path):
     given = scene_by_hash(tmp_path, 0.01)
     made = client.study(given, STUDY)
     tables = {"mesh": SteDatabase.from_netcdf(tmp_path / "ste.nc")}
@@ -159,7 +149,7 @@ DAMPING = 2.0 * RATIO * math.sqrt(STIFFNESS * MASS)
 RADIUS = UNBALANCE * SPEED**2 / abs(STIFFNESS - MASS * SPEED**2 + 1j * SPEED * DAMPING)
 
 
-def test_a_rotor_without_gears_runs_on_the_circle(client: LineOfActionClient) -> None:
+def test_a_rotor_without_gears_runs_on_the_circle(client):
     run = client.simulate(ROTOR)
     late = (run.time > 2.2) & (run.time < 2.4)
     radius = np.hypot(*run.displacement[:2, late])
@@ -167,7 +157,7 @@ def test_a_rotor_without_gears_runs_on_the_circle(client: LineOfActionClient) ->
     assert run.receipt["sampling"]["chosen"] == "highest order of a load, 64.06 Hz"
 
 
-def test_its_modes_response_and_steady_states(client: LineOfActionClient) -> None:
+def test_its_modes_response_and_steady_states(client):
     modes = client.modes(ROTOR, speed_rpm=[0.0, 3000.0])
     assert modes.natural_frequency == pytest.approx([CRITICAL / math.tau] * 2)
     response = client.response(ROTOR, speed_rpm=[SPEED / RPM, CRITICAL / RPM])
@@ -181,12 +171,12 @@ def test_its_modes_response_and_steady_states(client: LineOfActionClient) -> Non
     assert steady.rms_bearing_force == pytest.approx(np.full((1, 2), force), rel=1e-5)
 
 
-def test_a_geared_rotor_hears_both_shafts(client: LineOfActionClient) -> None:
+def test_a_geared_rotor_hears_both_shafts(client):
     response = client.response(EXAMPLES / "geared_rotor_scene.toml", speed_rpm=[1499.2395732], orders=1)
     assert response.order * 328 == pytest.approx([1.0, 328 / 23])
 
 
-def test_textbook_scenes_have_the_figures_of_their_sources(client: LineOfActionClient) -> None:
+def test_textbook_scenes_have_the_figures_of_their_sources(client):
     modes = client.modes(EXAMPLES / "lin_parker_planetary_scene.toml")
     assert np.max(modes.natural_frequency) == pytest.approx(11775.27, abs=0.005)
     run = client.simulate(EXAMPLES / "backlash_oscillator_scene.toml")

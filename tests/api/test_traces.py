@@ -1,7 +1,5 @@
 """Traces and the log: from the caller to the stages of the worker; identifiers of callers are kept."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys
@@ -81,7 +79,7 @@ def trace_receiver() -> Iterator[TraceReceiver]:
     received = TraceReceiver()
 
     class Handler(BaseHTTPRequestHandler):
-        def do_POST(self) -> None:
+        def do_POST(self):
             assert self.path == "/v1/traces"
             received.take(self.rfile.read(int(self.headers["Content-Length"])))
             answer = ExportTraceServiceResponse().SerializeToString()
@@ -91,7 +89,7 @@ def trace_receiver() -> Iterator[TraceReceiver]:
             self.end_headers()
             self.wfile.write(answer)
 
-        def log_message(self, *_: object) -> None:
+        def log_message(self, *_):
             """Say nothing."""
 
     with ThreadingHTTPServer(("127.0.0.1", 0), Handler) as server:
@@ -110,7 +108,7 @@ TRACEPARENT = f"00-{TRACE}-{PARENT}-01"
 
 
 @pytest.fixture
-def receiver(monkeypatch: pytest.MonkeyPatch) -> Iterator[TraceReceiver]:
+def receiver(monkeypatch):
     with trace_receiver() as found:
         monkeypatch.setenv("OTEL_EXPORTER_OTLP_ENDPOINT", found.address)
         monkeypatch.setenv("OTEL_BSP_SCHEDULE_DELAY", "100")
@@ -121,7 +119,7 @@ def receiver(monkeypatch: pytest.MonkeyPatch) -> Iterator[TraceReceiver]:
 
 
 @pytest.fixture
-def log(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+def log(tmp_path, monkeypatch):
     file = tmp_path / "service.log"
     with file.open("w", buffering=1) as stream:
         monkeypatch.setattr("sys.stderr", stream)
@@ -133,9 +131,7 @@ def lines(log: Path, text: str) -> list[dict[str, Any]]:
     return [json.loads(line) for line in log.read_text().splitlines() if text in line]
 
 
-def test_one_trace_leads_from_the_client_to_the_stages_of_the_worker(
-    receiver: TraceReceiver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_one_trace_leads_from_the_client_to_the_stages_of_the_worker(receiver, tmp_path, monkeypatch):
     """The scheduler is slow to note the worker it launched, as on a machine with other work."""
     monkeypatch.setattr(WorkerFigures, "started", lambda *_: time.sleep(0.5))
     app = create_app(Settings(data_directory=tmp_path), REGISTRY)
@@ -165,9 +161,7 @@ def test_one_trace_leads_from_the_client_to_the_stages_of_the_worker(
     assert receiver.services == {"lineofaction"}
 
 
-def test_an_attempt_that_died_keeps_its_stages_and_another_follows(
-    receiver: TraceReceiver, client: TestClient
-) -> None:
+def test_an_attempt_that_died_keeps_its_stages_and_another_follows(receiver, client):
     body = {"inputs": {"wish": {"mode": "die_once"}}}
     location = client.post(EXECUTION, json=body).headers["location"]
     until(lambda: client.get(location).json()["status"] == "successful")
@@ -180,7 +174,7 @@ def test_an_attempt_that_died_keeps_its_stages_and_another_follows(
     assert len({span.trace for span in receiver.named("queue")}) == 1
 
 
-def test_probes_leave_no_spans(receiver: TraceReceiver, client: TestClient) -> None:
+def test_probes_leave_no_spans(receiver, client):
     for path in ("/health", "/ready", "/metrics"):
         assert client.get(path).status_code == 200
     client.get("/v1/jobs")
@@ -188,7 +182,7 @@ def test_probes_leave_no_spans(receiver: TraceReceiver, client: TestClient) -> N
     assert {span.name for span in receiver.spans} == {"GET /v1/jobs"}
 
 
-def test_without_a_receiver_the_callers_identifiers_are_kept_all_the_same(log: Path, tmp_path: Path) -> None:
+def test_without_a_receiver_the_callers_identifiers_are_kept_all_the_same(log, tmp_path):
     with TestClient(create_app(Settings(data_directory=tmp_path / "data"), REGISTRY)) as client:
         headers = {"X-Request-ID": "order-4711", "traceparent": TRACEPARENT}
         answer = client.post(EXECUTION, json={"inputs": {"wish": {"mode": "write"}}}, headers=headers)
@@ -203,7 +197,7 @@ def test_without_a_receiver_the_callers_identifiers_are_kept_all_the_same(log: P
 @pytest.mark.parametrize(
     "identifier", ["", "a" * 65, 'x", "event": "forged', "<script>", "a b", "../../etc", "ä"]
 )
-def test_an_identifier_that_could_harm_a_log_is_replaced(identifier: str, client: TestClient) -> None:
+def test_an_identifier_that_could_harm_a_log_is_replaced(identifier, client):
     answer = client.get("/health", headers={"X-Request-ID": identifier.encode()})
     assert answer.headers["x-request-id"] not in ("", identifier)
     assert len(answer.headers["x-request-id"]) == 12
@@ -222,17 +216,17 @@ def test_an_identifier_that_could_harm_a_log_is_replaced(identifier: str, client
         f"{TRACEPARENT}-more",
     ],
 )
-def test_what_is_no_traceparent_is_left_out(sent: str, client: TestClient) -> None:
+def test_what_is_no_traceparent_is_left_out(sent, client):
     answer = client.get("/health", headers={"traceparent": sent.encode()})
     assert answer.status_code == 200
     assert "traceparent" not in answer.headers
 
 
-def test_no_span_no_header(client: TestClient) -> None:
+def test_no_span_no_header(client):
     assert "traceparent" not in client.get("/v1/jobs").headers
 
 
-def test_nothing_of_opentelemetry_is_loaded_by_the_client_and_its_sdk_by_nobody_unasked() -> None:
+def test_nothing_of_opentelemetry_is_loaded_by_the_client_and_its_sdk_by_nobody_unasked():
     script = (
         "import sys\n"
         "from lineofaction.client import LineOfActionClient\n"
@@ -248,7 +242,7 @@ def test_nothing_of_opentelemetry_is_loaded_by_the_client_and_its_sdk_by_nobody_
     assert done.returncode == 0
 
 
-def test_without_the_extra_the_log_says_what_to_install(log: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_the_extra_the_log_says_what_to_install(log, monkeypatch):
     monkeypatch.setenv("OTEL_EXPORTER_OTLP_ENDPOINT", "http://127.0.0.1:9")
     monkeypatch.setitem(sys.modules, "opentelemetry.sdk.trace", None)
     span_provider.cache_clear()
@@ -259,7 +253,7 @@ def test_without_the_extra_the_log_says_what_to_install(log: Path, monkeypatch: 
     assert "lineofaction[telemetry]" in str(line["reason"])
 
 
-def test_an_exporter_that_is_left_to_others_is_named(log: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_exporter_that_is_left_to_others_is_named(log, monkeypatch):
     monkeypatch.setenv("OTEL_TRACES_EXPORTER", "zipkin")
     monkeypatch.setenv("OTEL_EXPORTER_OTLP_ENDPOINT", "http://127.0.0.1:9")
     span_provider.cache_clear()
@@ -278,7 +272,7 @@ def only(lines: list[dict[str, Any]], event: str) -> dict[str, Any]:
 
 
 @pytest.mark.law
-def test_a_request_is_followed_to_its_worker_and_what_that_took(log: Path, tmp_path: Path) -> None:
+def test_a_request_is_followed_to_its_worker_and_what_that_took(log, tmp_path):
     settings = Settings(data_directory=tmp_path / "data", attempts=2, memory_limit_mb=1000)
     with TestClient(create_app(settings, REGISTRY)) as client:
         answers = {}
@@ -287,8 +281,7 @@ def test_a_request_is_followed_to_its_worker_and_what_that_took(log: Path, tmp_p
             answers[mode] = client.post(EXECUTION, json=body)
             until(
                 lambda where=answers[mode].headers["location"]: (
-                    client.get(where).json()["status"]  # type: ignore[misc]
-                    == "successful"
+                    client.get(where).json()["status"] == "successful"
                 )
             )
         shared = client.post(EXECUTION, json={"inputs": {"wish": {"mode": "hog"}}})
@@ -316,7 +309,7 @@ def test_a_request_is_followed_to_its_worker_and_what_that_took(log: Path, tmp_p
     assert of_shared["stored"] and of_shared["key"] == entered["hog"]["key"]
 
 
-def test_what_ends_a_worker_is_named(log: Path, tmp_path: Path) -> None:
+def test_what_ends_a_worker_is_named(log, tmp_path):
     settings = Settings(data_directory=tmp_path / "data")
     with TestClient(create_app(settings, REGISTRY)) as client:
         unwanted = client.post(EXECUTION, json={"inputs": {"wish": {"mode": "hang", "text": "unwanted"}}})

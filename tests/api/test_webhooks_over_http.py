@@ -1,7 +1,5 @@
 """Webhooks: who is called, what is told, in which order, how often; and who is never called."""
 
-from __future__ import annotations
-
 import base64
 import hashlib
 import hmac
@@ -12,7 +10,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -114,7 +111,7 @@ def receiver() -> Iterator[Receiver]:
 
 
 @pytest.fixture(autouse=True)
-def quickly(monkeypatch: pytest.MonkeyPatch) -> None:
+def quickly(monkeypatch):
     monkeypatch.setattr(calls, "FIRST_PAUSE_S", 0.05)
     monkeypatch.setattr(calls, "MAX_ATTEMPTS", 3)
     monkeypatch.setattr(deliverer, "LOOK_S", 0.1)
@@ -122,13 +119,13 @@ def quickly(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
-def listener() -> Iterator[Receiver]:
+def listener():
     with receiver() as found:
         yield found
 
 
 @pytest.fixture
-def http(tmp_path: Path, listener: Receiver) -> Iterator[TestClient]:
+def http(tmp_path, listener):
     """A running app that may call the receiver by its address, and by a name."""
     origins = f"{listener.origin}, http://localhost:{listener.server_port}"
     settings = Settings(data_directory=tmp_path, webhook_origins=origins, webhook_secret=SECRET)
@@ -148,7 +145,7 @@ def settled(http: TestClient, location: str) -> dict[str, tuple[str, int, str]]:
     """Wait until no call about a job waits; return state, attempts and message by event."""
     found: dict[str, tuple[str, int, str]] = {}
 
-    def over() -> bool:
+    def over():
         entries = http.get(location).json()["webhooks"]
         found.update({e["event"]: (e["state"], e["attempts"], e["message"]) for e in entries})
         return all(state != "waiting" for state, _, _ in found.values())
@@ -157,7 +154,7 @@ def settled(http: TestClient, location: str) -> dict[str, tuple[str, int, str]]:
     return found
 
 
-def test_calls_are_made_in_order_and_signed(http: TestClient, listener: Receiver) -> None:
+def test_calls_are_made_in_order_and_signed(http, listener):
     uris = {name: f"{listener.origin}/{name}?x=1" for name in ("inProgress", "success", "failed")}
     location = submitted(http, {"mode": "hang"}, **uris)
     until(lambda: len(listener.requests) == 1)
@@ -172,7 +169,7 @@ def test_calls_are_made_in_order_and_signed(http: TestClient, listener: Receiver
     assert (progress["jobID"], progress["status"]) == (location.rpartition("/")[2], "running")
 
 
-def test_a_success_is_told_as_the_document_of_the_results(http: TestClient, listener: Receiver) -> None:
+def test_a_success_is_told_as_the_document_of_the_results(http, listener):
     location = submitted(http, {"text": "told"}, success=f"{listener.origin}/success")
     assert settled(http, location)["success"][0] == "delivered"
     (success,) = listener.requests
@@ -182,7 +179,7 @@ def test_a_success_is_told_as_the_document_of_the_results(http: TestClient, list
     assert success.json == http.get(f"{location}/results", params={"response": "document"}).json()
 
 
-def test_a_failure_and_a_dismissal_are_told_as_problems(http: TestClient, listener: Receiver) -> None:
+def test_a_failure_and_a_dismissal_are_told_as_problems(http, listener):
     failed = submitted(http, {"mode": "mesh"}, failed=f"{listener.origin}/a", success=f"{listener.origin}/b")
     assert settled(http, failed)["failed"][0] == "delivered"
     dismissed = submitted(http, {"mode": "hang"}, failed=f"{listener.origin}/c")
@@ -192,7 +189,7 @@ def test_a_failure_and_a_dismissal_are_told_as_problems(http: TestClient, listen
     assert "negative Jacobian" in listener.requests[0].json["detail"]
 
 
-def test_a_batch_is_told_as_a_whole(http: TestClient, listener: Receiver) -> None:
+def test_a_batch_is_told_as_a_whole(http, listener):
     jobs = [{"wish": {"text": text}} for text in "ab"]
     uri = {"successUri": f"{listener.origin}/batch"}
     answer = http.post("/v1/batches", json={"process": "fake", "jobs": jobs, "subscriber": uri})
@@ -201,9 +198,7 @@ def test_a_batch_is_told_as_a_whole(http: TestClient, listener: Receiver) -> Non
     assert [entry["status"] for entry in request.json["jobs"]] == ["successful"] * 2
 
 
-def test_what_is_not_taken_is_sent_again_under_the_same_identifier(
-    http: TestClient, listener: Receiver
-) -> None:
+def test_what_is_not_taken_is_sent_again_under_the_same_identifier(http, listener):
     listener.refusals = 2
     taken = submitted(http, {"text": "a"}, success=f"{listener.origin}/refuse")
     assert settled(http, taken)["success"] == ("delivered", 3, "answered 204.")
@@ -217,20 +212,20 @@ def test_what_is_not_taken_is_sent_again_under_the_same_identifier(
 
 
 @pytest.mark.parametrize("path", ["/hang", "/drip"])
-def test_a_receiver_that_takes_too_long_is_left(http: TestClient, listener: Receiver, path: str) -> None:
+def test_a_receiver_that_takes_too_long_is_left(http, listener, path):
     location = submitted(http, {"text": "a"}, success=f"{listener.origin}{path}")
     state, attempts, message = settled(http, location)["success"]
     assert (state, attempts) == ("given up", 3) and message.startswith("no answer")
     assert http.get(location).json()["status"] == "successful"
 
 
-def test_redirects_are_not_followed(http: TestClient, listener: Receiver) -> None:
+def test_redirects_are_not_followed(http, listener):
     location = submitted(http, {"text": "a"}, success=f"{listener.origin}/redirect")
     assert settled(http, location)["success"] == ("given up", 3, "answered 302, redirects are not followed.")
     assert set(listener.paths()) == {"/redirect"}
 
 
-def test_a_name_of_this_machine_is_not_called(http: TestClient, listener: Receiver) -> None:
+def test_a_name_of_this_machine_is_not_called(http, listener):
     location = submitted(http, {"text": "a"}, success=f"http://localhost:{listener.server_port}/name")
     state, attempts, message = settled(http, location)["success"]
     assert (state, attempts) == ("given up", 3) and "no public address" in message
@@ -252,7 +247,7 @@ def test_a_name_of_this_machine_is_not_called(http: TestClient, listener: Receiv
         "",
     ],
 )
-def test_what_is_not_listed_is_refused_by_name(http: TestClient, listener: Receiver, uri: str) -> None:
+def test_what_is_not_listed_is_refused_by_name(http, listener, uri):
     text = uri.replace("{host}", listener.origin.removeprefix("http://"))
     body = {"inputs": {"wish": {}}, "subscriber": {"successUri": text}}
     answer = http.post(EXECUTION, json=body)
@@ -261,7 +256,7 @@ def test_what_is_not_listed_is_refused_by_name(http: TestClient, listener: Recei
 
 
 @pytest.mark.nightly  # it waits for the call to time out
-def test_a_call_that_a_killed_service_was_making_is_made_again(tmp_path: Path, listener: Receiver) -> None:
+def test_a_call_that_a_killed_service_was_making_is_made_again(tmp_path, listener):
     """kill -9 while the receiver holds the request: its lease ends, and it is sent again."""
     settings = {"LOA_WEBHOOK_ORIGINS": listener.origin, "LOA_WEBHOOK_SECRET": SECRET}
     with KilledService(tmp_path, settings) as service:

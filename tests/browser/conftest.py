@@ -1,18 +1,14 @@
 """Chromium for the browser tests: the system's own, with everything that calls home switched off."""
 
-from __future__ import annotations
-
 import importlib.util
 import os
 import shutil
-from collections.abc import Iterator
 from pathlib import Path
-from types import ModuleType
 
 import pytest
 from condensed_once import find_condensed
-from page_visit import PATIENCE, Visit, bare, computed, served, shown
-from playwright.sync_api import Browser, Page, Playwright, expect, sync_playwright
+from page_visit import PATIENCE, bare, computed, served, shown
+from playwright.sync_api import expect, sync_playwright
 
 CLOSED_FORMS = Path(__file__).parents[1] / "unit" / "report" / "conftest.py"
 
@@ -33,14 +29,14 @@ def chromium() -> str | None:
 
 
 @pytest.fixture(scope="session")
-def playwright() -> Iterator[Playwright]:
+def playwright():
     expect.set_options(timeout=PATIENCE)  # of a busy machine; what is there is seen at once
     with sync_playwright() as started:
         yield started
 
 
 @pytest.fixture(scope="session")
-def browser_path() -> str:
+def browser_path():
     path = chromium()
     if path is None:
         pytest.skip("no Chromium on this machine: apt-get install chromium, or name one in CHROMIUM")
@@ -48,14 +44,14 @@ def browser_path() -> str:
 
 
 @pytest.fixture(scope="session")
-def browser(playwright: Playwright, browser_path: str) -> Iterator[Browser]:
+def browser(playwright, browser_path):
     started = playwright.chromium.launch(executable_path=browser_path, args=FLAGS)
     yield started
     started.close()
 
 
 @pytest.fixture(scope="module")
-def drawing_browser(playwright: Playwright, browser_path: str) -> Iterator[Browser]:
+def drawing_browser(playwright, browser_path):
     """The browser of the other tests, with WebGL by software."""
     started = playwright.chromium.launch(executable_path=browser_path, args=DRAWING)
     yield started
@@ -63,14 +59,14 @@ def drawing_browser(playwright: Playwright, browser_path: str) -> Iterator[Brows
 
 
 @pytest.fixture(scope="module", autouse=True)
-def _closed(browser: Browser) -> Iterator[None]:
+def _closed(browser):
     yield
     for context in browser.contexts:
         context.close()
 
 
 @pytest.fixture(scope="session")
-def address(tmp_path_factory: pytest.TempPathFactory, condensed_bodies: Path) -> Iterator[str]:
+def address(tmp_path_factory, condensed_bodies):
     home = tmp_path_factory.mktemp("service")
     find_condensed(condensed_bodies, home / "lineofaction")
     with served(home) as found:
@@ -78,20 +74,20 @@ def address(tmp_path_factory: pytest.TempPathFactory, condensed_bodies: Path) ->
 
 
 @pytest.fixture(scope="session")
-def analyzed(address: str) -> str:
+def analyzed(address):
     """Hash of the small case's table in that service."""
     return computed(address)
 
 
 @pytest.fixture
-def visit(browser: Browser, address: str, analyzed: str) -> Iterator[Visit]:
+def visit(browser, address, analyzed):
     seen = shown(browser, address, analyzed)
     yield seen
     seen.page.close()
 
 
 @pytest.fixture(scope="module")
-def scripts(browser: Browser, address: str) -> Iterator[Page]:
+def scripts(browser, address):
     """Return a page whose scripts are asked, without what they draw and ask in the whole one."""
     page = bare(browser, address)
     yield page
@@ -99,11 +95,9 @@ def scripts(browser: Browser, address: str) -> Iterator[Page]:
 
 
 @pytest.fixture(scope="session")
-def closed_forms() -> ModuleType:
+def closed_forms():
     """Return the small database and run that the report's other tests use."""
     spec = importlib.util.spec_from_file_location("closed_forms", CLOSED_FORMS)
-    assert spec is not None
-    assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module

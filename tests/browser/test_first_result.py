@@ -1,9 +1,6 @@
 """The result that came with the program is the answer of a service that computes it."""
 
-from __future__ import annotations
-
 import json
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +13,7 @@ STATIC = Path(__file__).parents[2] / "service" / "page" / "static"
 
 
 @pytest.fixture(scope="module")
-def address(tmp_path_factory: pytest.TempPathFactory, condensed_bodies: Path) -> Iterator[str]:
+def address(tmp_path_factory, condensed_bodies):
     """A service of its own: in that of the pages nobody has analyzed the first example."""
     home = tmp_path_factory.mktemp("first")
     find_condensed(condensed_bodies, home / "lineofaction")
@@ -25,7 +22,7 @@ def address(tmp_path_factory: pytest.TempPathFactory, condensed_bodies: Path) ->
 
 
 @pytest.mark.nightly
-def test_the_result_that_came_with_the_program_is_that_of_a_service(address: str) -> None:
+def test_the_result_that_came_with_the_program_is_that_of_a_service(address):
     known = json.loads((STATIC / "first.json").read_text(encoding="utf-8"))
     computed(address, case=known["case"])
     assert_alike(first_result(address)["curve"], known["curve"])

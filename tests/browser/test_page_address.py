@@ -1,15 +1,11 @@
 """The address is the state: menu, reload, back, forward and another browser show what it names."""
 
-from __future__ import annotations
-
 import re
-from pathlib import Path
 from typing import Any
 
 import pytest
 from page_visit import (
     CASE,
-    Visit,
     answered,
     choose_case,
     computed,
@@ -20,7 +16,7 @@ from page_visit import (
     shows_the_same,
     tab,
 )
-from playwright.sync_api import Browser, Page, Route, expect
+from playwright.sync_api import Page, Route, expect
 from running_service import until
 
 from lineofaction.client import LineOfActionClient
@@ -37,7 +33,7 @@ def type_relief(page: Page) -> None:
 
 
 @pytest.mark.law
-def test_a_reload_shows_what_was_typed_and_moved(visit: Visit) -> None:
+def test_a_reload_shows_what_was_typed_and_moved(visit):
     page = visit.page
     type_relief(page)
     control(page, "#live-wheel-tip_relief_um").press("End")
@@ -51,7 +47,7 @@ def test_a_reload_shows_what_was_typed_and_moved(visit: Visit) -> None:
 
 
 @pytest.mark.law
-def test_flanks_and_torque_that_were_moved_are_sent_with_the_address(visit: Visit, browser: Browser) -> None:
+def test_flanks_and_torque_that_were_moved_are_sent_with_the_address(visit, browser):
     page, sliders = visit.page, ("#live-wheel-tip_relief_um", "#live-torque_n_m")
     for slider in sliders:
         moved(page, slider, "End")
@@ -65,9 +61,7 @@ def test_flanks_and_torque_that_were_moved_are_sent_with_the_address(visit: Visi
             )
 
 
-def test_the_client_has_the_case_and_the_result_that_an_address_shows(
-    visit: Visit, address: str, analyzed: str
-) -> None:
+def test_the_client_has_the_case_and_the_result_that_an_address_shows(visit, address, analyzed):
     page = visit.page
     with LineOfActionClient(address) as client:
         assert client.case_at(page.url) == validated(Case, CASE)
@@ -83,7 +77,7 @@ def test_the_client_has_the_case_and_the_result_that_an_address_shows(
         assert client.result_at(page.url) == analyzed
 
 
-def test_a_reload_shows_what_was_typed_if_the_browser_loses_its_entry(visit: Visit) -> None:
+def test_a_reload_shows_what_was_typed_if_the_browser_loses_its_entry(visit):
     page = visit.page
     type_relief(page)
     page.wait_for_timeout(500)  # nothing is to be kept any more
@@ -93,7 +87,7 @@ def test_a_reload_shows_what_was_typed_if_the_browser_loses_its_entry(visit: Vis
     expect(page.locator("#results-design")).to_contain_text(EDITED)
 
 
-def test_a_result_says_of_which_design_it_is_and_leads_back(visit: Visit) -> None:
+def test_a_result_says_of_which_design_it_is_and_leads_back(visit):
     page = visit.page
     assert page.locator(".design-note").count() == 0
     type_relief(page)
@@ -105,9 +99,7 @@ def test_a_result_says_of_which_design_it_is_and_leads_back(visit: Visit) -> Non
     expect(note).to_contain_text(EDITED)
 
 
-def test_a_job_under_way_goes_on_after_a_reload_and_is_left_by_the_way_back(
-    browser: Browser, address: str
-) -> None:
+def test_a_job_under_way_goes_on_after_a_reload_and_is_left_by_the_way_back(browser, address):
     page = opened(browser, address).page
     with LineOfActionClient(address) as client:
         job = client.submit("frontier", {"case": LONG})
@@ -127,9 +119,7 @@ def test_a_job_under_way_goes_on_after_a_reload_and_is_left_by_the_way_back(
     page.close()
 
 
-def test_an_analysis_survives_a_reload_in_mid_job(
-    browser: Browser, address: str, analyzed: str, tmp_path: Path
-) -> None:
+def test_an_analysis_survives_a_reload_in_mid_job(browser, address, analyzed, tmp_path):
     page = opened(browser, address).page
     choose_case(page, tmp_path)
     page.route(re.compile(r"/v1/jobs/[^?]"), lambda _: None)  # no end is heard of until the page is reloaded
@@ -155,9 +145,7 @@ def test_an_analysis_survives_a_reload_in_mid_job(
         ("nothing", "no such address"),
     ],
 )
-def test_an_unknown_address_is_said_on_the_first_screen(
-    browser: Browser, address: str, name: str, said: str
-) -> None:
+def test_an_unknown_address_is_said_on_the_first_screen(browser, address, name, said):
     page = opened(browser, f"{address}/#{name}", width=400).page
     notice = page.locator("#notice")
     expect(notice).to_contain_text(said)
@@ -172,12 +160,12 @@ def test_an_unknown_address_is_said_on_the_first_screen(
 
 
 @pytest.mark.nightly
-def test_a_study_whose_answer_is_lost_is_asked_again(visit: Visit, address: str, analyzed: str) -> None:
+def test_a_study_whose_answer_is_lost_is_asked_again(visit, address, analyzed):
     page = visit.page
     computed(address, "scatter", case=CASE, tolerance_class=8, samples=50)
     lost: list[Route] = []
 
-    def lose(route: Route) -> None:
+    def lose(route):
         """Let the service have the request once and nobody have its answer."""
         lost.append(route)
         route.fetch()
@@ -204,9 +192,7 @@ def entered(address: str, process: str, **inputs: Any) -> str:
         return job.id
 
 
-def test_the_address_of_an_analysis_shows_its_design_and_its_result(
-    browser: Browser, address: str, analyzed: str, tmp_path: Path
-) -> None:
+def test_the_address_of_an_analysis_shows_its_design_and_its_result(browser, address, analyzed, tmp_path):
     job = entered(address, "analyze", case=CASE)
     sender = opened(browser, address).page
     choose_case(sender, tmp_path)
@@ -222,7 +208,7 @@ def test_the_address_of_an_analysis_shows_its_design_and_its_result(
     sender.close()
 
 
-def test_the_design_of_a_job_under_way_stands_before_its_result(browser: Browser, address: str) -> None:
+def test_the_design_of_a_job_under_way_stands_before_its_result(browser, address):
     with LineOfActionClient(address) as client:
         job = client.submit("analyze", {"case": LONG})
         with other_browser(browser, f"{address}/#analyze={job.id}") as page:
@@ -235,9 +221,7 @@ def test_the_design_of_a_job_under_way_stands_before_its_result(browser: Browser
             expect(page.locator("#f-pair-normal_module_mm")).to_have_value("1")
 
 
-def test_a_study_is_sent_with_the_design_as_edited_and_what_was_typed_for_it(
-    visit: Visit, browser: Browser
-) -> None:
+def test_a_study_is_sent_with_the_design_as_edited_and_what_was_typed_for_it(visit, browser):
     page = visit.page
     control(page, "#f-pair-pinion-tip_relief_um").fill("7")
     control(page, "#f-pair-pinion-tip_relief_length_mm").fill("0.3")
@@ -257,7 +241,7 @@ def test_a_study_is_sent_with_the_design_as_edited_and_what_was_typed_for_it(
 
 
 @pytest.mark.nightly
-def test_a_run_up_is_sent_with_its_result_and_what_was_typed_for_it(visit: Visit, browser: Browser) -> None:
+def test_a_run_up_is_sent_with_its_result_and_what_was_typed_for_it(visit, browser):
     page = visit.page
     control(page, "#study-Run-up-duration_s").fill("0.05")
     control(page, "#study-Run-up-torque_n_m").fill("0.9")
@@ -280,7 +264,7 @@ def test_a_run_up_is_sent_with_its_result_and_what_was_typed_for_it(visit: Visit
         expect(other.locator("#scene-text")).to_have_value(re.compile("duration_s = 0.05"))
 
 
-def test_a_scene_is_sent_with_its_text_and_its_speeds(visit: Visit, browser: Browser) -> None:
+def test_a_scene_is_sent_with_its_text_and_its_speeds(visit, browser):
     page = visit.page
     tab(page, "Sound")
     page.get_by_role("button", name="Write the scene of the pair").press("Enter")
@@ -297,9 +281,7 @@ def test_a_scene_is_sent_with_its_text_and_its_speeds(visit: Visit, browser: Bro
         shows_the_same(other, page)
 
 
-def test_a_job_of_the_list_takes_the_page_with_its_design(
-    visit: Visit, browser: Browser, address: str
-) -> None:
+def test_a_job_of_the_list_takes_the_page_with_its_design(visit, browser, address):
     page = visit.page
     load = {"torque_n_m": [0.9, 1.1]}
     entered(address, "flank", case=CASE | {"load": load})
@@ -320,7 +302,7 @@ def test_a_job_of_the_list_takes_the_page_with_its_design(
     expect(page.locator("#live-ripple .plot")).to_have_attribute("data-drawn", "yes")
 
 
-def test_a_job_that_failed_says_so_beside_its_design(browser: Browser, address: str) -> None:
+def test_a_job_that_failed_says_so_beside_its_design(browser, address):
     with LineOfActionClient(address) as client:
         job = client.with_terms(max_cost_s=0.1).submit("frontier", {"case": LONG}).id
         until(lambda: client.status(job).status == "failed")
@@ -330,7 +312,7 @@ def test_a_job_that_failed_says_so_beside_its_design(browser: Browser, address: 
         expect(page.locator("#f-pair-normal_module_mm")).to_have_value("1")
 
 
-def test_openings_file_no_job(browser: Browser, address: str) -> None:
+def test_openings_file_no_job(browser, address):
     with LineOfActionClient(address) as client:
         before = [job.id for job in client.jobs(process="analyze")]
         for _ in range(2):
@@ -339,10 +321,10 @@ def test_openings_file_no_job(browser: Browser, address: str) -> None:
         assert [job.id for job in client.jobs(process="analyze")] == before
 
 
-def test_the_same_design_analyzed_again_is_the_same_job(visit: Visit) -> None:
+def test_the_same_design_analyzed_again_is_the_same_job(visit):
     page = visit.page
 
-    def job() -> str:
+    def job():
         with page.expect_response("**/v1/processes/analyze/execution") as answer:
             page.locator("#analyze").press("Enter")
         expect(page.locator("#analyze")).to_be_enabled()

@@ -1,16 +1,12 @@
 """Gears as made on the page: stated, measured or drawn, undone, analyzed, with their orders by name."""
 
-from __future__ import annotations
-
 import copy
 import json
 import re
-from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from page_visit import CASE, Visit, answered, choose_case, control, opened, tab
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
 SHEET = "tooth,flank,trace,deviation_um\n" + "".join(
     f"{tooth},right,pitch,{3 * (-1) ** tooth}\n" for tooth in range(1, 21)
@@ -18,7 +14,7 @@ SHEET = "tooth,flank,trace,deviation_um\n" + "".join(
 
 
 @pytest.fixture
-def page(browser: Browser, address: str, tmp_path: Path) -> Iterator[Page]:
+def page(browser, address, tmp_path):
     visit: Visit = opened(browser, address)
     choose_case(visit.page, tmp_path)
     tab(visit.page, "Teeth as made")
@@ -31,7 +27,7 @@ def field(page: Page, name: str) -> str:
     return page.locator(f"#f-pair-pinion-{name}").input_value()
 
 
-def test_a_sheet_goes_into_the_fields_and_is_undone(page: Page, tmp_path: Path) -> None:
+def test_a_sheet_goes_into_the_fields_and_is_undone(page, tmp_path):
     sheet = tmp_path / "gear.csv"
     sheet.write_text(SHEET, encoding="utf-8")
     control(page, "#made-file").set_input_files(sheet)
@@ -43,14 +39,14 @@ def test_a_sheet_goes_into_the_fields_and_is_undone(page: Page, tmp_path: Path) 
     expect(page.locator("#f-pair-pinion-pitch_deviation_um")).to_have_value("")
 
 
-def test_a_line_that_is_none_is_said_by_its_number(page: Page, tmp_path: Path) -> None:
+def test_a_line_that_is_none_is_said_by_its_number(page, tmp_path):
     sheet = tmp_path / "gear.csv"
     sheet.write_text(SHEET + "21,right,pitch,0\n", encoding="utf-8")
     control(page, "#made-file").set_input_files(sheet)
     expect(page.locator("#form-errors")).to_contain_text("line 22")
 
 
-def test_drawn_gears_are_in_the_fields_and_the_result_is_theirs(page: Page) -> None:
+def test_drawn_gears_are_in_the_fields_and_the_result_is_theirs(page):
     page.get_by_role("button", name="Draw both gears").press("Enter")
     expect(page.locator("#example-note")).to_have_text(
         "Both gears drawn within class 6 of ISO 1328-1, draw 1"
@@ -63,7 +59,7 @@ def test_drawn_gears_are_in_the_fields_and_the_result_is_theirs(page: Page) -> N
     expect(page.locator("#results-design")).to_be_empty()
 
 
-def test_orders_of_run_out_and_waves_have_names(page: Page, tmp_path: Path) -> None:
+def test_orders_of_run_out_and_waves_have_names(page, tmp_path):
     case = copy.deepcopy(CASE)
     case["pair"]["pinion"] = case["pair"]["pinion"] | {
         "run_out": {"eccentricity_um": 5.0},

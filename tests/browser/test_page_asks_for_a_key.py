@@ -1,29 +1,22 @@
 """A service with access keys: its page asks once and goes on, its description is tried with the key."""
 
-from __future__ import annotations
-
-from collections.abc import Iterator
-from pathlib import Path
-
 import page_visit
 import pytest
 from axe_playwright_python.sync_playwright import Axe
-from playwright.sync_api import Browser, expect
+from playwright.sync_api import expect
 
 from service.access.key_file import KeyFile
 
 
 @pytest.fixture
-def served(tmp_path: Path) -> Iterator[tuple[str, str]]:
+def served(tmp_path):
     file = tmp_path / "keys.json"
     secret = KeyFile(file).add("reader")
     with page_visit.served(tmp_path, LOA_KEYS_FILE=str(file)) as address:
         yield address, secret
 
 
-def test_it_asks_until_the_key_is_right_and_keeps_it_for_the_tab(
-    browser: Browser, served: tuple[str, str]
-) -> None:
+def test_it_asks_until_the_key_is_right_and_keeps_it_for_the_tab(browser, served):
     address, secret = served
     page = browser.new_page(viewport={"width": 1000, "height": 800})
     page.set_default_timeout(page_visit.PATIENCE)
@@ -44,7 +37,7 @@ def test_it_asks_until_the_key_is_right_and_keeps_it_for_the_tab(
     assert secret not in page.url
 
 
-def test_the_description_is_shown_and_tried_with_the_key(browser: Browser, tmp_path: Path) -> None:
+def test_the_description_is_shown_and_tried_with_the_key(browser, tmp_path):
     file = tmp_path / "keys.json"
     secret = KeyFile(file).add("reader")
     complaints: list[str] = []

@@ -1,12 +1,10 @@
 """What the page computes while no slider moves: peak-to-peak over torque, the band of pairs as made."""
 
-from __future__ import annotations
-
 import re
 from typing import Any
 
 import pytest
-from page_visit import Visit, moved, tab
+from page_visit import moved, tab
 from playwright.sync_api import expect
 from running_service import until
 
@@ -28,7 +26,7 @@ SINGLE = """async ([key, torque]) => {
 
 
 @pytest.fixture
-def asked(visit: Visit) -> list[dict[str, Any]]:
+def asked(visit):
     """Return the live questions of the page from now on."""
     found: list[dict[str, Any]] = []
     visit.page.on(
@@ -38,7 +36,7 @@ def asked(visit: Visit) -> list[dict[str, Any]]:
 
 
 @pytest.mark.law
-def test_the_curve_over_torque_has_what_each_torque_has_by_itself(visit: Visit, analyzed: str) -> None:
+def test_the_curve_over_torque_has_what_each_torque_has_by_itself(visit, analyzed):
     tab(visit.page, "Flanks, live")
     rows = visit.page.evaluate(ROWS, analyzed)
     torques = [row["torque"] for row in rows]
@@ -52,7 +50,7 @@ def test_the_curve_over_torque_has_what_each_torque_has_by_itself(visit: Visit, 
 
 
 @pytest.mark.law
-def test_the_torque_of_the_slider_stands_under_its_thumb(visit: Visit) -> None:
+def test_the_torque_of_the_slider_stands_under_its_thumb(visit):
     page = visit.page
     tab(page, "Flanks, live")
     page.wait_for_selector(".torque-curve[data-drawn]")
@@ -63,7 +61,7 @@ def test_the_torque_of_the_slider_stands_under_its_thumb(visit: Visit) -> None:
         assert track is not None
         there = track["x"] + 8.0 + part * (track["width"] - 16.0)
 
-        def off(there: float = there) -> float:
+        def off(there=there):
             box = mark.bounding_box()
             return 1e3 if box is None else abs(box["x"] + 0.5 * box["width"] - there)
 
@@ -71,7 +69,7 @@ def test_the_torque_of_the_slider_stands_under_its_thumb(visit: Visit) -> None:
 
 
 @pytest.mark.law
-def test_a_slider_that_moves_asks_for_one_torque(visit: Visit, asked: list[dict[str, Any]]) -> None:
+def test_a_slider_that_moves_asks_for_one_torque(visit, asked):
     page = visit.page
     tab(page, "Flanks, live")
     page.wait_for_selector(".torque-curve[data-drawn]")
@@ -93,7 +91,7 @@ def test_a_slider_that_moves_asks_for_one_torque(visit: Visit, asked: list[dict[
     assert visit.complaints == []
 
 
-def test_what_nobody_sees_is_not_computed(visit: Visit, asked: list[dict[str, Any]]) -> None:
+def test_what_nobody_sees_is_not_computed(visit, asked):
     page = visit.page
     tab(page, "Loads")
     page.wait_for_timeout(500)
@@ -114,9 +112,7 @@ BANDS = """node => (node.data ?? []).filter((trace) => trace.fill).map(({ fillco
 
 
 @pytest.mark.law
-def test_the_band_of_a_class_is_drawn_and_goes_away_with_its_switch(
-    visit: Visit, asked: list[dict[str, Any]]
-) -> None:
+def test_the_band_of_a_class_is_drawn_and_goes_away_with_its_switch(visit, asked):
     page = visit.page
     page.wait_for_selector("[data-figure=live_ste] .plot[data-drawn]")
     curve, words = page.locator("[data-figure=live_ste] .plot"), page.locator(".made-band output")
@@ -152,6 +148,6 @@ STATED = """async (stated) => {
 }"""
 
 
-def test_the_class_is_that_of_the_case_where_it_states_one(visit: Visit) -> None:
+def test_the_class_is_that_of_the_case_where_it_states_one(visit):
     assert "within class 8, that of the case, have" in visit.page.evaluate(STATED, 8)
     assert "within class 6, as the case states none, have" in visit.page.evaluate(STATED, None)

@@ -1,12 +1,8 @@
 """The page without a mouse, zoomed, and with less motion."""
 
-from __future__ import annotations
-
-from collections.abc import Iterator
-
 import pytest
-from page_visit import Visit, answers, control, shown, tab
-from playwright.sync_api import Browser, Page, expect
+from page_visit import answers, control, shown, tab
+from playwright.sync_api import Page, expect
 from running_service import until
 
 FOCUS = """() => {
@@ -20,7 +16,7 @@ FOCUS = """() => {
 
 
 @pytest.fixture(scope="module")
-def visit(browser: Browser, address: str, analyzed: str) -> Iterator[Visit]:
+def visit(browser, address, analyzed):
     seen = shown(browser, address, analyzed)
     seen.page.emulate_media(reduced_motion="reduce")  # a page that still glides is nowhere yet
     yield seen
@@ -35,14 +31,14 @@ def stops(page: Page, maximum: int) -> list[dict[str, object]]:
     return found
 
 
-def test_the_first_stop_skips_to_the_design(browser: Browser, address: str) -> None:
+def test_the_first_stop_skips_to_the_design(browser, address):
     page = browser.new_page()
     page.route("**/execution", lambda _: None)  # the first example is not computed
     page.goto(address)
     page.wait_for_selector("html[data-ready=yes]")
     page.keyboard.press("Tab")
     assert page.evaluate("document.activeElement.className") == "skip"
-    assert page.locator(".skip").bounding_box()["x"] >= 0  # type: ignore[index]
+    assert page.locator(".skip").bounding_box()["x"] >= 0
     page.keyboard.press("Enter")
     assert page.evaluate("document.activeElement.id") == "rail"
     page.keyboard.press("Tab")
@@ -51,7 +47,7 @@ def test_the_first_stop_skips_to_the_design(browser: Browser, address: str) -> N
 
 
 @pytest.mark.law
-def test_every_stop_is_seen_and_the_order_is_that_of_the_page(visit: Visit) -> None:
+def test_every_stop_is_seen_and_the_order_is_that_of_the_page(visit):
     page = visit.page
     tab(page, "Flanks, live")
     page.locator(".skip").focus()
@@ -70,7 +66,7 @@ def test_every_stop_is_seen_and_the_order_is_that_of_the_page(visit: Visit) -> N
 @pytest.mark.parametrize(
     "field", ["#name", "#bar-torque_n_m", "#f-load-torque_n_m", "#f-accuracy-level", "#live-torque_n_m"]
 )
-def test_ctrl_enter_analyzes_from_any_field(visit: Visit, field: str) -> None:
+def test_ctrl_enter_analyzes_from_any_field(visit, field):
     page = visit.page
     submitted: list[str] = []
     page.route("**/analyze/execution", lambda route: submitted.append(route.request.url) or route.abort())
@@ -81,7 +77,7 @@ def test_ctrl_enter_analyzes_from_any_field(visit: Visit, field: str) -> None:
     expect(page.locator("#analyze")).to_be_enabled()
 
 
-def test_arrows_go_from_tab_to_tab_and_the_address_says_which(visit: Visit) -> None:
+def test_arrows_go_from_tab_to_tab_and_the_address_says_which(visit):
     page = visit.page
     page.locator("#ripple-tab").focus()
     page.keyboard.press("End")
@@ -92,7 +88,7 @@ def test_arrows_go_from_tab_to_tab_and_the_address_says_which(visit: Visit) -> N
     assert "tab=" not in page.url
 
 
-def test_rail_and_dock_fold_and_the_split_moves(visit: Visit) -> None:
+def test_rail_and_dock_fold_and_the_split_moves(visit):
     page = visit.page
     width = page.locator("#stage").evaluate("node => node.clientWidth")
     for name in ("rail", "dock"):
@@ -107,7 +103,7 @@ def test_rail_and_dock_fold_and_the_split_moves(visit: Visit) -> None:
     page.locator("#split").press("ArrowDown")
 
 
-def test_a_slider_says_its_value_with_the_unit(visit: Visit) -> None:
+def test_a_slider_says_its_value_with_the_unit(visit):
     slider = control(visit.page, "#live-wheel-tip_relief_um")
     expect(slider).to_have_attribute("aria-valuetext", "0 µm")
     count = answers(visit.page)
@@ -119,12 +115,11 @@ def test_a_slider_says_its_value_with_the_unit(visit: Visit) -> None:
 
 
 @pytest.mark.parametrize("width", [700, 320])  # 200 % of 1400 pixels; what WCAG 1.4.10 asks for
-def test_zoomed_in_nothing_is_cut_off_or_covered(visit: Visit, width: int) -> None:
+def test_zoomed_in_nothing_is_cut_off_or_covered(visit, width):
     page = visit.page
     page.set_viewport_size({"width": width, "height": 450})
     until(lambda: page.evaluate("document.documentElement.scrollWidth") <= width)  # plots follow in a moment
     thing, panels = (page.locator(name).bounding_box() for name in ("#thing", "#panels"))
-    assert thing is not None and panels is not None
     assert thing["y"] + thing["height"] <= panels["y"], "one column"
     page.locator("#stage").focus()
     for stop in stops(page, 6):

@@ -1,7 +1,5 @@
 """Live flanks follow the sliders; two results on one pair of axes, of variants."""
 
-from __future__ import annotations
-
 import csv
 import json
 import re
@@ -11,7 +9,6 @@ import pytest
 from page_visit import (
     CASE,
     OVER_FACE,
-    Visit,
     answers,
     computed,
     control,
@@ -22,16 +19,16 @@ from page_visit import (
     tab,
     unfold,
 )
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 from running_service import until
 
 IN_THE_PLANE = "20/20, module 1 mm, up to 1 N m"
 """The small case in the list of jobs, which has those of other tests too."""
-ORDINATE = ", error less its mean, µm"
+ORDINATE = ", STE less mean, µm"
 
 
 @pytest.fixture(scope="module")
-def other(address: str) -> str:
+def other(address):
     """Hash of another pair's table, in three dimensions."""
     return computed(address, case=OVER_FACE)
 
@@ -59,9 +56,7 @@ def change(page: Page) -> str:
 
 
 @pytest.mark.nightly
-def test_another_pair_is_compared_at_the_torque_that_is_looked_at(
-    browser: Browser, address: str, analyzed: str, other: str
-) -> None:
+def test_another_pair_is_compared_at_the_torque_that_is_looked_at(browser, address, analyzed, other):
     visit = opened(browser, f"{address}/#database={other}&a={analyzed}&on=b")
     page = visit.page
     until(lambda: answers(page) > 0)
@@ -76,9 +71,7 @@ def test_another_pair_is_compared_at_the_torque_that_is_looked_at(
 
 
 @pytest.mark.nightly
-def test_in_three_dimensions_misalignment_and_crowning_act(
-    browser: Browser, address: str, other: str
-) -> None:
+def test_in_three_dimensions_misalignment_and_crowning_act(browser, address, other):
     visit = shown(browser, address, other)
     page = visit.page
     before = page.locator("#live-figures dd").first.text_content()
@@ -101,7 +94,7 @@ def test_in_three_dimensions_misalignment_and_crowning_act(
 
 
 @pytest.mark.nightly
-def test_one_button_computes_in_three_dimensions(browser: Browser, address: str, analyzed: str) -> None:
+def test_one_button_computes_in_three_dimensions(browser, address, analyzed):
     visit = opened(browser, f"{address}/#database={analyzed}")
     page = visit.page
     tab(page, "Flanks, live")
@@ -112,7 +105,7 @@ def test_one_button_computes_in_three_dimensions(browser: Browser, address: str,
     assert visit.complaints == []
 
 
-def test_two_analyses_of_the_list_are_compared_with_their_errors(visit: Visit, other: str) -> None:
+def test_two_analyses_of_the_list_are_compared_with_their_errors(visit, other):
     page = visit.page
     page.reload()
     tab(page, "Jobs")
@@ -130,9 +123,7 @@ def test_two_analyses_of_the_list_are_compared_with_their_errors(visit: Visit, o
     assert visit.complaints == []
 
 
-def test_results_without_a_load_in_common_are_not_compared_and_it_says_why(
-    visit: Visit, address: str
-) -> None:
+def test_results_without_a_load_in_common_are_not_compared_and_it_says_why(visit, address):
     computed(address, case=CASE | {"load": {"torque_n_m": [3.0, 4.0]}})
     page = visit.page
     page.reload()
@@ -149,7 +140,7 @@ PLOTS = ("live_pressure", "live_face_load")
 
 
 @pytest.fixture(scope="module")
-def over_face(browser: Browser, address: str) -> Visit:
+def over_face(browser, address):
     return shown(browser, address, computed(address, case=OVER_FACE))
 
 
@@ -162,7 +153,7 @@ def figure(page: Page, name: str) -> float:
     return float((node.text_content() or "nan").split()[0])
 
 
-def test_a_misaligned_pair_is_pressed_harder_and_carries_less_evenly(over_face: Visit) -> None:
+def test_a_misaligned_pair_is_pressed_harder_and_carries_less_evenly(over_face):
     page = over_face.page
     for key in PLOTS:
         expect(control(page, f"[data-figure={key}] .plot")).to_have_attribute("data-drawn", "yes")
@@ -180,9 +171,7 @@ def test_a_misaligned_pair_is_pressed_harder_and_carries_less_evenly(over_face: 
     expect(page.locator("#live-figures")).to_have_text(before)
 
 
-def test_in_the_plane_there_is_a_pressure_along_the_profile_and_no_face(
-    browser: Browser, address: str, analyzed: str
-) -> None:
+def test_in_the_plane_there_is_a_pressure_along_the_profile_and_no_face(browser, address, analyzed):
     page = shown(browser, address, analyzed).page
     before = figure(page, "largest pressure")
     expect(page.locator("[data-figure=live_face_load]")).to_be_hidden()
@@ -192,9 +181,7 @@ def test_in_the_plane_there_is_a_pressure_along_the_profile_and_no_face(
     page.close()
 
 
-def test_the_length_of_a_relief_acts_where_there_is_a_relief(
-    browser: Browser, address: str, analyzed: str
-) -> None:
+def test_the_length_of_a_relief_acts_where_there_is_a_relief(browser, address, analyzed):
     page = shown(browser, address, analyzed).page
     plain = page.locator("#live-figures").text_content()
     moved(page, "#live-pinion-tip_relief_length_mm", "End")
@@ -208,7 +195,7 @@ def test_the_length_of_a_relief_acts_where_there_is_a_relief(
     page.close()
 
 
-def test_they_are_accessible_and_nothing_is_complained_about(over_face: Visit) -> None:
+def test_they_are_accessible_and_nothing_is_complained_about(over_face):
     unfold(over_face.page)
     assert not (told := found_inaccessible(over_face.page)), json.dumps(told, indent=1)
     assert over_face.complaints == []

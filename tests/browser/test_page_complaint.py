@@ -1,11 +1,8 @@
 """The complaint in the bar: fields of the design in the units of who hears it, and the order that it is."""
 
-from __future__ import annotations
-
 import math
 import re
 import tomllib
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +11,6 @@ import pytest
 from page_visit import (
     CASE,
     GEAR,
-    Visit,
     control,
     found_inaccessible,
     moved,
@@ -24,7 +20,7 @@ from page_visit import (
     shown,
     tab,
 )
-from playwright.sync_api import Browser, Page, Route, expect
+from playwright.sync_api import Page, Route, expect
 from running_service import until
 
 from lineofaction.gearbox.convert.complaint import complaint_of_case
@@ -54,7 +50,7 @@ UNIT = Path(__file__).parents[2] / "examples" / "two_stage_gearbox.rexs"
 
 
 @pytest.fixture
-def visit(browser: Browser, address: str) -> Iterator[Visit]:
+def visit(browser, address):
     seen = opened(browser, address)
     yield seen
     seen.page.close()
@@ -90,7 +86,7 @@ def said(page: Page, text: str) -> None:
         {"order": 40.0, **AT_40},
     ],
 )
-def test_the_order_is_that_of_the_service(scripts: Page, complaint: dict[str, Any]) -> None:
+def test_the_order_is_that_of_the_service(scripts, complaint):
     case = CASE | {"pair": PAIR, "complaint": complaint}
     known = complaint_of_case(validated(Case, case))
     heard = scripts.evaluate(HEARD, case)
@@ -100,7 +96,7 @@ def test_the_order_is_that_of_the_service(scripts: Page, complaint: dict[str, An
 
 
 @pytest.mark.law
-def test_axes_have_the_complaint_as_it_is_stated(scripts: Page) -> None:
+def test_axes_have_the_complaint_as_it_is_stated(scripts):
     stated = {"frequency_hz": 1412.0, "speed_rpm": 1765.0, "shaft": "wheel", "torque_n_m": 0.7}
     orders = dict.fromkeys(("harmonic of the mesh", "order of the mesh", "mesh order"), 2.0)
     others = {
@@ -116,7 +112,7 @@ def test_axes_have_the_complaint_as_it_is_stated(scripts: Page) -> None:
 @pytest.mark.parametrize(
     "stated", [{"frequency_hz": 1486.0}, {"frequency_hz": 1453.0, "tolerance_percent": 3.0}]
 )
-def test_what_is_no_harmonic_to_the_service_is_none_in_the_bar(scripts: Page, stated: dict[str, Any]) -> None:
+def test_what_is_no_harmonic_to_the_service_is_none_in_the_bar(scripts, stated):
     case = CASE | {"pair": PAIR, "complaint": stated | {"speed_rpm": 2100.0}}
     with pytest.raises(BadInput, match="of what passes"):
         complaint_of_case(validated(Case, case))
@@ -124,7 +120,7 @@ def test_what_is_no_harmonic_to_the_service_is_none_in_the_bar(scripts: Page, st
 
 
 @pytest.mark.law
-def test_bar_form_undo_address_and_file_have_one_complaint(visit: Visit, browser: Browser) -> None:
+def test_bar_form_undo_address_and_file_have_one_complaint(visit, browser):
     page = visit.page
     page.get_by_label("Unit of the complaint's frequency").select_option("kHz")
     typed(page, frequency_hz="1,4", speed_rpm="1812", torque_n_m="80")
@@ -157,7 +153,7 @@ def test_bar_form_undo_address_and_file_have_one_complaint(visit: Visit, browser
 
 
 @pytest.mark.law
-def test_a_road_speed_is_in_the_bar_once_the_tire_is_known_and_reads_as_rpm(visit: Visit) -> None:
+def test_a_road_speed_is_in_the_bar_once_the_tire_is_known_and_reads_as_rpm(visit):
     page = visit.page
     typed(page, frequency_hz="1400", speed_rpm="1812")
     expect(page.locator("#bar-road_speed_km_h")).to_be_hidden()
@@ -173,7 +169,7 @@ def test_a_road_speed_is_in_the_bar_once_the_tire_is_known_and_reads_as_rpm(visi
     assert float(page.locator("#f-complaint-road_speed_km_h").input_value()) == pytest.approx(80.0)
 
 
-def test_what_is_refused_is_marked_in_the_bar(visit: Visit) -> None:
+def test_what_is_refused_is_marked_in_the_bar(visit):
     page = visit.page
     typed(page, frequency_hz="1.4", speed_rpm="1812")
     field = page.locator("#bar-frequency_hz")
@@ -185,7 +181,7 @@ def test_what_is_refused_is_marked_in_the_bar(visit: Visit) -> None:
 
 
 @pytest.mark.parametrize("width", [1400, 400])
-def test_the_complaint_is_typed_by_keyboard_at_any_width(browser: Browser, address: str, width: int) -> None:
+def test_the_complaint_is_typed_by_keyboard_at_any_width(browser, address, width):
     visit = opened(browser, address, width=width)
     page = visit.page
     page.locator("#dock-fold").focus()
@@ -210,9 +206,7 @@ def test_the_complaint_is_typed_by_keyboard_at_any_width(browser: Browser, addre
 
 @pytest.mark.law
 @pytest.mark.parametrize("width", [1440, 1920])
-def test_the_bar_is_one_line_with_a_complaint_and_three_variants(
-    browser: Browser, address: str, width: int
-) -> None:
+def test_the_bar_is_one_line_with_a_complaint_and_three_variants(browser, address, width):
     visit = opened(browser, address, width=width)
     page = visit.page
     for _ in range(2):
@@ -230,9 +224,7 @@ def test_the_bar_is_one_line_with_a_complaint_and_three_variants(
 
 
 @pytest.mark.law
-def test_the_order_is_marked_in_the_plots_of_the_pair_as_it_is_typed(
-    browser: Browser, address: str, analyzed: str
-) -> None:
+def test_the_order_is_marked_in_the_plots_of_the_pair_as_it_is_typed(browser, address, analyzed):
     visit = shown(browser, address, analyzed)
     page = visit.page
     live, spectrum = (
@@ -265,9 +257,7 @@ def test_the_order_is_marked_in_the_plots_of_the_pair_as_it_is_typed(
 
 
 @pytest.mark.law
-def test_a_complaint_of_a_design_without_a_result_is_typed_after_one_with(
-    browser: Browser, address: str, analyzed: str
-) -> None:
+def test_a_complaint_of_a_design_without_a_result_is_typed_after_one_with(browser, address, analyzed):
     """The parts of the page that belong to the result are gone, and nothing looks for them."""
     visit = opened(browser, f"{address}/#database={analyzed}")
     page = visit.page
@@ -282,7 +272,7 @@ def test_a_complaint_of_a_design_without_a_result_is_typed_after_one_with(
     page.close()
 
 
-def test_an_order_map_is_marked_on_both_axes_and_what_came_with_marks_keeps_them(visit: Visit) -> None:
+def test_an_order_map_is_marked_on_both_axes_and_what_came_with_marks_keeps_them(visit):
     axes = {"mesh order": 2.0, "speed of the driving gear, rpm": 1500.0}
     speed, order = ({"title": {"text": text}} for text in reversed(axes))
     run = {
@@ -320,7 +310,7 @@ def in_rest(page: Page, count: int) -> list[str]:
     """Return the levels of the complaint once they have their bands."""
     rows: list[str] = []
 
-    def stated() -> bool:
+    def stated():
         rows[:] = page.evaluate(ROWS)
         return len(rows) == count and not any("…" in row for row in rows)
 
@@ -329,11 +319,11 @@ def in_rest(page: Page, count: int) -> list[str]:
 
 
 @pytest.mark.law
-def test_levels_have_the_band_of_their_error_and_changes_that_of_both(visit: Visit) -> None:
-    def curve(amplitude: float, error: float) -> dict[str, Any]:
+def test_levels_have_the_band_of_their_error_and_changes_that_of_both(visit):
+    def curve(amplitude, error):
         return {"harmonics_um": [9.0, amplitude], "harmonics_error_um": [9.0, error]}
 
-    def stated(*curves: dict[str, Any]) -> list[list[list[str]]]:
+    def stated(*curves):
         named = [{"name": name, "curve": each} for name, each in zip("AB", curves, strict=True)]
         heard = {"harmonic": 2, "torque": 80.0, "curves": named}
         figures: list[list[list[str]]] = visit.page.evaluate(STATED, heard)
@@ -354,9 +344,7 @@ def test_levels_have_the_band_of_their_error_and_changes_that_of_both(visit: Vis
 
 
 @pytest.mark.law
-def test_the_dock_has_the_level_of_the_complaint_of_both_variants_at_its_torque(
-    browser: Browser, address: str, analyzed: str
-) -> None:
+def test_the_dock_has_the_level_of_the_complaint_of_both_variants_at_its_torque(browser, address, analyzed):
     visit = shown(browser, address, analyzed)
     page = visit.page
     typed(page, frequency_hz="1000", speed_rpm="1500", torque_n_m="0.7")  # 20 teeth: harmonic 2
@@ -396,7 +384,7 @@ def beside_at_rest(page: Page) -> list[list[str]]:
     """Return the rows of the complaint of both variants once they have their bands."""
     rows: list[list[str]] = []
 
-    def stated() -> bool:
+    def stated():
         rows[:] = page.evaluate(BESIDE)
         return "complaint" in str(rows) and "…" not in str(rows)
 
@@ -424,8 +412,8 @@ MESHES = (
 
 
 @pytest.mark.law
-def test_meshes_of_a_unit_are_heard_by_the_teeth_on_the_way(visit: Visit) -> None:
-    def mesh(name: str, driver: str, driven: str, teeth: tuple[int, int]) -> dict[str, Any]:
+def test_meshes_of_a_unit_are_heard_by_the_teeth_on_the_way(visit):
+    def mesh(name, driver, driven, teeth):
         pair = {gear: {"teeth": count} for gear, count in zip(("pinion", "wheel"), teeth, strict=True)}
         return {"name": name, "driver": driver, "driven": driven, "case": {"pair": pair}}
 
@@ -448,11 +436,11 @@ def test_meshes_of_a_unit_are_heard_by_the_teeth_on_the_way(visit: Visit) -> Non
 
 
 @pytest.mark.law
-def test_a_complaint_that_is_typed_while_a_unit_opens_is_kept(visit: Visit) -> None:
+def test_a_complaint_that_is_typed_while_a_unit_opens_is_kept(visit):
     """What was typed before belongs to the design that is left."""
     page, waiting = visit.page, list[Route]()
 
-    def hold(route: Route) -> None:
+    def hold(route):
         waiting.append(route)
 
     page.locator("#bar-torque_n_m").fill("77")
@@ -474,7 +462,7 @@ def test_a_complaint_that_is_typed_while_a_unit_opens_is_kept(visit: Visit) -> N
 
 
 @pytest.mark.law
-def test_what_another_mesh_of_a_unit_makes_is_not_submitted_with_the_open_pair(visit: Visit) -> None:
+def test_what_another_mesh_of_a_unit_makes_is_not_submitted_with_the_open_pair(visit):
     """The plan, Analyze and studies of the pair are as without it; the bar and the address keep it."""
     page = visit.page
     page.locator("#import-file").set_input_files(UNIT)

@@ -1,12 +1,8 @@
 """A pair typed digit by digit, with slips: its faults stand at their fields and are no errors of the page."""
 
-from __future__ import annotations
-
-from collections.abc import Iterator
-
 import pytest
 from page_visit import Visit, answered, control, opened, shown
-from playwright.sync_api import Browser, Response, expect
+from playwright.sync_api import expect
 
 SLIPS = {
     "pair-normal_module_mm": "1.8",
@@ -36,11 +32,11 @@ TUTORIAL = {
 
 
 @pytest.fixture
-def refused(browser: Browser, address: str) -> Iterator[tuple[Visit, list[str]]]:
+def refused(browser, address):
     """Open the page; gives what it does and what the service refuses it."""
     seen, answers = opened(browser, address), []
 
-    def note(response: Response) -> None:
+    def note(response):
         if response.status >= 400:
             answers.append(f"{response.status} {response.url}")
 
@@ -63,7 +59,7 @@ def typed_digit_by_digit(seen: Visit, key: str, text: str) -> None:
 
 
 @pytest.mark.law
-def test_a_pair_typed_with_slips_logs_no_error(refused: tuple[Visit, list[str]]) -> None:
+def test_a_pair_typed_with_slips_logs_no_error(refused):
     seen, answers = refused
     page = seen.page
     page.locator("#example").select_option("empty")
@@ -87,9 +83,7 @@ def test_a_pair_typed_with_slips_logs_no_error(refused: tuple[Visit, list[str]])
     assert [line for line in seen.console if line.startswith("error")] == []
 
 
-def test_a_slider_typed_beyond_its_range_says_so_and_logs_no_error(
-    browser: Browser, address: str, analyzed: str
-) -> None:
+def test_a_slider_typed_beyond_its_range_says_so_and_logs_no_error(browser, address, analyzed):
     seen = shown(browser, address, analyzed)
     page = seen.page
     exact = control(page, "#live-torque_n_m-exact")

@@ -1,10 +1,8 @@
 """What is drawn is what is typed: a pair needs no load, an old picture is gray, a bar below its error too."""
 
-from __future__ import annotations
-
 import pytest
 from page_visit import control, opened, shown
-from playwright.sync_api import Browser, Page, Route, expect
+from playwright.sync_api import Page, Route, expect
 from running_service import until
 
 from lineofaction.gearbox.convert.outline import outline_json
@@ -32,7 +30,7 @@ def type_pair(page: Page) -> None:
 
 
 @pytest.mark.law
-def test_an_outline_needs_the_fields_of_the_pair_alone(browser: Browser, address: str) -> None:
+def test_an_outline_needs_the_fields_of_the_pair_alone(browser, address):
     visit = opened(browser, address)
     page = visit.page
     type_pair(page)
@@ -45,18 +43,18 @@ def test_an_outline_needs_the_fields_of_the_pair_alone(browser: Browser, address
 
 
 @pytest.mark.parametrize("name", [example.name for example in examples()])
-def test_an_outline_depends_on_nothing_but_the_pair(name: str) -> None:
+def test_an_outline_depends_on_nothing_but_the_pair(name):
     (content,) = (example.content for example in examples() if example.name == name)
     alone = {"pair": content["pair"], "load": {"torque_n_m": [1]}}
     assert outline_json(validated(Case, alone)) == outline_json(validated(Case, content))
 
 
 @pytest.mark.law
-def test_an_address_that_loads_says_so(browser: Browser, address: str, analyzed: str) -> None:
+def test_an_address_that_loads_says_so(browser, address, analyzed):
     page = shown(browser, address, analyzed).page
     waiting: list[Route] = []
 
-    def hold(route: Route) -> None:
+    def hold(route):
         waiting.append(route)
 
     page.evaluate("() => { location.hash = 'rail'; }")
@@ -73,7 +71,7 @@ def test_an_address_that_loads_says_so(browser: Browser, address: str, analyzed:
 
 
 @pytest.mark.law
-def test_bars_have_their_errors_and_are_gray_below_them(scripts: Page) -> None:
+def test_bars_have_their_errors_and_are_gray_below_them(scripts):
     blue, gray = "#0072B2", "#B4BBC3"
     assert scripts.evaluate(BARS, [0.02, 0.02]) == [[blue, gray], [0.02, 0.02]]
     assert scripts.evaluate(BARS, None) == [[blue, blue], None], "as a slider moves"

@@ -1,15 +1,12 @@
 """A design was edited only where somebody edited it: what the service completes is no edit."""
 
-from __future__ import annotations
-
 import tomllib
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
 from page_visit import opened
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Page
+from repository import EXAMPLES
 
 from lineofaction.gearbox.convert.case import case_json
 from lineofaction.gearbox.inspection.as_made import Inspected, drawn_case, measured_case
@@ -17,7 +14,6 @@ from lineofaction.gearbox.inspection.measured_gear import inspected
 from lineofaction.gearbox.inspection.sheet import sheet_text
 from lineofaction.gearbox.schemas import Case, validated
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 EDITED = """async ([typed, completed]) => {
   const [{ leaves, at, put }, { Field }, { differences }] = await Promise.all(
     ["schema", "field", "comparison"].map((name) => import(`/page/${name}.js`)));
@@ -43,7 +39,7 @@ CASES = cases()
 
 
 @pytest.fixture(scope="module")
-def page(browser: Browser, address: str) -> Iterator[Page]:
+def page(browser, address):
     page = opened(browser, address).page
     yield page
     page.close()
@@ -62,11 +58,11 @@ def edited(page: Page, typed: dict[str, Any]) -> list[list[str]]:
 @pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize("name", CASES)
-def test_what_the_service_completes_is_no_edit(page: Page, name: str) -> None:
+def test_what_the_service_completes_is_no_edit(page, name):
     assert edited(page, CASES[name]) == []
 
 
-def test_a_pair_without_a_tolerance_is_not_edited_by_the_usual_one(page: Page) -> None:
+def test_a_pair_without_a_tolerance_is_not_edited_by_the_usual_one(page):
     case = CASES["palermo_spur_20_20"]
     for accuracy in ({}, {"level": "draft"}, {"time_budget_s": 5.0}, {"tolerance": 0.02}):
         assert edited(page, case | {"accuracy": accuracy}) == []
@@ -74,7 +70,7 @@ def test_a_pair_without_a_tolerance_is_not_edited_by_the_usual_one(page: Page) -
     assert [key for key, *_ in found] == ["accuracy.tolerance"]
 
 
-def test_measured_and_drawn_gears_pass_the_form(page: Page) -> None:
+def test_measured_and_drawn_gears_pass_the_form(page):
     drawn = drawn_case(validated(Case, CASES["palermo_spur_20_20"]), 6)
     assert edited(page, case_json(drawn)) == []
     of = Inspected("pinion", "left", None)

@@ -1,31 +1,17 @@
 """A page without an address shows its first example at once, and weighs little: bytes, listeners, memory."""
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path
 from typing import Any
 
 import pytest
-from page_visit import (
-    CASE,
-    Visit,
-    answers,
-    computed,
-    control,
-    found_inaccessible,
-    opened,
-    tab,
-    unfold,
-)
-from playwright.sync_api import Browser, CDPSession, Page, Route, expect
+from page_visit import CASE, answers, computed, control, found_inaccessible, opened, tab, unfold
+from playwright.sync_api import CDPSession, Page, expect
 
 
 @pytest.mark.law
-def test_the_first_example_stands_there_with_its_errors_when_the_page_opens(
-    browser: Browser, address: str
-) -> None:
+def test_the_first_example_stands_there_with_its_errors_when_the_page_opens(browser, address):
     visit = opened(browser, f"{address}/#")
     page = visit.page
     expect(page.locator("#live-ripple .plot")).to_have_attribute("data-drawn", "yes")
@@ -39,7 +25,7 @@ def test_the_first_example_stands_there_with_its_errors_when_the_page_opens(
     assert [url for url in visit.requests if "/execution" in url] == [], "no job"
     assert page.locator(".design-note").count() == 0
     expect(page.locator("#live-ripple figcaption")).to_contain_text(
-        "Gray, once it is analyzed here: as analyzed"
+        "Gray, after Analyze: the pair as analyzed"
     )
     expect(page.locator(".made-band")).to_be_hidden()
     assert not (told := found_inaccessible(page)), json.dumps(told, indent=1)
@@ -53,15 +39,13 @@ def test_the_first_example_stands_there_with_its_errors_when_the_page_opens(
 
 
 @pytest.mark.law
-def test_no_figure_of_a_result_stands_under_the_title_of_another(
-    browser: Browser, address: str, analyzed: str
-) -> None:
+def test_no_figure_of_a_result_stands_under_the_title_of_another(browser, address, analyzed):
     page = opened(browser, f"{address}/#").page
     figures = page.locator("#live-figures")
     expect(figures).to_contain_text("peak to peak")
     before = figures.locator("dd").first.inner_text()
 
-    def hold(route: Route) -> None:
+    def hold(route):
         assert route.request.method == "POST"
 
     page.route("**/ste", hold)
@@ -77,7 +61,7 @@ def test_no_figure_of_a_result_stands_under_the_title_of_another(
 
 
 @pytest.mark.law
-def test_a_design_that_is_opened_leaves_the_result_of_another_behind(browser: Browser, address: str) -> None:
+def test_a_design_that_is_opened_leaves_the_result_of_another_behind(browser, address):
     page = opened(browser, f"{address}/#").page
     figures, note = page.locator("#live-figures"), page.locator(".design-note")
     expect(figures).to_contain_text("peak to peak")
@@ -112,7 +96,7 @@ OUTSIDE = """() => [...document.querySelectorAll(":is(#results-body, .report) .p
 })"""
 
 
-def test_a_phone_has_slider_and_curve_together_and_labels_within_plots(visit: Visit) -> None:
+def test_a_phone_has_slider_and_curve_together_and_labels_within_plots(visit):
     page = visit.page
     page.set_viewport_size({"width": 400, "height": 660})
     curve, slider = (page.locator(name).bounding_box() for name in ("#live-ripple .plot", "#quick .slider"))
@@ -136,7 +120,7 @@ def test_a_phone_has_slider_and_curve_together_and_labels_within_plots(visit: Vi
     page.close()
 
 
-def test_a_section_of_the_page_computes_nothing(browser: Browser, address: str) -> None:
+def test_a_section_of_the_page_computes_nothing(browser, address):
     page = opened(browser, f"{address}/#rail").page
     page.wait_for_selector("#plan dl")
     expect(page.locator("#live-figures")).to_be_empty()
@@ -144,9 +128,7 @@ def test_a_section_of_the_page_computes_nothing(browser: Browser, address: str) 
     page.close()
 
 
-def test_the_examples_begin_with_an_ev_pair_and_an_industrial_spur_pair(
-    browser: Browser, address: str
-) -> None:
+def test_the_examples_begin_with_an_ev_pair_and_an_industrial_spur_pair(browser, address):
     page = opened(browser, address).page
     names = page.locator("#example option:not([hidden])").evaluate_all("all => all.map(one => one.value)")
     assert names[:2] == ["helical_ev_23_67", "industrial_spur_21_59"]
@@ -161,14 +143,12 @@ GROWTH = 300_000  # bytes a result: code that the browser compiles meanwhile; a 
 
 
 @pytest.fixture(scope="module")
-def other(address: str) -> str:
+def other(address):
     return computed(address, case=CASE | {"load": {"torque_n_m": [0.4, 0.8]}})
 
 
 @pytest.mark.law
-def test_the_first_screen_is_light_and_has_no_plots_and_no_description_of_the_service(
-    browser: Browser, address: str
-) -> None:
+def test_the_first_screen_is_light_and_has_no_plots_and_no_description_of_the_service(browser, address):
     page = browser.new_page()
     session = page.context.new_cdp_session(page)
     session.send("Network.enable")
@@ -206,9 +186,7 @@ def weight(session: CDPSession) -> tuple[float, float]:
 
 
 @pytest.mark.nightly
-def test_many_results_add_no_listeners_and_little_memory(
-    browser: Browser, address: str, analyzed: str, other: str
-) -> None:
+def test_many_results_add_no_listeners_and_little_memory(browser, address, analyzed, other):
     page = opened(browser, address).page
     session = page.context.new_cdp_session(page)
     session.send("Performance.enable")

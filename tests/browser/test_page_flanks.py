@@ -1,17 +1,14 @@
 """What is painted on flanks of the rolling pair: contact lines where they touch, colors of the pressure."""
 
-from __future__ import annotations
-
 import base64
 import re
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import pytest
 from page_picture import CANVAS, stopped
 from page_visit import Visit, opened, shown
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 from running_service import until
 
 from lineofaction.gearbox.convert.outline import outline_json
@@ -44,7 +41,7 @@ PAINTED = """async ({ outline, name, position, pressure, size, top, view }) => {
 
 
 @pytest.fixture(scope="module")
-def outline() -> dict[str, Any]:
+def outline():
     """A helical pair as the service outlines it."""
     gear = {"teeth": 20, "face_width_mm": 8.0, "bore_diameter_mm": 10.0}
     gears = {"pinion": gear, "wheel": gear | {"teeth": 24}}
@@ -54,7 +51,7 @@ def outline() -> dict[str, Any]:
 
 
 @pytest.fixture(scope="module")
-def page(drawing_browser: Browser, address: str) -> Iterator[Page]:
+def page(drawing_browser, address):
     seen = opened(drawing_browser, address)
     yield seen.page
     seen.page.close()
@@ -92,9 +89,7 @@ def middle_of_line(colors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 @pytest.mark.law
 @pytest.mark.parametrize("position", [0.2, -0.3])
 @pytest.mark.parametrize("name", ["pinion", "wheel"])
-def test_contact_lines_lie_in_the_plane_of_action_where_the_position_has_them(
-    page: Page, outline: dict[str, Any], name: str, position: float
-) -> None:
+def test_contact_lines_lie_in_the_plane_of_action_where_the_position_has_them(page, outline, name, position):
     _, along, across = of_action(outline)
     pitch_mm = outline["path_of_contact"]["base_pitch_mm"]
     pinion = outline["pinion"]
@@ -126,9 +121,7 @@ def legend(page: Page, part: float) -> np.ndarray:
 
 @pytest.mark.law
 @pytest.mark.parametrize("name", STEEL)
-def test_a_flank_has_the_color_of_the_scale_at_its_pressure(
-    page: Page, outline: dict[str, Any], name: str
-) -> None:
+def test_a_flank_has_the_color_of_the_scale_at_its_pressure(page, outline, name):
     """Seven parts of the scale over three of steel, both lit: each channel says how bright a place is."""
     for part in (0.1, 0.4, 0.7, 1.0):
         colors = painted(page, outline, name, of_action(outline)[2], 0.2, part * TOP)
@@ -148,9 +141,7 @@ BENT = """async () => {
 }"""
 
 
-def test_the_switch_bends_as_many_times_as_it_says(
-    drawing_browser: Browser, address: str, analyzed: str
-) -> None:
+def test_the_switch_bends_as_many_times_as_it_says(drawing_browser, address, analyzed):
     seen: Visit = shown(drawing_browser, address, analyzed)
     seen.page.evaluate(BENT)
     stopped(seen.page)
@@ -168,10 +159,10 @@ SHARED = """async (curve) => (await import("/page/live_figures.js")).sharingFigu
 
 
 @pytest.mark.law
-def test_the_share_of_a_pair_goes_on_with_its_place_over_two_pitches(page: Page) -> None:
+def test_the_share_of_a_pair_goes_on_with_its_place_over_two_pitches(page):
     """A pair is a base pitch further with each number and with each pitch of the position."""
 
-    def share(place: np.ndarray) -> np.ndarray:
+    def share(place):
         return np.clip((0.8 - np.abs(place)) / 0.6, 0.0, 1.0)
 
     position, pair = np.arange(0.0, 1.0, 0.125), np.array([-1, 0])

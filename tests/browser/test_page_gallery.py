@@ -1,19 +1,15 @@
 """The jobs of a service as a gallery: ripple and figures of each, no design twice, no table fetched."""
 
-from __future__ import annotations
-
 import json
 import math
 import re
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
 from page_visit import CASE, Visit, found_inaccessible, opened, served, tab
-from playwright.sync_api import Browser, expect
+from playwright.sync_api import expect
 
 from bounds.error_digits import error_text, to_error
-from fe_contact.ste import SteDatabase
 from lineofaction.client import LineOfActionClient
 
 OWN = CASE | {"accuracy": {k: v for k, v in CASE["accuracy"].items() if k != "receipt"}}
@@ -24,7 +20,7 @@ LONGER = OWN | {"pair": CASE["pair"] | {"pinion": RELIEVED}}
 
 
 @pytest.fixture(scope="module")
-def gallery(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, SteDatabase]]:
+def gallery(tmp_path_factory):
     """Give the address of a service with three designs, the first one computed twice, and its table."""
     home = tmp_path_factory.mktemp("gallery")
     with served(home) as address, LineOfActionClient(address) as client:
@@ -34,7 +30,7 @@ def gallery(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, Ste
 
 
 @pytest.fixture
-def seen(browser: Browser, gallery: tuple[str, SteDatabase]) -> Iterator[Visit]:
+def seen(browser, gallery):
     found = opened(browser, gallery[0])
     tab(found.page, "Jobs")
     expect(found.page.locator("#jobs-rows li")).to_have_count(3)
@@ -43,9 +39,7 @@ def seen(browser: Browser, gallery: tuple[str, SteDatabase]) -> Iterator[Visit]:
 
 
 @pytest.mark.law
-def test_a_card_has_the_ripple_and_the_figures_of_its_table(
-    seen: Visit, gallery: tuple[str, SteDatabase]
-) -> None:
+def test_a_card_has_the_ripple_and_the_figures_of_its_table(seen, gallery):
     card = seen.page.locator("#jobs-rows li").first
     table = gallery[1]
     curve = table.curve(torque=float(table.torque[1]))
@@ -57,7 +51,6 @@ def test_a_card_has_the_ripple_and_the_figures_of_its_table(
     expect(card).to_contain_text(f"{level} dB re 1 µm")
     expect(card).to_contain_text(re.compile(r"CPU time[\d.]+ s"))
     drawn = card.locator("polyline").get_attribute("points")
-    assert drawn is not None
     heights = [float(point.partition(",")[2]) for point in drawn.split()]
     assert len(heights) == 49
     assert heights[:25] == pytest.approx(heights[24:], abs=0.2), "a pitch is as the next one"
@@ -78,7 +71,7 @@ def labelled(seen: Visit, *first: dict[str, Any]) -> str:
     return said
 
 
-def test_differences_that_read_alike_are_counted_only(seen: Visit) -> None:
+def test_differences_that_read_alike_are_counted_only(seen):
     alike = {"field": "scene.housings[0].step_file", "before": "text of 9 bytes", "value": "text of 9 bytes"}
     other = {"field": "case.load.torque_n_m", "before": [80], "value": [20, 80]}
     assert labelled(seen, alike, other) == "torque 80 → 20, 80 N m; 1 more"
@@ -86,7 +79,7 @@ def test_differences_that_read_alike_are_counted_only(seen: Visit) -> None:
 
 
 @pytest.mark.law
-def test_a_card_calls_a_field_as_the_form_does(seen: Visit) -> None:
+def test_a_card_calls_a_field_as_the_form_does(seen):
     fields = seen.page.evaluate(CALLED)
     assert len(fields) > 100
     for name, text in fields:
@@ -100,9 +93,7 @@ def test_a_card_calls_a_field_as_the_form_does(seen: Visit) -> None:
     assert labelled(seen, shaft) == "shafts 1 length not set → 90 mm"
 
 
-def test_a_design_that_was_computed_twice_is_shown_once(
-    seen: Visit, gallery: tuple[str, SteDatabase]
-) -> None:
+def test_a_design_that_was_computed_twice_is_shown_once(seen, gallery):
     titles = seen.page.locator("#jobs-rows h3")
     expect(titles).to_have_text(["again", "relieved", "light"])
     seen.page.get_by_label("Find by words").fill("first")
@@ -113,9 +104,7 @@ def test_a_design_that_was_computed_twice_is_shown_once(
 
 
 @pytest.mark.parametrize(("scheme", "width"), [("light", 1400), ("dark", 400)])
-def test_the_gallery_is_for_everybody(
-    browser: Browser, gallery: tuple[str, SteDatabase], scheme: str, width: int
-) -> None:
+def test_the_gallery_is_for_everybody(browser, gallery, scheme, width):
     found = opened(browser, gallery[0], scheme, width)
     page = found.page
     tab(page, "Jobs")

@@ -1,18 +1,14 @@
 """The housing of a scene is drawn as the scene is opened: from its file, where it stands, seen through."""
 
-from __future__ import annotations
-
 import base64
 import re
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from page_picture import CANVAS, different, picture, pixels, stopped, vertices
-from page_visit import PATIENCE, Visit, opened, opened_scene, shown, tab
-from playwright.sync_api import Browser, Page, expect
+from page_visit import PATIENCE, opened, opened_scene, shown, tab
+from playwright.sync_api import Page, expect
 
 ROUTE = "**/v1/drafts/housing-surface"
 BARE = """async ({ scene, surface }) => {
@@ -24,7 +20,7 @@ SHAFT: dict[str, Any] = {"name": "a", "origin_mm": [0.0, 0.0, 0.0], "length_mm":
 
 
 @pytest.fixture(scope="module")
-def visit(drawing_browser: Browser, address: str) -> Iterator[Visit]:
+def visit(drawing_browser, address):
     seen = opened(drawing_browser, address)
     yield seen
     seen.page.close()
@@ -36,7 +32,7 @@ def surface_of(place: np.ndarray, facets: np.ndarray) -> dict[str, str]:
 
 
 @pytest.mark.law
-def test_a_housing_is_drawn_where_its_surface_stands(visit: Visit) -> None:
+def test_a_housing_is_drawn_where_its_surface_stands(visit):
     place = np.array([[0.0, 0.0, 0.0], [200.0, 0.0, 0.0], [0.0, 90.0, 0.0], [0.0, 0.0, 70.0]])
     facets = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
     steps = ["subject.move(null)", "subject.house(subject.given)"]
@@ -49,8 +45,8 @@ def test_a_housing_is_drawn_where_its_surface_stands(visit: Visit) -> None:
 
 @pytest.mark.law
 def test_a_scene_that_is_opened_shows_its_housing_and_what_is_in_it(
-    drawing_browser: Browser, address: str, analyzed: str, tmp_path: Path
-) -> None:
+    drawing_browser, address, analyzed, tmp_path
+):
     """What is in it shows through: a housing that hid it would leave the picture of the housing alone."""
     seen = shown(drawing_browser, address, analyzed)
     page, words = seen.page, seen.page.locator("#view [role=status]")
@@ -83,9 +79,7 @@ def drawn_anew(page: Page, statement: str) -> np.ndarray:
 
 
 @pytest.mark.law
-def test_a_file_that_is_no_housing_is_said_under_the_picture(
-    drawing_browser: Browser, address: str, analyzed: str, tmp_path: Path
-) -> None:
+def test_a_file_that_is_no_housing_is_said_under_the_picture(drawing_browser, address, analyzed, tmp_path):
     seen = shown(drawing_browser, address, analyzed)
     page, words = seen.page, seen.page.locator("#view [role=status]")
     tab(page, "Sound")
@@ -99,8 +93,8 @@ def test_a_file_that_is_no_housing_is_said_under_the_picture(
 
 @pytest.mark.law
 def test_a_browser_without_webgl_sees_the_unit_through_its_housing(
-    drawing_browser: Browser, browser: Browser, address: str, tmp_path: Path
-) -> None:
+    drawing_browser, browser, address, tmp_path
+):
     """Its still picture has as much of it, as pale, as the moving picture."""
     shares = []
     for own in (drawing_browser, browser):

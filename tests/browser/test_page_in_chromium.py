@@ -1,7 +1,5 @@
 """The page of the service in a real browser: from a case to live flanks by keyboard, nothing foreign."""
 
-from __future__ import annotations
-
 import json
 import re
 import tomllib
@@ -12,7 +10,6 @@ from page_visit import (
     CASE,
     GEAR,
     PATIENCE,
-    Visit,
     answered,
     answers,
     choose_case,
@@ -23,7 +20,7 @@ from page_visit import (
     tab,
     unfold,
 )
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 from running_service import until
 
 from bounds import DEPTHS, Direction, Kind
@@ -53,7 +50,7 @@ def tab_to(page: Page, target: str, maximum: int = 120) -> None:
 
 
 @pytest.fixture(scope="module")
-def visit(browser: Browser, address: str, tmp_path_factory: pytest.TempPathFactory) -> Visit:
+def visit(browser, address, tmp_path_factory):
     """Walk the main path with the keyboard alone, but for the dialog that opens a file."""
     seen = opened(browser, address, "light", 1400)
     page = seen.page
@@ -71,7 +68,7 @@ def peak_to_peak(page: Page) -> str:
 
 
 @pytest.mark.parametrize("key", FIGURES)
-def test_every_plot_is_drawn_and_has_words(visit: Visit, key: str) -> None:
+def test_every_plot_is_drawn_and_has_words(visit, key):
     node = control(visit.page, f"[data-figure='{key}'] .plot")
     expect(node).to_have_attribute("data-drawn", "yes", timeout=PATIENCE)
     assert node.locator(".scatterlayer .trace path.js-line, .barlayer .point path").count() >= (
@@ -80,7 +77,7 @@ def test_every_plot_is_drawn_and_has_words(visit: Visit, key: str) -> None:
     assert len(node.get_attribute("aria-label") or "") > 20
 
 
-def test_a_slider_redraws_the_curve_by_arrow_keys(visit: Visit) -> None:
+def test_a_slider_redraws_the_curve_by_arrow_keys(visit):
     page = visit.page
     before, count = peak_to_peak(page), answers(page)
     control(page, "#live-pinion-tip_relief_um").focus()
@@ -94,7 +91,7 @@ def test_a_slider_redraws_the_curve_by_arrow_keys(visit: Visit) -> None:
     expect(page.locator("#live-figures dd").first).to_have_text(before)
 
 
-def test_flanks_go_from_the_sliders_into_the_case(visit: Visit) -> None:
+def test_flanks_go_from_the_sliders_into_the_case(visit):
     page = visit.page
     control(page, "#live-wheel-tip_relief_um").focus()
     page.keyboard.press("End")
@@ -104,14 +101,12 @@ def test_flanks_go_from_the_sliders_into_the_case(visit: Visit) -> None:
     assert float(page.locator("#f-pair-wheel-tip_relief_length_mm").input_value()) > 0.0
 
 
-def test_in_the_plane_nothing_across_the_face_is_offered(visit: Visit) -> None:
+def test_in_the_plane_nothing_across_the_face_is_offered(visit):
     assert visit.page.locator("#live-misalignment_um").is_disabled()
     assert visit.page.locator("#live-pinion-helix_crowning_um").is_disabled()
 
 
-def test_every_depth_and_length_has_a_slider_and_acts_along_what_it_is_declared_to(
-    visit: Visit,
-) -> None:
+def test_every_depth_and_length_has_a_slider_and_acts_along_what_it_is_declared_to(visit):
     page = visit.page
     depths, lengths = figures(FlankModification, *DEPTHS), figures(FlankModification, Kind.LENGTH)
     sliders = page.locator("#sliders input[type=range]")
@@ -124,7 +119,7 @@ def test_every_depth_and_length_has_a_slider_and_acts_along_what_it_is_declared_
             assert signed == (depth.what.kind is Kind.DEVIATION), depth.field
 
 
-def test_a_folded_slider_redraws_the_curve_and_takes_the_length_that_its_relief_needs(visit: Visit) -> None:
+def test_a_folded_slider_redraws_the_curve_and_takes_the_length_that_its_relief_needs(visit):
     page = visit.page
     before, count = peak_to_peak(page), answers(page)
     control(page, "#live-pinion-root_relief_um").press("End")
@@ -135,9 +130,7 @@ def test_a_folded_slider_redraws_the_curve_and_takes_the_length_that_its_relief_
 
 
 @pytest.mark.law
-def test_a_fault_is_said_at_its_field_and_the_list_leads_there(
-    browser: Browser, address: str, visit: Visit, tmp_path: Path
-) -> None:
+def test_a_fault_is_said_at_its_field_and_the_list_leads_there(browser, address, visit, tmp_path):
     page = opened(browser, address, "light", 1400).page  # a refusal is an error on a console
     choose_case(page, tmp_path)
     bore = page.locator("#f-pair-pinion-bore_diameter_mm")
@@ -154,7 +147,7 @@ def test_a_fault_is_said_at_its_field_and_the_list_leads_there(
     page.close()
 
 
-def test_the_case_is_saved_as_toml_that_reads_back(visit: Visit, tmp_path: Path) -> None:
+def test_the_case_is_saved_as_toml_that_reads_back(visit, tmp_path):
     choose_case(visit.page, tmp_path)
     with visit.page.expect_download() as given:
         visit.page.locator("#export-toml").press("Enter")
@@ -166,7 +159,7 @@ def test_the_case_is_saved_as_toml_that_reads_back(visit: Visit, tmp_path: Path)
 @pytest.mark.parametrize(
     ("tool", "begin"), [("PNG", b"\x89PNG"), ("CSV", b'"0.5 N m, x"'), ("JSON", b'{"data"')]
 )
-def test_a_plot_is_saved(visit: Visit, tool: str, begin: bytes) -> None:
+def test_a_plot_is_saved(visit, tool, begin):
     control(visit.page, "[data-figure=ste]")
     with visit.page.expect_download() as given:
         visit.page.get_by_role("button", name=f"{tool} of: Static transmission error over").press("Enter")
@@ -175,14 +168,14 @@ def test_a_plot_is_saved(visit: Visit, tool: str, begin: bytes) -> None:
     assert tool != "CSV" or content.count("STE less its mean, µm".encode()) == 2  # no column of a band's edge
 
 
-def test_the_result_is_saved_as_netcdf(visit: Visit) -> None:
+def test_the_result_is_saved_as_netcdf(visit):
     tab(visit.page, "Errors and cost")
     with visit.page.expect_download() as given:
         visit.page.get_by_role("button", name="netCDF").first.press("Enter")
     assert Path(given.value.path()).read_bytes()[1:4] == b"HDF"
 
 
-def test_plots_follow_the_width_of_the_window(visit: Visit) -> None:
+def test_plots_follow_the_width_of_the_window(visit):
     widths = "node => [node.clientWidth, node.querySelector('.main-svg')?.clientWidth]"
     plot = visit.page.locator("#live-ripple .plot")
     seen = []
@@ -194,7 +187,7 @@ def test_plots_follow_the_width_of_the_window(visit: Visit) -> None:
     assert seen[0] < 400 < seen[1]
 
 
-def test_both_gears_are_drawn_and_roll(visit: Visit) -> None:
+def test_both_gears_are_drawn_and_roll(visit):
     page = visit.page
     gears = page.locator("#mesh-drawing g > g")
     expect(gears).to_have_count(2)
@@ -211,11 +204,9 @@ def test_both_gears_are_drawn_and_roll(visit: Visit) -> None:
 @pytest.mark.parametrize(
     ("scheme", "width"), [("light", 1400), pytest.param("dark", 400, marks=pytest.mark.nightly)]
 )
-def test_the_page_is_accessible(
-    browser: Browser, address: str, visit: Visit, scheme: str, width: int
-) -> None:
+def test_the_page_is_accessible(browser, address, visit, scheme, width):
     page = visit.page
-    page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
+    page.emulate_media(color_scheme=scheme)
     page.set_viewport_size({"width": width, "height": 900})
     unfold(page)
     assert not (told := found_inaccessible(page)), json.dumps(told, indent=1)
@@ -225,17 +216,17 @@ def test_the_page_is_accessible(
     until(lambda: page.evaluate("document.documentElement.scrollWidth") <= width)
 
 
-def test_nothing_is_complained_about(visit: Visit) -> None:
+def test_nothing_is_complained_about(visit):
     assert [line for line in visit.console if line.startswith("error")] == []
 
 
-def test_nothing_is_fetched_from_elsewhere(visit: Visit, address: str) -> None:
+def test_nothing_is_fetched_from_elsewhere(visit, address):
     foreign = [url for url in visit.requests if not url.startswith((address, "data:", "blob:"))]
     assert foreign == []
 
 
 @pytest.mark.law
-def test_a_script_from_elsewhere_does_not_run(browser: Browser, address: str, visit: Visit) -> None:
+def test_a_script_from_elsewhere_does_not_run(browser, address, visit):
     page = opened(browser, address, "light", 1400).page
     page.evaluate(
         "() => { const s = document.createElement('script'); s.textContent = 'window.intruder = 1';"
@@ -245,9 +236,7 @@ def test_a_script_from_elsewhere_does_not_run(browser: Browser, address: str, vi
     page.close()
 
 
-def test_what_is_implausible_is_said_with_the_plan_and_with_the_results(
-    browser: Browser, address: str
-) -> None:
+def test_what_is_implausible_is_said_with_the_plan_and_with_the_results(browser, address):
     pair = CASE["pair"] | {"pinion": GEAR | {"face_width_mm": 1000.0}}  # of module 1
     page = opened(browser, f"{address}/#database={computed(address, case=CASE | {'pair': pair})}").page
     expect(page.locator("#plan > .alarm + .headline")).to_be_visible()

@@ -1,23 +1,34 @@
 """Jobs on the page: listed, reopened, cancelled; and a service that goes away and comes back."""
 
-from __future__ import annotations
-
 import json
 import re
-from pathlib import Path
 
 import pytest
-from page_visit import CASE, Visit, answers, choose_case, control, found_inaccessible, opened, tab
-from playwright.sync_api import Browser, expect
+from page_visit import CASE, answers, choose_case, control, found_inaccessible, opened, tab
+from playwright.sync_api import expect
 from running_service import until
+from stored_jobs import state
 
-from lineofaction.client import LineOfActionClient
+from lineofaction.client import JobState, LineOfActionClient
 
 LONG = CASE | {"accuracy": {"level": "fine", "model": "3d", "positions": 512}}
 
 
+STATES = """async (jobs) => {
+  const { stateOf } = await import("/page/job.js");
+  return jobs.map((job) => stateOf(job));
+}"""
+
+
+def test_page_and_terminal_say_behind_how_many_a_job_waits(scripts):
+    jobs = [state("a", "accepted") | {"ahead": ahead} for ahead in (0, 1, 2)]
+    behind = ("", " behind 1 job", " behind 2 jobs")
+    assert scripts.evaluate(STATES, jobs) == [f"waits for its turn{words}" for words in behind]
+    assert [JobState.from_json(job).activity for job in jobs] == [f"waits{words}" for words in behind]
+
+
 @pytest.mark.law
-def test_a_job_is_cancelled_from_the_list(visit: Visit, address: str) -> None:
+def test_a_job_is_cancelled_from_the_list(visit, address):
     page = visit.page
     tab(page, "Jobs")
     with LineOfActionClient(address) as client:
@@ -34,7 +45,7 @@ def test_a_job_is_cancelled_from_the_list(visit: Visit, address: str) -> None:
     assert first.get_by_role("button", name=re.compile("^(Cancel|Open|Compare)")).count() == 0
 
 
-def test_the_jobs_of_a_batch_are_shown_beneath_it(visit: Visit, address: str) -> None:
+def test_the_jobs_of_a_batch_are_shown_beneath_it(visit, address):
     page = visit.page
     tab(page, "Jobs")
     loads = [{"torque_n_m": [torque]} for torque in (0.5, 0.75)]
@@ -59,7 +70,7 @@ def test_the_jobs_of_a_batch_are_shown_beneath_it(visit: Visit, address: str) ->
     assert visit.complaints == []
 
 
-def test_a_result_opens_again_in_another_window(visit: Visit, browser: Browser, address: str) -> None:
+def test_a_result_opens_again_in_another_window(visit, browser, address):
     page = visit.page
     tab(page, "Jobs")
     tab(page, "Orders")
@@ -76,7 +87,7 @@ def test_a_result_opens_again_in_another_window(visit: Visit, browser: Browser, 
     later.close()
 
 
-def test_a_job_is_renamed_and_found_by_title_and_tag(visit: Visit, address: str) -> None:
+def test_a_job_is_renamed_and_found_by_title_and_tag(visit, address):
     page = visit.page
     tab(page, "Jobs")
     with LineOfActionClient(address) as client:
@@ -102,7 +113,7 @@ def test_a_job_is_renamed_and_found_by_title_and_tag(visit: Visit, address: str)
     assert visit.complaints == []
 
 
-def test_a_job_tells_what_sets_it_apart(visit: Visit, address: str) -> None:
+def test_a_job_tells_what_sets_it_apart(visit, address):
     page = visit.page
     tab(page, "Jobs")
     with LineOfActionClient(address) as client:
@@ -112,7 +123,7 @@ def test_a_job_tells_what_sets_it_apart(visit: Visit, address: str) -> None:
     expect(page.locator("#jobs-rows li").first).to_contain_text("torque 0.5, 1 → 0.5 N m")
 
 
-def test_a_job_under_way_outlasts_a_service_that_is_away(visit: Visit, address: str, tmp_path: Path) -> None:
+def test_a_job_under_way_outlasts_a_service_that_is_away(visit, address, tmp_path):
     page = visit.page
     tab(page, "Jobs")
     with LineOfActionClient(address) as client:

@@ -1,12 +1,9 @@
 """Live curves as sounds: twice the ripple is twice as loud, and a sweep ends where it should."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 import pytest
-from page_visit import Visit
 from playwright.sync_api import Page, expect
 
 RENDERED = """async ({ voices, sweep }) => {
@@ -30,7 +27,7 @@ def rendered(page: Page, *harmonics: list[float]) -> np.ndarray:
 
 
 @pytest.mark.law
-def test_levels_of_live_sounds_are_in_the_ratio_of_what_excites_them(scripts: Page) -> None:
+def test_levels_of_live_sounds_are_in_the_ratio_of_what_excites_them(scripts):
     single, double, second = rendered(scripts, [0.1], [0.2], [0.0, 0.1])
     level = np.sqrt(np.mean(np.square([single, double, second]), axis=1))
     assert level[1] / level[0] == pytest.approx(2.0, rel=1e-3)
@@ -41,7 +38,7 @@ def test_levels_of_live_sounds_are_in_the_ratio_of_what_excites_them(scripts: Pa
 
 
 @pytest.mark.law
-def test_a_live_sound_sweeps_over_the_mesh_frequencies(scripts: Page) -> None:
+def test_a_live_sound_sweeps_over_the_mesh_frequencies(scripts):
     (samples,) = rendered(scripts, [0.1])
     edges = np.flatnonzero((samples[:-1] < 0.0) & (samples[1:] >= 0.0)) / 48000.0
     frequency, at = 1.0 / np.diff(edges), edges[:-1]
@@ -66,7 +63,7 @@ HEARD = """async () => {
 
 
 @pytest.mark.law
-def test_an_order_of_the_map_is_heard_at_its_frequency_and_level(scripts: Page) -> None:
+def test_an_order_of_the_map_is_heard_at_its_frequency_and_level(scripts):
     heard = scripts.evaluate(HEARD)
     assert [place["frequency"] for place in heard["places"]] == pytest.approx([400.0, 1.1 * 610 / 3, 400.0])
     loudest, softer, silent = (np.array(tone) for tone in heard["tones"])
@@ -109,7 +106,7 @@ FOLLOWED = """async () => {
 
 
 @pytest.mark.law
-def test_the_tone_follows_the_cursor_over_speed_and_order(scripts: Page) -> None:
+def test_the_tone_follows_the_cursor_over_speed_and_order(scripts):
     """A run down and up again: speeds below its least one sound as that one."""
     for speed, order, frequency, level, said in scripts.evaluate(FOLLOWED):
         assert frequency == pytest.approx(order * max(speed, 2000.0) / 3.0)
@@ -117,7 +114,7 @@ def test_the_tone_follows_the_cursor_over_speed_and_order(scripts: Page) -> None
         assert f"at {speed:.0f}" in said.replace(".0", "")
 
 
-def test_the_sound_tab_plays_what_is_shown(visit: Visit) -> None:
+def test_the_sound_tab_plays_what_is_shown(visit):
     visit.page.get_by_role("tab", name="Sound", exact=True).click()
     for name in ("Play as analyzed", "Play now"):
         button = visit.page.get_by_role("button", name=name, exact=True)

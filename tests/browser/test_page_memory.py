@@ -1,7 +1,5 @@
 """Memory of the page: a slider leaves nothing behind, and the browser that measures it keeps nothing."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
@@ -55,9 +53,7 @@ def served_files(folder: Path) -> Iterator[str]:
 
 
 @pytest.mark.law
-def test_what_a_page_has_fetched_is_not_kept_while_its_memory_is_measured(
-    browser_path: str, tmp_path: Path
-) -> None:
+def test_what_a_page_has_fetched_is_not_kept_while_its_memory_is_measured(browser_path, tmp_path):
     (tmp_path / "answer").write_bytes(b"x" * (ANSWER_MB * 1_000_000))
     fetched_mb = FETCHES * ANSWER_MB
     with served_files(tmp_path) as address, bare_browser(browser_path, FLAGS, tmp_path / "own") as browser:
@@ -74,9 +70,7 @@ def test_what_a_page_has_fetched_is_not_kept_while_its_memory_is_measured(
         assert watched - after > 0.7 * fetched_mb
 
 
-def test_moves_of_a_slider_leave_nothing_behind(
-    browser_path: str, address: str, analyzed: str, tmp_path: Path
-) -> None:
+def test_moves_of_a_slider_leave_nothing_behind(browser_path, address, analyzed, tmp_path):
     with bare_browser(browser_path, FLAGS, tmp_path / "own") as browser:
         browser.open(f"{address}/#database={analyzed}", SIZE, before=HELD)
         browser.evaluate(SHOWN)

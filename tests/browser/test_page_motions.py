@@ -1,18 +1,14 @@
 """What the three-dimensional picture draws is what it says: bent teeth, bent shafts, motions at a phase."""
 
-from __future__ import annotations
-
 import base64
 import re
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from page_picture import CANVAS, different, has_room, picture, stopped, vertices
-from page_visit import PATIENCE, Visit, opened, opened_scene, shown, tab
-from playwright.sync_api import Browser, Page, expect
+from page_visit import PATIENCE, opened, opened_scene, shown, tab
+from playwright.sync_api import Page, expect
 
 from lineofaction.gearbox.convert.outline import outline_json
 from lineofaction.gearbox.schemas import Case
@@ -48,7 +44,7 @@ AT_REST = "subject.move(null)"
 
 
 @pytest.fixture(scope="module")
-def outline() -> dict[str, Any]:
+def outline():
     """A helical pair as the service outlines it."""
     gear = {"teeth": 20, "face_width_mm": 8.0, "bore_diameter_mm": 10.0}
     pair = {
@@ -63,7 +59,7 @@ def outline() -> dict[str, Any]:
 
 
 @pytest.fixture(scope="module")
-def visit(drawing_browser: Browser, address: str) -> Iterator[Visit]:
+def visit(drawing_browser, address):
     seen = opened(drawing_browser, address)
     yield seen
     seen.page.close()
@@ -76,7 +72,7 @@ def rotation(before: np.ndarray, after: np.ndarray, center: np.ndarray) -> np.nd
 
 
 @pytest.mark.law
-def test_teeth_are_bent_by_as_many_times_as_the_switch_says(visit: Visit, outline: dict[str, Any]) -> None:
+def test_teeth_are_bent_by_as_many_times_as_the_switch_says(visit, outline):
     row = [APART, APART]
     places = 121
     passage = {
@@ -165,9 +161,7 @@ def moved(shaft: dict[str, Any], points: np.ndarray, phase: float, disc: float |
 
 @pytest.mark.law
 @pytest.mark.parametrize("oscillates", [False, True], ids=["deflection", "mode"])
-def test_shafts_gears_and_housing_move_as_the_result_says(
-    visit: Visit, outline: dict[str, Any], oscillates: bool
-) -> None:
+def test_shafts_gears_and_housing_move_as_the_result_says(visit, outline, oscillates):
     motion = motion_of(np.random.default_rng(5), oscillates=oscillates, surface=oscillates)
     half = "subject.motion.phase = Math.PI"
     steps = [
@@ -184,7 +178,7 @@ def test_shafts_gears_and_housing_move_as_the_result_says(
     calls, (first, second) = drawn[0], motion["shafts"]
     places = {"pinion": (first, 30.0), "wheel": (second, 30.0)}
 
-    def expected(phase: float) -> np.ndarray:
+    def expected(phase):
         shafts = [moved(first, calls[0], phase), moved(second, calls[1], phase)]
         gears = [moved(*places[name][:1], calls[k], phase, 30.0) for name, k in GEAR_CALLS]
         return np.vstack([*shafts, np.zeros_like(calls[2]), *gears])
@@ -214,9 +208,7 @@ def test_shafts_gears_and_housing_move_as_the_result_says(
 GEAR_CALLS = (("pinion", 3), ("pinion", 4), ("wheel", 5), ("wheel", 6))
 
 
-def test_a_hollow_shaft_is_seen_through_and_its_bushing_is_as_thick_as_its_wall(
-    visit: Visit, outline: dict[str, Any]
-) -> None:
+def test_a_hollow_shaft_is_seen_through_and_its_bushing_is_as_thick_as_its_wall(visit, outline):
     section = {"length_mm": LENGTH, "outer_diameter_mm": 12.0, "bore_diameter_mm": 8.0}
     solid, output = SCENE["shafts"]
     hollow = {name: value for name, value in solid.items() if name != "diameter_mm"} | {"sections": [section]}
@@ -229,7 +221,7 @@ def test_a_hollow_shaft_is_seen_through_and_its_bushing_is_as_thick_as_its_wall(
 
 
 @pytest.mark.law
-def test_a_wheel_stands_at_its_own_place_in_mesh(visit: Visit, outline: dict[str, Any]) -> None:
+def test_a_wheel_stands_at_its_own_place_in_mesh(visit, outline):
     shift = 7.0
     pinion, wheel = SCENE["gears"]
     slid = SCENE | {"gears": [pinion, wheel | {"position_mm": wheel["position_mm"] + shift}]}
@@ -245,7 +237,7 @@ def test_a_wheel_stands_at_its_own_place_in_mesh(visit: Visit, outline: dict[str
 
 
 @pytest.mark.law
-def test_the_largest_motion_is_drawn_with_a_share_of_the_unit(visit: Visit, outline: dict[str, Any]) -> None:
+def test_the_largest_motion_is_drawn_with_a_share_of_the_unit(visit, outline):
     drawn = []
     for size in (1.0, 1e-3):
         motion = motion_of(np.random.default_rng(7), oscillates=False)
@@ -260,9 +252,7 @@ def test_the_largest_motion_is_drawn_with_a_share_of_the_unit(visit: Visit, outl
 
 
 @pytest.mark.law
-def test_the_switch_bends_the_teeth_of_the_pair_and_straightens_them(
-    drawing_browser: Browser, address: str, analyzed: str
-) -> None:
+def test_the_switch_bends_the_teeth_of_the_pair_and_straightens_them(drawing_browser, address, analyzed):
     seen = shown(drawing_browser, address, analyzed)
     page = seen.page
     expect(page.locator(f"{CANVAS}[data-pressed]:not([data-pressed='0'])")).to_have_count(1)
@@ -290,8 +280,8 @@ def computed_motions(page: Page, process: str) -> list[str]:
 
 @pytest.mark.law
 def test_a_unit_in_its_housing_moves_in_a_mode_and_stands_deflected(
-    drawing_browser: Browser, address: str, analyzed: str, tmp_path: Path
-) -> None:
+    drawing_browser, address, analyzed, tmp_path
+):
     seen = shown(drawing_browser, address, analyzed)
     page = seen.page
     tab(page, "Sound")

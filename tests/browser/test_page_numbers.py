@@ -1,15 +1,13 @@
 """No two numbers of the page contradict each other or the service, whatever a user does with it."""
 
-from __future__ import annotations
-
 import os
 import random
 from collections.abc import Callable
 
 import pytest
 from page_numbers import contradictions, printed
-from page_visit import CASE, GEAR, OVER_FACE, Visit, computed, shown
-from playwright.sync_api import Browser, Page, expect
+from page_visit import CASE, GEAR, OVER_FACE, computed, shown
+from playwright.sync_api import Page, expect
 from running_service import until
 
 SESSIONS = int(os.environ.get("LOA_PAGE_SESSIONS", "3"))
@@ -34,7 +32,7 @@ def rests(page: Page) -> None:
     """Wait until every answer is there with its error, and the page asks for no more."""
     quiet = 0
 
-    def settled() -> bool:
+    def settled():
         nonlocal quiet
         page.wait_for_timeout(120)
         before = page.locator("#live-figures").get_attribute("data-answers")
@@ -123,9 +121,7 @@ def run(page: Page, address: str, seed: int, *, over_face: bool) -> None:
 
 @pytest.mark.law
 @pytest.mark.parametrize("seed", range(SESSIONS))
-def test_a_pair_in_the_plane_has_one_number_of_each_subject(
-    browser: Browser, address: str, analyzed: str, seed: int
-) -> None:
+def test_a_pair_in_the_plane_has_one_number_of_each_subject(browser, address, analyzed, seed):
     visit = shown(browser, address, analyzed)
     run(visit.page, address, seed, over_face=False)
     assert visit.complaints == []
@@ -133,7 +129,7 @@ def test_a_pair_in_the_plane_has_one_number_of_each_subject(
 
 
 @pytest.fixture(scope="module")
-def on_polymer(address: str) -> str:
+def on_polymer(address):
     polymer = {"youngs_modulus_gpa": 2.8, "poissons_ratio": 0.35}  # POM
     pair = CASE["pair"] | {"wheel": GEAR | {"material": polymer}}
     return computed(address, case=CASE | {"pair": pair})
@@ -141,9 +137,7 @@ def on_polymer(address: str) -> str:
 
 @pytest.mark.law
 @pytest.mark.parametrize("seed", range(SESSIONS))
-def test_a_wheel_of_polymer_has_one_number_of_each_subject(
-    browser: Browser, address: str, on_polymer: str, seed: int
-) -> None:
+def test_a_wheel_of_polymer_has_one_number_of_each_subject(browser, address, on_polymer, seed):
     visit = shown(browser, address, on_polymer)
     run(visit.page, address, 2000 + seed, over_face=False)
     assert visit.complaints == []
@@ -151,22 +145,20 @@ def test_a_wheel_of_polymer_has_one_number_of_each_subject(
 
 
 @pytest.fixture(scope="module")
-def over_face(address: str) -> str:
+def over_face(address):
     return computed(address, case=OVER_FACE)
 
 
 @pytest.mark.law
 @pytest.mark.parametrize("seed", range(SESSIONS))
-def test_a_pair_over_its_face_has_one_number_of_each_subject(
-    browser: Browser, address: str, over_face: str, seed: int
-) -> None:
+def test_a_pair_over_its_face_has_one_number_of_each_subject(browser, address, over_face, seed):
     visit = shown(browser, address, over_face)
     run(visit.page, address, 1000 + seed, over_face=True)
     visit.page.close()
 
 
 @pytest.mark.law
-def test_the_reader_of_numbers_finds_each_kind_of_contradiction(visit: Visit, address: str) -> None:
+def test_the_reader_of_numbers_finds_each_kind_of_contradiction(visit, address):
     page = visit.page
     rests(page)
     assert contradictions(page, address) == [] and len(printed(page)) > 20
@@ -186,7 +178,7 @@ def test_the_reader_of_numbers_finds_each_kind_of_contradiction(visit: Visit, ad
 
 
 @pytest.mark.law
-def test_every_view_begins_at_the_torque_of_the_complaint_and_names_it(visit: Visit) -> None:
+def test_every_view_begins_at_the_torque_of_the_complaint_and_names_it(visit):
     page = visit.page
     point, torque = page.locator("#operating-point"), page.locator("#live-torque_n_m-exact")
     expect(point).to_have_text("at 1 N m")

@@ -1,13 +1,10 @@
 """The start of a relief on the page: as on the drawing, by one switch at its field."""
 
-from __future__ import annotations
-
 import json
-from pathlib import Path
 
 import pytest
 from page_visit import CASE, GEAR, answered, choose_case, computed, control, opened, shown
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.schemas import Case, validated
@@ -41,7 +38,7 @@ def turn(page: Page, way: str) -> str:
     return field.input_value()
 
 
-def test_the_switch_leaves_the_flank_as_it_is(browser: Browser, address: str, tmp_path: Path) -> None:
+def test_the_switch_leaves_the_flank_as_it_is(browser, address, tmp_path):
     seen = opened(browser, address)
     page = seen.page
     choose_case(page, tmp_path)
@@ -57,7 +54,7 @@ def test_the_switch_leaves_the_flank_as_it_is(browser: Browser, address: str, tm
     page.close()
 
 
-def test_a_start_that_is_refused_says_so_in_its_unit(browser: Browser, address: str, tmp_path: Path) -> None:
+def test_a_start_that_is_refused_says_so_in_its_unit(browser, address, tmp_path):
     page = opened(browser, address).page
     choose_case(page, tmp_path)
     control(page, FIELD.format("tip_relief_um")).fill("8")
@@ -67,9 +64,7 @@ def test_a_start_that_is_refused_says_so_in_its_unit(browser: Browser, address: 
     page.close()
 
 
-def test_a_file_with_a_start_is_opened_analyzed_and_slid(
-    browser: Browser, address: str, tmp_path: Path
-) -> None:
+def test_a_file_with_a_start_is_opened_analyzed_and_slid(browser, address, tmp_path):
     pinion = GEAR | {"tip_relief_um": 8.0, "tip_relief_start_diameter_mm": 21.2}
     case = CASE | {"pair": CASE["pair"] | {"pinion": pinion}}
     seen = shown(browser, address, computed(address, case=case))

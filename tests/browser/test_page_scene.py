@@ -1,10 +1,7 @@
 """A scene of one's own on the page: written for the pair, edited, opened from a file, computed, refused."""
 
-from __future__ import annotations
-
 import re
 import tomllib
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +11,7 @@ from faulty_units import LEFT_OUT, TWO_STAGE
 from housing_solid import STIFFNESS, housed_scene, write_block
 from page_picture import CANVAS, different, picture, stopped
 from page_visit import PATIENCE, Visit, found_inaccessible, opened, other_browser, refused, shown, tab
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 from running_service import until
 
 from lineofaction.gearbox.registry import STUDIES
@@ -25,7 +22,7 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "planetary_scene.toml"
 
 
 @pytest.fixture(scope="module")
-def visit(browser: Browser, address: str, analyzed: str) -> Iterator[Visit]:
+def visit(browser, address, analyzed):
     seen = shown(browser, address, analyzed)
     tab(seen.page, "Sound")
     tab(seen.page, "TOML")
@@ -33,7 +30,7 @@ def visit(browser: Browser, address: str, analyzed: str) -> Iterator[Visit]:
     seen.page.close()
 
 
-def test_the_scene_of_the_pair_is_edited_and_computed_over_speed(visit: Visit, analyzed: str) -> None:
+def test_the_scene_of_the_pair_is_edited_and_computed_over_speed(visit, analyzed):
     page = visit.page
     page.get_by_role("button", name="Write the scene of the pair").press("Enter")
     text = page.get_by_label("Scene, TOML")
@@ -53,13 +50,13 @@ def test_the_scene_of_the_pair_is_edited_and_computed_over_speed(visit: Visit, a
     assert speeds == 5
 
 
-def test_a_run_and_every_study_of_a_scene_are_offered(visit: Visit) -> None:
+def test_a_run_and_every_study_of_a_scene_are_offered(visit):
     offered = visit.page.get_by_label("Compute", exact=True).locator("option")
     names = offered.evaluate_all("options => options.map((option) => option.value)")
     assert names == ["simulate", *(name for name, study in STUDIES.items() if "scene" in study.takes.subject)]
 
 
-def test_the_last_run_is_heard_at_a_microphone(visit: Visit, tmp_path: Path) -> None:
+def test_the_last_run_is_heard_at_a_microphone(visit, tmp_path):
     page = visit.page
     step, file = write_block(tmp_path / "block.step"), tmp_path / "scene.toml"
     scene = housed_scene(tmp_path)
@@ -101,7 +98,7 @@ def test_the_last_run_is_heard_at_a_microphone(visit: Visit, tmp_path: Path) -> 
     assert player.evaluate("one => one.duration") == pytest.approx(0.2, abs=1e-3)
 
 
-def test_many_runs_at_constant_speeds_are_drawn_over_speed(visit: Visit, analyzed: str) -> None:
+def test_many_runs_at_constant_speeds_are_drawn_over_speed(visit, analyzed):
     page = visit.page
     page.get_by_role("button", name="Write the scene of the pair").press("Enter")
     text = page.get_by_label("Scene, TOML")
@@ -115,7 +112,7 @@ def test_many_runs_at_constant_speeds_are_drawn_over_speed(visit: Visit, analyze
     assert visit.complaints == []
 
 
-def test_a_scene_that_cannot_be_used_is_refused_by_field(visit: Visit) -> None:
+def test_a_scene_that_cannot_be_used_is_refused_by_field(visit):
     page = visit.page
     refused = page.locator("#scene-body [role=alert]")
     page.get_by_label("Scene, TOML").fill("[run]\nduration_s = 1.0\nend_s = 3.0\n")
@@ -123,7 +120,7 @@ def test_a_scene_that_cannot_be_used_is_refused_by_field(visit: Visit) -> None:
     expect(refused).to_contain_text("run.end_s must be")
 
 
-def test_a_scene_file_is_opened_and_what_it_names_by_file_is_refused(visit: Visit) -> None:
+def test_a_scene_file_is_opened_and_what_it_names_by_file_is_refused(visit):
     page = visit.page
     page.locator("#scene-file").set_input_files(EXAMPLE)
     expect(page.get_by_label("Scene, TOML")).to_have_value(EXAMPLE.read_text(encoding="utf-8"))
@@ -132,7 +129,15 @@ def test_a_scene_file_is_opened_and_what_it_names_by_file_is_refused(visit: Visi
     assert visit.complaints == []
 
 
-def test_files_chosen_with_a_scene_go_with_it(visit: Visit) -> None:
+def test_a_scene_is_opened_where_cases_are(visit):
+    page = visit.page
+    page.locator("#import-file").set_input_files(EXAMPLE)
+    expect(page.get_by_label("Scene, TOML")).to_have_value(EXAMPLE.read_text(encoding="utf-8"))
+    expect(page.locator("#scene-tables")).to_be_visible()
+    expect(page.get_by_text("This case cannot be computed")).to_have_count(0)
+
+
+def test_files_chosen_with_a_scene_go_with_it(visit):
     page = visit.page
     scene, case = (EXAMPLE.with_name(f"{name}.toml") for name in ("palermo_scene", "palermo_spur_20_20"))
     page.locator("#scene-file").set_input_files([case, scene])
@@ -147,9 +152,7 @@ def test_files_chosen_with_a_scene_go_with_it(visit: Visit) -> None:
     assert mesh.get("case_file") is None
 
 
-def test_a_reload_and_a_second_browser_show_the_edited_scene_with_its_files(
-    browser: Browser, address: str, tmp_path: Path
-) -> None:
+def test_a_reload_and_a_second_browser_show_the_edited_scene_with_its_files(browser, address, tmp_path):
     step, file = write_block(tmp_path / "block.step"), tmp_path / "scene.toml"
     scene = housed_scene(tmp_path)
     scene["meshes"][0] |= {"database_file": None, "stiffness": STIFFNESS}
@@ -174,18 +177,18 @@ def test_a_reload_and_a_second_browser_show_the_edited_scene_with_its_files(
             assert second.locator("#scene-text").input_value() == text.input_value()
 
 
-def test_the_card_of_a_gear_unit_begins_with_what_is_left_out(visit: Visit) -> None:
+def test_the_card_of_a_gear_unit_begins_with_what_is_left_out(visit):
     page = visit.page
     _, edit, _ = LEFT_OUT["hand of a wheel"]
     file = {"name": "hand.rexs", "mimeType": "application/xml", "buffer": edit(TWO_STAGE).encode()}
-    page.locator("#import-file").set_input_files(file)  # type: ignore[arg-type]
+    page.locator("#import-file").set_input_files(file)
     first = page.locator("#unit > :first-child")
     expect(first).to_contain_text('Left out of the scene: cylindrical_stage 22 "second stage" (line 326)')
     expect(page.locator("#unit > [role=alert]")).to_have_count(6)
     assert visit.complaints == []
 
 
-def test_the_matrix_of_a_unit_is_a_file_beside_its_scene(visit: Visit) -> None:
+def test_the_matrix_of_a_unit_is_a_file_beside_its_scene(visit):
     """The text has no line that nobody reads, and the scene that is computed has the matrix."""
     page = visit.page
     file: Any = {"name": "two_stage.rexs", "mimeType": "text/xml", "buffer": TWO_STAGE.encode()}
@@ -210,7 +213,7 @@ def test_the_matrix_of_a_unit_is_a_file_beside_its_scene(visit: Visit) -> None:
     assert saved.value.suggested_filename == "scene.toml"
 
 
-def test_a_gear_unit_is_deflected_under_the_load_cases_of_its_file(visit: Visit) -> None:
+def test_a_gear_unit_is_deflected_under_the_load_cases_of_its_file(visit):
     page = visit.page
     page.locator("#import-file").set_input_files(UNIT)
     page.get_by_role("button", name="Open scene", exact=True).press("Enter")
@@ -231,7 +234,7 @@ def test_a_gear_unit_is_deflected_under_the_load_cases_of_its_file(visit: Visit)
     assert "load_cases" not in sent[1]
 
 
-def test_flanks_of_a_unit_are_searched_by_what_is_heard(visit: Visit) -> None:
+def test_flanks_of_a_unit_are_searched_by_what_is_heard(visit):
     """Of the mesh whose pair is typed, under the load cases of the file, over the speeds of the card."""
     page = visit.page
     page.locator("#import-file").set_input_files(UNIT)
@@ -249,7 +252,7 @@ def test_flanks_of_a_unit_are_searched_by_what_is_heard(visit: Visit) -> None:
     assert [case["torque_n_m"] for case in heard["load_cases"]] == [50.0, 80.0, 30.0]
 
 
-def test_a_deflection_shows_its_tables_of_bearings(visit: Visit) -> None:
+def test_a_deflection_shows_its_tables_of_bearings(visit):
     page = visit.page
     page.locator("#scene-file").set_input_files(EXAMPLE.with_name("jeffcott_scene.toml"))
     page.get_by_label("Compute", exact=True).select_option("deflect")
@@ -284,9 +287,7 @@ def shows_scene(page: Page, words: str) -> np.ndarray:
 
 
 @pytest.mark.law
-def test_the_picture_follows_the_scene_that_is_edited(
-    drawing_browser: Browser, address: str, analyzed: str
-) -> None:
+def test_the_picture_follows_the_scene_that_is_edited(drawing_browser, address, analyzed):
     seen = shown(drawing_browser, address, analyzed)
     page, words = seen.page, "The unit of the scene: click a mesh to open its pair."
     stopped(page)
@@ -331,7 +332,7 @@ def test_the_picture_follows_the_scene_that_is_edited(
 
 
 @pytest.mark.law
-def test_a_scene_without_meshes_is_drawn_as_it_is_typed(drawing_browser: Browser, address: str) -> None:
+def test_a_scene_without_meshes_is_drawn_as_it_is_typed(drawing_browser, address):
     """From nothing: a shaft, another one, then none, which is a fault, then a file with shafts alone."""
     seen = opened(drawing_browser, f"{address}/#tab=sound")
     page = seen.page
@@ -356,9 +357,7 @@ def test_a_scene_without_meshes_is_drawn_as_it_is_typed(drawing_browser: Browser
 
 
 @pytest.mark.law
-def test_a_pair_that_cannot_be_made_is_said_under_the_last_picture(
-    drawing_browser: Browser, address: str
-) -> None:
+def test_a_pair_that_cannot_be_made_is_said_under_the_last_picture(drawing_browser, address):
     seen = opened(drawing_browser, f"{address}/#tab=sound")
     page = seen.page
     stopped(page)
@@ -380,9 +379,7 @@ def test_a_pair_that_cannot_be_made_is_said_under_the_last_picture(
 
 
 @pytest.mark.law
-def test_a_planet_stage_shows_its_first_planet_where_the_wheel_drives_too(
-    drawing_browser: Browser, address: str
-) -> None:
+def test_a_planet_stage_shows_its_first_planet_where_the_wheel_drives_too(drawing_browser, address):
     seen = opened(drawing_browser, f"{address}/#tab=sound")
     names = (
         "wind_turbine_scene",
@@ -397,7 +394,7 @@ def test_a_planet_stage_shows_its_first_planet_where_the_wheel_drives_too(
 
 
 @pytest.mark.law
-def test_a_browser_without_webgl_follows_the_scene_by_still_pictures(browser: Browser, address: str) -> None:
+def test_a_browser_without_webgl_follows_the_scene_by_still_pictures(browser, address):
     seen = opened(browser, f"{address}/#tab=sound")
     page, canvas = seen.page, seen.page.locator(CANVAS)
     tab(page, "TOML")

@@ -1,19 +1,16 @@
 """A scene in its tables: a cell and the TOML follow each other, faults stand at cells, rows are copied."""
 
-from __future__ import annotations
-
 import tomllib
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from page_visit import Visit, found_inaccessible, refused, shown, tab
-from playwright.sync_api import Browser, Locator, Page, expect
+from page_visit import found_inaccessible, refused, shown, tab
+from playwright.sync_api import Locator, Page, expect
 from running_service import until
 
 
 @pytest.fixture
-def visit(browser: Browser, address: str, analyzed: str) -> Iterator[Visit]:
+def visit(browser, address, analyzed):
     seen = shown(browser, address, analyzed)
     tab(seen.page, "Sound")
     seen.page.get_by_role("button", name="Write the scene of the pair").press("Enter")
@@ -36,7 +33,7 @@ def scene_in(page: Page) -> dict[str, Any]:
     return tomllib.loads(page.locator("#scene-text").input_value())
 
 
-def test_a_cell_changes_the_text_and_the_text_the_cell(visit: Visit) -> None:
+def test_a_cell_changes_the_text_and_the_text_the_cell(visit):
     page = visit.page
     typed(page, "Position, mm, pinion", "97.5")
     cell(page, "Shaft, input left").select_option("output")
@@ -50,7 +47,7 @@ def test_a_cell_changes_the_text_and_the_text_the_cell(visit: Visit) -> None:
     expect(cell(page, "Position, mm, pinion")).to_have_value("88")
 
 
-def test_a_fault_stands_at_its_cell_until_it_is_mended(visit: Visit) -> None:
+def test_a_fault_stands_at_its_cell_until_it_is_mended(visit):
     page = visit.page
     expect(page.locator("#scene-text")).not_to_have_value("")
     before = page.locator("#scene-text").input_value()
@@ -71,7 +68,7 @@ def test_a_fault_stands_at_its_cell_until_it_is_mended(visit: Visit) -> None:
     expect(cell(page, "Driven, mesh")).to_have_attribute("aria-invalid", "true")
 
 
-def test_a_text_that_is_no_scene_closes_the_tables(visit: Visit) -> None:
+def test_a_text_that_is_no_scene_closes_the_tables(visit):
     page = visit.page
     tab(page, "TOML")
     text = page.get_by_label("Scene, TOML")
@@ -87,7 +84,7 @@ def test_a_text_that_is_no_scene_closes_the_tables(visit: Visit) -> None:
     expect(page.locator("#scene-tables")).to_have_js_property("inert", False)
 
 
-def test_a_part_is_copied_named_removed_and_undone_by_keyboard(visit: Visit) -> None:
+def test_a_part_is_copied_named_removed_and_undone_by_keyboard(visit):
     page = visit.page
     page.get_by_role("button", name="Copy wheel").press("Enter")
     expect(cell(page, "Name, wheel 2")).to_be_focused()
@@ -111,7 +108,7 @@ def test_a_part_is_copied_named_removed_and_undone_by_keyboard(visit: Visit) -> 
     until(lambda: len(scene_in(page)["gears"]) == 3)
 
 
-def test_what_names_a_part_follows_its_name(visit: Visit) -> None:
+def test_what_names_a_part_follows_its_name(visit):
     page = visit.page
     typed(page, "Name, pinion", "sun")
     expect(cell(page, "Driver, mesh")).to_have_value("sun")
@@ -119,7 +116,7 @@ def test_what_names_a_part_follows_its_name(visit: Visit) -> None:
     assert scene_in(page)["meshes"][0]["driven"] == "wheel"
 
 
-def test_fields_and_parts_of_the_schema_are_added(visit: Visit) -> None:
+def test_fields_and_parts_of_the_schema_are_added(visit):
     page = visit.page
     page.get_by_label("Further field of shafts", exact=True).select_option("damping_ratio")
     expect(cell(page, "Damping ratio, input")).to_be_focused()
@@ -132,7 +129,7 @@ def test_fields_and_parts_of_the_schema_are_added(visit: Visit) -> None:
     assert scene_in(page)["rolling_bearings"][0]["ball"]["count"] == 8
 
 
-def test_the_angles_of_gears_of_a_shaft_are_a_field_of_it(visit: Visit) -> None:
+def test_the_angles_of_gears_of_a_shaft_are_a_field_of_it(visit):
     """One for each gear on the shaft, in degrees."""
     page = visit.page
     page.get_by_role("button", name="Copy wheel").press("Enter")
@@ -143,7 +140,7 @@ def test_the_angles_of_gears_of_a_shaft_are_a_field_of_it(visit: Visit) -> None:
     assert "tooth_angles_deg" not in scene_in(page)["shafts"][0]
 
 
-def test_what_is_computed_is_what_the_table_shows(visit: Visit) -> None:
+def test_what_is_computed_is_what_the_table_shows(visit):
     page = visit.page
     cell(page, "Duration, s, Run").fill("0.25")
     with refused(page, "simulate") as sent:
@@ -153,7 +150,7 @@ def test_what_is_computed_is_what_the_table_shows(visit: Visit) -> None:
     visit.console.clear()  # the browser logs that refusal
 
 
-def test_the_tables_are_accessible_and_a_phone_shows_them(visit: Visit) -> None:
+def test_the_tables_are_accessible_and_a_phone_shows_them(visit):
     page = visit.page
     assert found_inaccessible(page, "#scene-body") == {}
     page.set_viewport_size({"width": 400, "height": 800})

@@ -1,23 +1,19 @@
 """A gear or bearing of the unit in the picture, moved along its shaft by keys and by the pointer."""
 
-from __future__ import annotations
-
 import re
-from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 import pytest
 from page_picture import CANVAS, different, picture, stopped
-from page_visit import Visit, opened, refused
-from playwright.sync_api import Browser, Page, expect
+from page_visit import opened, refused
+from playwright.sync_api import Page, expect
+from repository import EXAMPLES
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 UNIT = EXAMPLES / "two_stage" / "two_stage.rexs"
 
 
 @pytest.fixture
-def visit(drawing_browser: Browser, address: str) -> Iterator[Visit]:
+def visit(drawing_browser, address):
     seen = opened(drawing_browser, f"{address}/#tab=sound")
     seen.page.locator("#import-file").set_input_files(UNIT)
     expect(seen.page.locator("#view [role=status]")).to_contain_text("click a mesh")
@@ -44,7 +40,7 @@ def stands(page: Page, part: str, place: str) -> None:
 
 
 @pytest.mark.law
-def test_arrow_keys_move_what_is_selected_in_picture_tree_table_and_text(visit: Visit) -> None:
+def test_arrow_keys_move_what_is_selected_in_picture_tree_table_and_text(visit):
     page, canvas = visit.page, visit.page.locator(CANVAS)
     select(page, "wheel 1")
     canvas.press("ArrowUp")
@@ -73,11 +69,10 @@ def test_arrow_keys_move_what_is_selected_in_picture_tree_table_and_text(visit: 
 
 
 @pytest.mark.law
-def test_what_is_typed_while_a_move_comes_to_rest_is_kept_with_it(visit: Visit) -> None:
+def test_what_is_typed_while_a_move_comes_to_rest_is_kept_with_it(visit):
     page = visit.page
     select(page, "wheel 1")
     place = re.search(r"at (\S+) mm", page.locator("#unit [role=status]").inner_text())
-    assert place is not None
     page.locator(CANVAS).press("ArrowLeft")
     stands(page, "wheel 1", f"{float(place[1]) - 1.0:.2f}")
     page.locator(CANVAS).press("ArrowRight")
@@ -91,7 +86,7 @@ def test_what_is_typed_while_a_move_comes_to_rest_is_kept_with_it(visit: Visit) 
 
 
 @pytest.mark.law
-def test_undo_brings_back_whole_the_scene_whose_place_a_move_takes(visit: Visit) -> None:
+def test_undo_brings_back_whole_the_scene_whose_place_a_move_takes(visit):
     page = visit.page
     text, under = page.locator("#scene-text"), page.get_by_text("A deflection takes the load cases")
     page.locator("#import-file").set_input_files(EXAMPLES / "two_stage_gearbox.rexs")
@@ -119,7 +114,7 @@ def test_undo_brings_back_whole_the_scene_whose_place_a_move_takes(visit: Visit)
 
 
 @pytest.mark.law
-def test_the_picture_moves_a_part_to_an_end_of_its_shaft_and_tables_refuse_more(visit: Visit) -> None:
+def test_the_picture_moves_a_part_to_an_end_of_its_shaft_and_tables_refuse_more(visit):
     page, fact = visit.page, visit.page.locator("#unit [role=status]")
     select(page, "wheel 1")
     for _ in range(6):
@@ -138,7 +133,6 @@ def test_the_picture_moves_a_part_to_an_end_of_its_shaft_and_tables_refuse_more(
 
 def drag(page: Page, start: np.ndarray, way: tuple[float, float]) -> None:
     box = page.locator(CANVAS).bounding_box()
-    assert box is not None
     x, y = box["x"] + start[0], box["y"] + start[1]
     page.mouse.move(x, y)
     page.mouse.down()
@@ -154,7 +148,7 @@ def marked(page: Page) -> np.ndarray:
 
 
 @pytest.mark.law
-def test_the_pointer_drags_what_is_selected_and_turns_the_picture_beside_it(visit: Visit) -> None:
+def test_the_pointer_drags_what_is_selected_and_turns_the_picture_beside_it(visit):
     page = visit.page
     select(page, "output, far side")
     places = marked(page)
@@ -167,7 +161,6 @@ def test_the_pointer_drags_what_is_selected_and_turns_the_picture_beside_it(visi
     assert moved @ moved == pytest.approx(way @ moved, rel=0.2)  # as far along its shaft as the pointer
     assert way @ moved > 20.0
     place = re.search(r"at (\S+) mm", fact.inner_text())
-    assert place is not None
     stands(page, "output, far side", place[1])
     known, beside = fact.inner_text(), np.array([20.0, 200.0])
     seen = picture(page)
@@ -179,7 +172,6 @@ def test_the_pointer_drags_what_is_selected_and_turns_the_picture_beside_it(visi
     page.keyboard.up("Shift")
     expect(fact).not_to_have_text(known)
     place = re.search(r"at (\S+) mm", fact.inner_text())
-    assert place is not None
     stands(page, "output, far side", place[1])  # the tables are written anew when the drag rests
     length = page.locator("#scene-shafts-2-length_mm")
     was = length.input_value()

@@ -1,16 +1,13 @@
 """One address for what is on screen: six kinds of state, reloaded, gone back to, sent, and in mid-job."""
 
-from __future__ import annotations
-
 import re
-from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import pytest
 from page_visit import PATIENCE, answered, control, moved, other_browser, typed
-from playwright.sync_api import Browser, BrowserContext, Page, Route, expect
+from playwright.sync_api import BrowserContext, Page, Route, expect
 from running_service import until
 
 UNIT = Path(__file__).parents[2] / "examples" / "two_stage_gearbox.rexs"
@@ -105,7 +102,7 @@ def run_job(page: Page, key: str) -> None:
 
 
 @pytest.fixture(scope="module")
-def watched(browser: Browser, address: str) -> Iterator[tuple[Page, Jobs]]:
+def watched(browser, address):
     jobs = Jobs()
     with other_browser(browser, f"{address}/#rail") as page:
         jobs.watch(page.context)
@@ -128,9 +125,7 @@ NIGHTLY = (choose_example, run_job, show_result)
     ],
     ids=lambda f: f.__name__,
 )
-def test_an_address_shows_the_same_to_everybody_at_any_moment(
-    watched: tuple[Page, Jobs], browser: Browser, analyzed: str, begin: Callable[[Page, str], None]
-) -> None:
+def test_an_address_shows_the_same_to_everybody_at_any_moment(watched, browser, analyzed, begin):
     page, jobs = watched
     begin(page, analyzed)
     known, url = seen(page), page.url
@@ -156,7 +151,7 @@ def test_an_address_shows_the_same_to_everybody_at_any_moment(
 
 
 @pytest.mark.law
-def test_edits_are_undone_and_done_again(watched: tuple[Page, Jobs], analyzed: str) -> None:
+def test_edits_are_undone_and_done_again(watched, analyzed):
     page, _ = watched
     page.evaluate("key => { location.hash = `database=${key}`; }", analyzed)
     answered(page)

@@ -1,17 +1,13 @@
 """Four tasks of a new user in the browser alone, action by action as the documentation has them."""
 
-from __future__ import annotations
-
 import re
-from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from page_visit import Visit, answered, answers, found_inaccessible, opened, to_print
-from playwright.sync_api import Browser, Locator, Page, expect
+from playwright.sync_api import Locator, Page, expect
+from repository import ROOT
 from running_service import until
 
-ROOT = Path(__file__).parents[2]
 UNIT = ROOT / "examples" / "two_stage_gearbox.rexs"
 TASKS = (ROOT / "docs" / "how-to" / "in-the-browser.md").read_text(encoding="utf-8").split("\n## ")
 MAX = 15
@@ -58,7 +54,7 @@ class Hand:
 
 
 @pytest.fixture
-def seen(browser: Browser, address: str) -> Iterator[Visit]:
+def seen(browser, address):
     visit = opened(browser, f"{address}/#")
     yield visit
     assert visit.complaints == []
@@ -93,7 +89,7 @@ def dragged(hand: Hand, slider: str, steps: list[str]) -> dict[str, float]:
 
 
 @pytest.mark.nightly
-def test_an_own_pair_is_typed_analyzed_relieved_and_sent(seen: Visit, browser: Browser) -> None:
+def test_an_own_pair_is_typed_analyzed_relieved_and_sent(seen, browser):
     page, hand = seen.page, Hand(seen)
     type_pair(hand)
     hand.analyze()
@@ -122,7 +118,7 @@ def test_an_own_pair_is_typed_analyzed_relieved_and_sent(seen: Visit, browser: B
 
 
 @pytest.mark.nightly
-def test_an_own_pair_with_a_run_out_shows_a_revolution_and_its_sidebands(seen: Visit) -> None:
+def test_an_own_pair_with_a_run_out_shows_a_revolution_and_its_sidebands(seen):
     page, hand = seen.page, Hand(seen)
     type_pair(hand)
     hand.show("Teeth as made")
@@ -143,7 +139,7 @@ def test_an_own_pair_with_a_run_out_shows_a_revolution_and_its_sidebands(seen: V
 
 
 @pytest.mark.nightly
-def test_an_own_unit_is_opened_and_its_flanks_are_misaligned(seen: Visit) -> None:
+def test_an_own_unit_is_opened_and_its_flanks_are_misaligned(seen):
     page, hand = seen.page, Hand(seen)
     hand.on("#import-file").set_input_files(UNIT)
     expect(page.locator("#f-pair-pinion-teeth")).to_have_value("20")
@@ -179,7 +175,7 @@ def on_the_grid(page: Page) -> None:
 
 
 @pytest.mark.nightly
-def test_a_search_brings_three_decibels_that_are_heard(seen: Visit) -> None:
+def test_a_search_brings_three_decibels_that_are_heard(seen):
     page, hand = seen.page, Hand(seen)
     for field, text in {"frequency_hz": "1533", "speed_rpm": "4000", "torque_n_m": "120"}.items():
         hand.on(f"#bar-{field}").fill(text)  # 23 teeth: harmonic 1

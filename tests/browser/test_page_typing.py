@@ -1,15 +1,12 @@
 """A pair typed field after field: the page waits, says what is missing, and rewrites nothing."""
 
-from __future__ import annotations
-
 import re
 import tomllib
-from collections.abc import Iterator
 from contextlib import suppress
 
 import pytest
-from page_visit import Visit, control, found_inaccessible, opened, refused
-from playwright.sync_api import Browser, Error, Page, Route, expect
+from page_visit import control, found_inaccessible, opened, refused
+from playwright.sync_api import Error, Page, Route, expect
 from running_service import until
 
 PAIR = {
@@ -42,7 +39,7 @@ GIVEN_UP = """async () => {
 
 
 @pytest.fixture
-def visit(browser: Browser, address: str) -> Iterator[Visit]:
+def visit(browser, address):
     seen = opened(browser, address)
     yield seen
     seen.page.close()
@@ -60,7 +57,7 @@ def typed(page: Page, key: str, text: str) -> None:
 
 
 @pytest.mark.parametrize("begin", ["empty", pytest.param("helical_automotive", marks=pytest.mark.nightly)])
-def test_a_pair_typed_in_reading_order_is_the_pair_that_is_planned(visit: Visit, begin: str) -> None:
+def test_a_pair_typed_in_reading_order_is_the_pair_that_is_planned(visit, begin):
     page = visit.page
     page.locator("#example").select_option(begin)
     shared = {} if begin == "empty" else {"pair-helix_angle_deg": "0"}
@@ -82,7 +79,7 @@ def test_a_pair_typed_in_reading_order_is_the_pair_that_is_planned(visit: Visit,
     assert visit.complaints == []
 
 
-def test_what_is_missing_is_listed_with_the_plan_and_no_field_is_blamed(visit: Visit) -> None:
+def test_what_is_missing_is_listed_with_the_plan_and_no_field_is_blamed(visit):
     page = visit.page
     page.locator("#example").select_option("empty")
     missing = page.locator("#form-errors")
@@ -95,7 +92,7 @@ def test_what_is_missing_is_listed_with_the_plan_and_no_field_is_blamed(visit: V
     assert page.get_by_label(re.compile("^(Young|Poisson)'s ")).count() >= 2
 
 
-def test_a_field_that_is_being_typed_into_is_not_blamed_before_it_is_finished(visit: Visit) -> None:
+def test_a_field_that_is_being_typed_into_is_not_blamed_before_it_is_finished(visit):
     page = visit.page
     typed(page, "pair-pinion-teeth", "2")
     teeth = page.locator("#f-pair-pinion-teeth")
@@ -107,7 +104,7 @@ def test_a_field_that_is_being_typed_into_is_not_blamed_before_it_is_finished(vi
     expect(teeth).to_have_value("20")
 
 
-def test_an_example_says_which_settings_it_replaces(visit: Visit) -> None:
+def test_an_example_says_which_settings_it_replaces(visit):
     page = visit.page
     control(page, "#f-accuracy-model").select_option("3d")
     control(page, "#f-accuracy-tolerance").fill("0.005")
@@ -123,7 +120,7 @@ def test_an_example_says_which_settings_it_replaces(visit: Visit) -> None:
     expect(page.locator("#f-accuracy-model")).to_have_value("plane_strain")
 
 
-def test_a_helix_with_a_model_of_the_plane_is_told_what_it_is(visit: Visit) -> None:
+def test_a_helix_with_a_model_of_the_plane_is_told_what_it_is(visit):
     page = visit.page
     page.locator("#example").select_option("palermo_spur_20_20")
     typed(page, "pair-helix_angle_deg", "15")
@@ -134,11 +131,11 @@ def test_a_helix_with_a_model_of_the_plane_is_told_what_it_is(visit: Visit) -> N
     expect(told).not_to_contain_text("spur pair")
 
 
-def test_an_edit_gives_up_the_plan_that_the_edit_before_asked_for(visit: Visit) -> None:
+def test_an_edit_gives_up_the_plan_that_the_edit_before_asked_for(visit):
     """The service refuses a question (409) when a later one takes its place: nobody is to hear of it."""
     page, waiting = visit.page, []
 
-    def as_a_busy_service(route: Route) -> None:
+    def as_a_busy_service(route):
         if not waiting:
             waiting.append(route)
             return
@@ -158,7 +155,7 @@ def test_an_edit_gives_up_the_plan_that_the_edit_before_asked_for(visit: Visit) 
     assert [line for line in visit.console if line.startswith("error")] == []
 
 
-def test_a_request_given_up_while_its_answer_is_read_is_no_answer(visit: Visit) -> None:
+def test_a_request_given_up_while_its_answer_is_read_is_no_answer(visit):
     assert visit.page.evaluate(GIVEN_UP) == ["Problem", 0]
 
 
@@ -185,7 +182,7 @@ requirements = ["peak-to-peak STE at most 6 µm", "largest pressure at most 1000
 
 
 @pytest.mark.law
-def test_an_opened_case_keeps_its_complaint_and_its_title_block(visit: Visit) -> None:
+def test_an_opened_case_keeps_its_complaint_and_its_title_block(visit):
     page = visit.page
     page.locator("#import-file").set_input_files(
         {"name": "own.toml", "mimeType": "application/toml", "buffer": OPENED.encode()}
@@ -201,7 +198,7 @@ def test_an_opened_case_keeps_its_complaint_and_its_title_block(visit: Visit) ->
 
 
 @pytest.mark.law
-def test_jobs_wait_for_a_file_that_is_read_and_are_given_up_with_it(visit: Visit) -> None:
+def test_jobs_wait_for_a_file_that_is_read_and_are_given_up_with_it(visit):
     """The pair that the file replaces was analyzed."""
     page, waiting = visit.page, list[Route]()
     page.route("**/v1/cases/from-toml", lambda route: waiting.append(route))  # noqa: PLW0108 (no builtin)
@@ -233,10 +230,10 @@ def test_jobs_wait_for_a_file_that_is_read_and_are_given_up_with_it(visit: Visit
             assert "title" not in sent[1]["case"]["report"], "nothing is waited for any more"
 
 
-def test_a_backlash_of_rounding_is_none(visit: Visit) -> None:
+def test_a_backlash_of_rounding_is_none(visit):
     page = visit.page
 
-    def rounded(route: Route) -> None:
+    def rounded(route):
         answer = route.fetch().json()
         answer["figures"]["circumferential_backlash_um"] = 7e-4
         route.fulfill(json=answer)

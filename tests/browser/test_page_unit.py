@@ -1,7 +1,5 @@
 """A gear unit is a subject of the page: its tabs, its dock, its answer in the bar, results at their parts."""
 
-from __future__ import annotations
-
 import math
 import os
 import random
@@ -12,7 +10,7 @@ from typing import Any
 import pytest
 from page_numbers import printed
 from page_visit import opened
-from playwright.sync_api import Browser, Page, Route, expect
+from playwright.sync_api import Page, expect
 from running_service import until
 
 SESSIONS = int(os.environ.get("LOA_PAGE_SESSIONS", "2"))
@@ -35,11 +33,11 @@ def deflect_at_no_cost(page: Page) -> list[dict[str, Any]]:
     """Answer deflections without computing any; returns the inputs that are sent."""
     sent: list[dict[str, Any]] = []
 
-    def enter(route: Route) -> None:
+    def enter(route):
         sent.append(route.request.post_data_json["inputs"])
         route.fulfill(status=201, json=STATUS)
 
-    def inputs(route: Route) -> None:
+    def inputs(route):
         route.fulfill(json={"processID": "deflect", "inputs": sent[0]})
 
     reference = {"deflection": {"href": f"/v1/results/{KEY}", "type": "application/x-netcdf", "hash": KEY}}
@@ -55,7 +53,7 @@ def deflect_at_no_cost(page: Page) -> list[dict[str, Any]]:
 
 
 @pytest.mark.law
-def test_a_deflection_is_seen_at_its_parts_by_one_click(browser: Browser, address: str) -> None:
+def test_a_deflection_is_seen_at_its_parts_by_one_click(browser, address):
     visit = opened(browser, address, width=1440)
     page = visit.page
     sent = deflect_at_no_cost(page)
@@ -85,9 +83,7 @@ def test_a_deflection_is_seen_at_its_parts_by_one_click(browser: Browser, addres
 
 
 @pytest.mark.law
-def test_the_complaint_of_a_unit_is_answered_in_the_bar_and_follows_to_its_meshes(
-    browser: Browser, address: str
-) -> None:
+def test_the_complaint_of_a_unit_is_answered_in_the_bar_and_follows_to_its_meshes(browser, address):
     visit = opened(browser, address, width=1440)
     page = visit.page
     page.locator("#import-file").set_input_files(UNIT)
@@ -184,7 +180,7 @@ def of_unit(page: Page) -> list[str]:
 
 @pytest.mark.law
 @pytest.mark.parametrize("seed", range(SESSIONS))
-def test_a_unit_has_one_answer_in_bar_tree_and_dock(browser: Browser, address: str, seed: int) -> None:
+def test_a_unit_has_one_answer_in_bar_tree_and_dock(browser, address, seed):
     visit = opened(browser, address, width=1440)
     page = visit.page
     deflect_at_no_cost(page)

@@ -1,7 +1,5 @@
 """Variants of a design on the page: side by side, each a copy, all in one address."""
 
-from __future__ import annotations
-
 import base64
 import json
 import math
@@ -10,15 +8,15 @@ from typing import Any
 
 import httpx2
 import pytest
-from page_visit import CASE, GEAR, Visit, computed, control, found_inaccessible, moved
-from playwright.sync_api import Browser, Page, expect
+from page_visit import CASE, GEAR, computed, control, found_inaccessible, moved
+from playwright.sync_api import Page, expect
 from running_service import until
 
 RELIEVED = GEAR | {"tip_relief_um": 8.0, "tip_relief_length_mm": 0.4}
 
 
 @pytest.fixture(scope="module")
-def relieved(address: str) -> str:
+def relieved(address):
     """Hash of the table of the small pair with tip relief."""
     return computed(address, case=CASE | {"pair": CASE["pair"] | {"pinion": RELIEVED}})
 
@@ -35,7 +33,7 @@ def curves(page: Page) -> dict[str, list[float]]:
 
 
 @pytest.mark.law
-def test_a_variant_begins_as_a_copy_and_moves_by_itself(visit: Visit, analyzed: str) -> None:
+def test_a_variant_begins_as_a_copy_and_moves_by_itself(visit, analyzed):
     page = visit.page
     page.get_by_role("button", name="Another variant").press("Enter")
     expect(page.get_by_role("button", name="Variant B")).to_have_attribute("aria-pressed", "true")
@@ -53,9 +51,7 @@ def test_a_variant_begins_as_a_copy_and_moves_by_itself(visit: Visit, analyzed: 
     assert visit.complaints == []
 
 
-def test_two_results_and_an_edit_stand_side_by_side_in_another_browser(
-    visit: Visit, browser: Browser, analyzed: str, relieved: str
-) -> None:
+def test_two_results_and_an_edit_stand_side_by_side_in_another_browser(visit, browser, analyzed, relieved):
     page = visit.page
     origin = page.url.partition("#")[0]
     page.goto(f"{origin}#database={relieved}&a={analyzed}&on=b")
@@ -112,9 +108,7 @@ def go(page: Page, fragment: str) -> None:
 
 
 @pytest.mark.law
-def test_a_typed_design_is_answered_on_the_gears_of_a_result(
-    visit: Visit, address: str, analyzed: str, relieved: str
-) -> None:
+def test_a_typed_design_is_answered_on_the_gears_of_a_result(visit, address, analyzed, relieved):
     page = visit.page
     go(page, f"database={analyzed}&a={packed(with_pinion(tip_relief_um=8.0, tip_relief_length_mm=0.4))}&on=b")
     until(lambda: len(curves(page)) == 3)
@@ -140,9 +134,7 @@ def first_of(text: str) -> float:
 
 
 @pytest.mark.law
-def test_a_typed_design_of_other_gears_says_what_it_needs_and_is_analyzed_beside(
-    visit: Visit, analyzed: str
-) -> None:
+def test_a_typed_design_of_other_gears_says_what_it_needs_and_is_analyzed_beside(visit, analyzed):
     page = visit.page
     other = packed(with_pinion(face_width_mm=3.5))
     go(page, f"database={analyzed}&b={other}&c={packed(with_pinion(tip_relief_um=5.0))}&on=a")
@@ -163,9 +155,7 @@ def test_a_typed_design_of_other_gears_says_what_it_needs_and_is_analyzed_beside
     assert visit.complaints == []
 
 
-def test_three_variants_stand_beside_each_other_with_the_complaint(
-    visit: Visit, address: str, analyzed: str, relieved: str
-) -> None:
+def test_three_variants_stand_beside_each_other_with_the_complaint(visit, address, analyzed, relieved):
     page = visit.page
     heard = with_pinion() | {"complaint": {"frequency_hz": 1000.0, "speed_rpm": 1500.0, "torque_n_m": 1.0}}
     words = {"a": relieved, "b": packed(with_pinion(tip_relief_um=4.0, tip_relief_length_mm=0.4))}

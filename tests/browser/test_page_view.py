@@ -1,7 +1,5 @@
 """The pair in three dimensions: drawn, turning, with live pressure, asleep; a drawing without WebGL."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from typing import Any
@@ -9,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 from page_picture import CANVAS, different, frames, has_room, picture, pixels, rest, stopped
-from page_visit import PATIENCE, Visit, control, found_inaccessible, moved, opened_scene, shown, tab
-from playwright.sync_api import Browser, Page, expect
+from page_visit import PATIENCE, control, found_inaccessible, moved, opened_scene, shown, tab
+from playwright.sync_api import Page, expect
 from running_service import until
 
 UNIT = Path(__file__).parents[2] / "examples" / "two_stage" / "two_stage.rexs"
@@ -27,7 +25,7 @@ MADE = """() => {
 
 
 @pytest.fixture(scope="module")
-def view(drawing_browser: Browser, address: str, analyzed: str) -> Visit:
+def view(drawing_browser, address, analyzed):
     seen = shown(drawing_browser, address, analyzed)
     seen.page.locator(CANVAS).scroll_into_view_if_needed()
     expect(seen.page.locator(f"{CANVAS}[data-pressed]:not([data-pressed='0'])")).to_have_count(1)
@@ -36,9 +34,7 @@ def view(drawing_browser: Browser, address: str, analyzed: str) -> Visit:
 
 
 @pytest.mark.parametrize("size", [(1000, 700), (1024, 768), (900, 700)])
-def test_a_small_window_has_room_for_the_picture(
-    drawing_browser: Browser, address: str, size: tuple[int, int]
-) -> None:
+def test_a_small_window_has_room_for_the_picture(drawing_browser, address, size):
     page = drawing_browser.new_page(viewport={"width": size[0], "height": size[1]})
     page.goto(address)
     page.wait_for_selector(f"{CANVAS}[data-frames]", state="attached")
@@ -49,9 +45,7 @@ def test_a_small_window_has_room_for_the_picture(
 
 
 @pytest.mark.law
-def test_the_first_picture_waits_for_nothing_that_is_asked_of_the_form(
-    drawing_browser: Browser, address: str
-) -> None:
+def test_the_first_picture_waits_for_nothing_that_is_asked_of_the_form(drawing_browser, address):
     """Its pressure and its figures came with the program; the shaders are those that draw them."""
     page = drawing_browser.new_page()
     page.add_init_script(f"({MADE})()")
@@ -69,7 +63,7 @@ def test_the_first_picture_waits_for_nothing_that_is_asked_of_the_form(
 
 
 @pytest.mark.law
-def test_the_pair_is_drawn_turns_by_keyboard_and_sleeps(view: Visit) -> None:
+def test_the_pair_is_drawn_turns_by_keyboard_and_sleeps(view):
     page, canvas = view.page, view.page.locator(CANVAS)
     has_room(page)
     before = picture(page)
@@ -94,7 +88,7 @@ def test_the_pair_is_drawn_turns_by_keyboard_and_sleeps(view: Visit) -> None:
 
 
 @pytest.mark.law
-def test_what_is_behind_the_face_of_the_wheel_is_seen_through_it(view: Visit) -> None:
+def test_what_is_behind_the_face_of_the_wheel_is_seen_through_it(view):
     """The face is of one shade; through it there are the teeth and the bore of the far side."""
     page, through = view.page, view.page.get_by_label("see through the wheel")
     seen = picture(page)
@@ -122,7 +116,7 @@ SAID = """() => {
 
 
 @pytest.mark.law
-def test_the_slider_follows_the_pair_that_rolls_a_few_times_a_second(view: Visit) -> None:
+def test_the_slider_follows_the_pair_that_rolls_a_few_times_a_second(view):
     """Nothing is requested, what has the focus keeps it, and a hand stops the pair where it is put."""
     page, slider = view.page, view.page.locator("#roll")
     page.locator("#name").focus()
@@ -148,9 +142,7 @@ def test_the_slider_follows_the_pair_that_rolls_a_few_times_a_second(view: Visit
 
 
 @pytest.mark.law
-def test_a_phone_has_room_beside_variants_and_a_complaint(
-    drawing_browser: Browser, address: str, analyzed: str
-) -> None:
+def test_a_phone_has_room_beside_variants_and_a_complaint(drawing_browser, address, analyzed):
     page = shown(drawing_browser, address, analyzed).page
     page.get_by_role("button", name="Another variant").press("Enter")
     for name, text in {"frequency_hz": "1000", "speed_rpm": "3000", "torque_n_m": "1"}.items():
@@ -161,7 +153,7 @@ def test_a_phone_has_room_beside_variants_and_a_complaint(
 
 
 @pytest.mark.law
-def test_pressure_follows_a_slider(view: Visit) -> None:
+def test_pressure_follows_a_slider(view):
     page = view.page
     before = picture(page)
     pressed = float(page.locator(CANVAS).get_attribute("data-pressed") or 0)
@@ -171,10 +163,9 @@ def test_pressure_follows_a_slider(view: Visit) -> None:
 
 
 @pytest.mark.law
-def test_a_tooth_that_is_clicked_says_its_place_and_its_load(view: Visit) -> None:
+def test_a_tooth_that_is_clicked_says_its_place_and_its_load(view):
     page = view.page
     box = page.locator(CANVAS).bounding_box()
-    assert box is not None
     said = page.locator("#view [role=status]")
     texts = []
     for part in np.linspace(0.3, 0.8, 12):
@@ -185,7 +176,7 @@ def test_a_tooth_that_is_clicked_says_its_place_and_its_load(view: Visit) -> Non
 
 
 @pytest.mark.law
-def test_a_unit_turns_when_its_file_opens_and_a_mesh_that_is_clicked_opens_its_pair(view: Visit) -> None:
+def test_a_unit_turns_when_its_file_opens_and_a_mesh_that_is_clicked_opens_its_pair(view):
     page = view.page
     page.locator("#import-file").set_input_files(UNIT)
     said = page.locator("#view [role=status]")
@@ -201,7 +192,6 @@ def test_a_unit_turns_when_its_file_opens_and_a_mesh_that_is_clicked_opens_its_p
     assert np.any((marked[..., 0] > 1.5 * marked[..., 2]) & (marked[..., 0] > 120)), "marked in orange"
     assert found_inaccessible(page, "#unit") == {}
     box = page.locator(CANVAS).bounding_box()
-    assert box is not None
     for part in np.linspace(0.3, 0.7, 12):
         page.mouse.click(box["x"] + part * box["width"], box["y"] + 0.5 * box["height"])
         if "click a mesh" not in said.inner_text():
@@ -214,9 +204,7 @@ def test_a_unit_turns_when_its_file_opens_and_a_mesh_that_is_clicked_opens_its_p
 
 
 @pytest.mark.law
-def test_a_mode_moves_the_unit_and_the_way_back_shows_the_pair(
-    drawing_browser: Browser, address: str, analyzed: str
-) -> None:
+def test_a_mode_moves_the_unit_and_the_way_back_shows_the_pair(drawing_browser, address, analyzed):
     seen = shown(drawing_browser, address, analyzed)
     page = seen.page
     stopped(page)
@@ -265,8 +253,8 @@ def test_a_mode_moves_the_unit_and_the_way_back_shows_the_pair(
 
 @pytest.mark.law
 def test_the_surface_of_a_housing_moves_in_the_colors_of_its_velocity(
-    drawing_browser: Browser, address: str, analyzed: str, tmp_path: Path
-) -> None:
+    drawing_browser, address, analyzed, tmp_path
+):
     seen = shown(drawing_browser, address, analyzed)
     page = seen.page
     tab(page, "Sound")
@@ -305,7 +293,7 @@ def damaged(answer: dict[str, Any]) -> dict[str, Any]:
     return answer
 
 
-def test_a_browser_without_webgl_shows_the_drawing(browser: Browser, address: str, analyzed: str) -> None:
+def test_a_browser_without_webgl_shows_the_drawing(browser, address, analyzed):
     seen = shown(browser, address, analyzed)
     expect(seen.page.locator("#view")).to_be_hidden()
     expect(seen.page.locator("#mesh-drawing path").first).to_be_visible()
@@ -314,9 +302,7 @@ def test_a_browser_without_webgl_shows_the_drawing(browser: Browser, address: st
 
 
 @pytest.mark.law
-def test_a_browser_without_webgl_shows_a_still_picture_of_a_unit(
-    view: Visit, browser: Browser, address: str, analyzed: str
-) -> None:
+def test_a_browser_without_webgl_shows_a_still_picture_of_a_unit(view, browser, address, analyzed):
     seen = shown(browser, address, analyzed)
     page, said, canvas = seen.page, seen.page.locator("#view [role=status]"), seen.page.locator(CANVAS)
     page.locator("#import-file").set_input_files(UNIT)
@@ -361,9 +347,7 @@ def still_picture(page: Page) -> np.ndarray:
     return pixels(page.locator(CANVAS).screenshot())
 
 
-def test_nothing_rolls_by_itself_for_who_wants_less_motion(
-    drawing_browser: Browser, address: str, analyzed: str
-) -> None:
+def test_nothing_rolls_by_itself_for_who_wants_less_motion(drawing_browser, address, analyzed):
     context = drawing_browser.new_context(reduced_motion="reduce")
     page = context.new_page()
     page.goto(f"{address}/#database={analyzed}")

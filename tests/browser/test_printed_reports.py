@@ -1,7 +1,5 @@
 """Reports on paper, page by page: what a reader sees once, whole, and with its head."""
 
-from __future__ import annotations
-
 import json
 import re
 import warnings
@@ -14,7 +12,6 @@ from typing import Any
 import numpy as np
 import pytest
 from page_visit import opened, tab, to_print
-from playwright.sync_api import Browser
 from printed_pages import Printed, plain
 from small_inputs import small_inputs
 
@@ -93,12 +90,7 @@ class Report:
         "table",
     ],
 )
-def report(
-    request: pytest.FixtureRequest,
-    browser: Browser,
-    closed_forms: ModuleType,
-    tmp_path_factory: pytest.TempPathFactory,
-) -> Report:
+def report(request, browser, closed_forms, tmp_path_factory):
     del browser  # skips where there is none
     folder, name = tmp_path_factory.mktemp("printed"), request.param
     if name == "pair":
@@ -112,12 +104,12 @@ def report(
     return Report(page, Printed((folder / "report.pdf").read_bytes()))
 
 
-def test_a_report_has_few_pages_and_is_small_enough_to_send(report: Report) -> None:
+def test_a_report_has_few_pages_and_is_small_enough_to_send(report):
     assert len(report.printed.pages) <= 12
     assert report.printed.size < 3_000_000
 
 
-def test_each_page_has_its_number_the_title_and_the_drawing_and_none_is_empty(report: Report) -> None:
+def test_each_page_has_its_number_the_title_and_the_drawing_and_none_is_empty(report):
     pages = report.printed.pages
     for number, text in enumerate(pages, start=1):
         margins = f"{report.page.title} 23-067 A page {number} of {len(pages)} lineofaction"
@@ -125,13 +117,13 @@ def test_each_page_has_its_number_the_title_and_the_drawing_and_none_is_empty(re
         assert text != margins or report.printed.pictures[number - 1]
 
 
-def test_no_title_stands_twice(report: Report) -> None:
+def test_no_title_stands_twice(report):
     titles = report.printed.titles()
     assert report.page.title in titles
     assert [title for title, times in Counter(titles).items() if times > 1] == []
 
 
-def test_what_the_page_shows_is_printed(report: Report) -> None:
+def test_what_the_page_shows_is_printed(report):
     titles = set(report.printed.titles())
     shown = [section for section in report.page.sections if section.part is not Part.RECEIPT]
     figures = {figure.title for section in shown for figure in section.figures}
@@ -139,7 +131,7 @@ def test_what_the_page_shows_is_printed(report: Report) -> None:
     assert {table.caption for section in shown for table in section.tables} <= titles
 
 
-def test_what_is_said_of_the_results_is_printed(report: Report) -> None:
+def test_what_is_said_of_the_results_is_printed(report):
     page, printed = report.page, report.printed
     assert page.block is not None and (page.block.verdicts or page.alarms)
     said = [*page.alarms, *page.block.verdicts, *(value for _, value in page.block.rows)]
@@ -150,13 +142,13 @@ def test_what_is_said_of_the_results_is_printed(report: Report) -> None:
     assert [words for words in said if plain(words).replace(" ", "") not in whole] == []
 
 
-def test_a_picture_is_on_one_page_with_its_words(report: Report) -> None:
+def test_a_picture_is_on_one_page_with_its_words(report):
     figures = [each for each in report.printed.document.all("Figure") if list(each.all("Caption"))]
     assert len(figures) == sum(len(section.figures) for section in report.page.sections)
     assert [report.printed.words(figure) for figure in figures if len(figure.pages) > 1] == []
 
 
-def test_a_heading_is_on_the_page_of_what_it_heads(report: Report) -> None:
+def test_a_heading_is_on_the_page_of_what_it_heads(report):
     parted = []
     for section in report.printed.document.all("NonStruct"):
         head, *rest = section.children or [section]
@@ -170,18 +162,18 @@ def test_a_heading_is_on_the_page_of_what_it_heads(report: Report) -> None:
     assert parted == []
 
 
-def test_nothing_is_beyond_the_margins(report: Report) -> None:
+def test_nothing_is_beyond_the_margins(report):
     for number, corners in report.printed.corners.items():
         across = np.array(corners)[:, 0]
         assert across.min() > MARGIN and across.max() < WIDTH - MARGIN, number
 
 
-def test_a_table_of_few_rows_is_on_one_page(report: Report) -> None:
+def test_a_table_of_few_rows_is_on_one_page(report):
     short = [each for each in report.printed.document.all("Table") if len(list(each.all("TR"))) <= ROWS]
     assert [report.printed.words(table) for table in short if len(table.pages) > 1] == []
 
 
-def test_the_file_in_a_report_says_how_its_results_were_made(report: Report) -> None:
+def test_the_file_in_a_report_says_how_its_results_were_made(report):
     if report.page.records:
         held = json.loads(report.printed.attachments["receipts.json"])
         assert held == json.loads(json.dumps(report.page.records))
@@ -190,20 +182,20 @@ def test_the_file_in_a_report_says_how_its_results_were_made(report: Report) -> 
         assert report.printed.attachments == {}
 
 
-def test_no_row_of_a_table_is_cut_by_the_end_of_a_page(report: Report) -> None:
+def test_no_row_of_a_table_is_cut_by_the_end_of_a_page(report):
     tables = list(report.printed.document.all("Table"))
     assert tables or not any(section.tables for section in report.page.sections)
     rows = [row for table in tables for row in [*table.all("TR")][1:]]
     assert [report.printed.words(row) for row in rows if len(row.pages) > 1] == []
 
 
-def test_the_head_of_a_table_stands_on_each_of_its_pages(report: Report) -> None:
+def test_the_head_of_a_table_stands_on_each_of_its_pages(report):
     for table in report.printed.document.all("Table"):
         head, *rows = table.all("TR")
         assert head.pages == {page for row in rows for page in row.pages} or not rows
 
 
-def test_orders_have_whole_ticks_in_every_picture(report: Report) -> None:
+def test_orders_have_whole_ticks_in_every_picture(report):
     panels = [
         panel
         for section in report.page.sections
@@ -218,7 +210,7 @@ def test_orders_have_whole_ticks_in_every_picture(report: Report) -> None:
         assert np.array_equal(ticks, np.round(ticks)), panel.x.label
 
 
-def test_a_report_is_saved_to_print(browser: Browser, address: str, analyzed: str) -> None:
+def test_a_report_is_saved_to_print(browser, address, analyzed):
     """One file: a browser prints it without the service, and nothing in it runs."""
     page = opened(browser, f"{address}/#database={analyzed}").page
     tab(page, "Errors and cost")
@@ -228,9 +220,7 @@ def test_a_report_is_saved_to_print(browser: Browser, address: str, analyzed: st
     page.close()
 
 
-def test_a_picture_with_its_title_has_no_second_one_on_the_screen(
-    browser: Browser, closed_forms: ModuleType, tmp_path: Path
-) -> None:
+def test_a_picture_with_its_title_has_no_second_one_on_the_screen(browser, closed_forms, tmp_path):
     write_page(of_pair(closed_forms, tmp_path), tmp_path / "still.html", still_only=True)
     page = browser.new_page()
     page.goto((tmp_path / "still.html").as_uri())

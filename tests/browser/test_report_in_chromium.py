@@ -1,15 +1,11 @@
 """The report in a real browser: every plot drawn, nothing fetched, nothing complained about."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass, field
-from pathlib import Path
-from types import ModuleType
 
 import pytest
 from page_visit import PATIENCE
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.report.document import write_report
@@ -57,7 +53,7 @@ class Visit:
 
 
 @pytest.fixture(scope="module")
-def report(closed_forms: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def report(closed_forms, tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
     closed_forms.closed_form().to_netcdf(folder / "ste.nc")
     closed_forms.run_up().to_netcdf(folder / "run.nc")
@@ -67,7 +63,7 @@ def report(closed_forms: ModuleType, tmp_path_factory: pytest.TempPathFactory) -
 
 
 @pytest.fixture(scope="module")
-def visit(browser: Browser, report: Path) -> Visit:
+def visit(browser, report):
     seen = Visit(browser.new_page(viewport={"width": 1280, "height": 900}))
     seen.page.on("console", lambda message: seen.console.append(f"{message.type}: {message.text}"))
     seen.page.on("pageerror", lambda error: seen.console.append(f"error: {error}"))
@@ -78,7 +74,7 @@ def visit(browser: Browser, report: Path) -> Visit:
 
 
 @pytest.mark.parametrize("key", CURVES)
-def test_every_curve_is_drawn(visit: Visit, key: str) -> None:
+def test_every_curve_is_drawn(visit, key):
     drawn = visit.page.locator(f"#{key} .plot .scatterlayer .trace path.js-line")
     expect(drawn).to_have_count(CURVES[key])
     boxes = [drawn.nth(index).bounding_box() for index in range(CURVES[key])]
@@ -86,7 +82,7 @@ def test_every_curve_is_drawn(visit: Visit, key: str) -> None:
 
 
 @pytest.mark.parametrize("key", PANELS)
-def test_every_panel_has_both_axes_named_once(visit: Visit, key: str) -> None:
+def test_every_panel_has_both_axes_named_once(visit, key):
     named = visit.page.eval_on_selector_all(
         f"#{key} .plot text", "nodes => nodes.map(n => [n.getAttribute('class') || '', n.textContent])"
     )
@@ -96,7 +92,7 @@ def test_every_panel_has_both_axes_named_once(visit: Visit, key: str) -> None:
     assert any(text for name, text in named if re.fullmatch(r"x\d*title", name))
 
 
-def test_no_text_of_a_plot_lies_on_another(visit: Visit) -> None:
+def test_no_text_of_a_plot_lies_on_another(visit):
     for key in CURVES:
         texts = visit.page.locator(f"#{key} .plot").locator("[class*=title], .annotation-text, .legendtext")
         found = [
@@ -109,7 +105,7 @@ def test_no_text_of_a_plot_lies_on_another(visit: Visit) -> None:
                 assert not overlap(boxes[one], boxes[other]), (key, one, other)
 
 
-def test_no_label_at_a_curve_is_cut_off(visit: Visit) -> None:
+def test_no_label_at_a_curve_is_cut_off(visit):
     """Labels stand to the right of their curves, in whatever font the reader's machine has."""
     cut: list[str] = visit.page.evaluate(
         """() => [...document.querySelectorAll(".js-plotly-plot")].flatMap((plot) => {
@@ -129,23 +125,23 @@ def overlap(one: dict[str, float], other: dict[str, float]) -> bool:
     return across > 1 and along > 1
 
 
-def test_the_still_images_load(visit: Visit) -> None:
+def test_the_still_images_load(visit):
     widths = visit.page.eval_on_selector_all("img.still", "nodes => nodes.map(n => n.naturalWidth)")
     assert widths == [1350] * visit.page.locator("figure").count()
     assert len(widths) >= len(PANELS)
 
 
-def test_nothing_is_complained_about(visit: Visit) -> None:
+def test_nothing_is_complained_about(visit):
     assert [line for line in visit.console if line.startswith("error")] == []
 
 
-def test_nothing_is_fetched_but_the_page(visit: Visit, report: Path) -> None:
+def test_nothing_is_fetched_but_the_page(visit, report):
     foreign = [url for url in visit.requests if not url.startswith(("data:", "blob:"))]
     assert foreign == [report.as_uri()]
 
 
 @pytest.mark.law
-def test_the_page_does_not_scroll_sideways_on_a_phone(browser: Browser, report: Path) -> None:
+def test_the_page_does_not_scroll_sideways_on_a_phone(browser, report):
     page = browser.new_page(viewport={"width": 390, "height": 800})
     page.goto(report.as_uri())
     page.wait_for_selector("html[data-drawn=yes]", timeout=PATIENCE)
@@ -154,7 +150,7 @@ def test_the_page_does_not_scroll_sideways_on_a_phone(browser: Browser, report: 
 
 
 @pytest.mark.parametrize("width", [390, pytest.param(700, marks=pytest.mark.nightly), 1280])
-def test_the_bar_of_buttons_hides_nothing(browser: Browser, report: Path, width: int) -> None:
+def test_the_bar_of_buttons_hides_nothing(browser, report, width):
     """Neither a legend nor the words above a plot; it is reached from the plot without a gap."""
     page = browser.new_page(viewport={"width": width, "height": 800})
     page.goto(report.as_uri())
@@ -174,7 +170,7 @@ def test_the_bar_of_buttons_hides_nothing(browser: Browser, report: Path, width:
         assert abs(bar["bottom"] - plot["top"]) < 4
 
 
-def test_the_numbers_open_by_keyboard(visit: Visit) -> None:
+def test_the_numbers_open_by_keyboard(visit):
     summary = visit.page.locator("#ste summary")
     table = visit.page.locator("#ste table")
     expect(table).to_be_hidden()
@@ -183,7 +179,7 @@ def test_the_numbers_open_by_keyboard(visit: Visit) -> None:
     expect(table).to_be_visible()
 
 
-def test_print_shows_pictures_with_one_title_and_what_was_opened(visit: Visit) -> None:
+def test_print_shows_pictures_with_one_title_and_what_was_opened(visit):
     page = visit.page
     page.locator("#ste details").evaluate("node => { node.open = true; }")
     page.emulate_media(media="print")
@@ -201,14 +197,14 @@ def test_print_shows_pictures_with_one_title_and_what_was_opened(visit: Visit) -
 
 
 @pytest.fixture(scope="module")
-def printed(browser: Browser, report: Path, tmp_path_factory: pytest.TempPathFactory) -> bytes:
+def printed(browser, report, tmp_path_factory):
     del browser  # skips where there is none
     folder = tmp_path_factory.mktemp("printed")
     files = [report.with_name(name) for name in ("ste.nc", "flanks.nc", "run.nc")]
     return write_report(files, folder / "report.pdf")[0].read_bytes()
 
 
-def test_a_pdf_has_few_pages_of_a4_and_no_empty_one(printed: bytes) -> None:
+def test_a_pdf_has_few_pages_of_a4_and_no_empty_one(printed):
     boxes = re.findall(rb"/MediaBox \[0 0 ([\d.]+) ([\d.]+)\]", printed)
     assert printed.startswith(b"%PDF-")
     assert len(printed) < 3_000_000
@@ -223,8 +219,8 @@ def test_a_pdf_has_few_pages_of_a4_and_no_empty_one(printed: bytes) -> None:
     [("/bin/false", "must be a page that false prints: CalledProcessError"), ("", "no browser is installed")],
 )
 def test_a_pdf_without_a_browser_is_refused_and_leaves_nothing(
-    browser_of_caller: str, bound: str, report: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    browser_of_caller, bound, report, tmp_path, monkeypatch
+):
     monkeypatch.setenv("CHROMIUM", browser_of_caller)
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(BadInput, match=bound):
@@ -233,7 +229,7 @@ def test_a_pdf_without_a_browser_is_refused_and_leaves_nothing(
 
 
 @pytest.mark.law
-def test_without_scripts_images_take_the_place_of_figures(browser: Browser, report: Path) -> None:
+def test_without_scripts_images_take_the_place_of_figures(browser, report):
     context = browser.new_context(java_script_enabled=False)
     page = context.new_page()
     page.goto(report.as_uri())

@@ -1,16 +1,13 @@
 """Sounds of the page and of reports: the cursor is where they are, a click seeks, two play in turn."""
 
-from __future__ import annotations
-
 import base64
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from types import ModuleType
 from urllib.parse import parse_qs, urlsplit
 
 import pytest
-from page_visit import PATIENCE, Visit, found_inaccessible, opened
+from page_visit import PATIENCE, found_inaccessible, opened
 from playwright.sync_api import Browser, Locator, Page, Route, expect
 from running_service import until
 
@@ -23,7 +20,7 @@ DURATION, TOP = 2.0, 900.0  # s, rpm of the run-up from standstill
 
 
 @pytest.fixture(scope="module")
-def folder(closed_forms: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def folder(closed_forms, tmp_path_factory):
     made = tmp_path_factory.mktemp("sound")
     run = closed_forms.run_up(duration=DURATION, top_rpm=TOP)
     run.to_netcdf(made / "loud.nc")
@@ -32,13 +29,13 @@ def folder(closed_forms: ModuleType, tmp_path_factory: pytest.TempPathFactory) -
 
 
 @pytest.fixture(scope="module")
-def order_map(browser: Browser, folder: Path) -> Iterator[Locator]:
+def order_map(browser, folder):
     write_report(folder / "loud.nc", folder / "report.html")
     yield from figure(browser, folder / "report.html", "#order_map")
 
 
 @pytest.fixture(scope="module")
-def levels(browser: Browser, folder: Path) -> Iterator[Locator]:
+def levels(browser, folder):
     write_page(compare([folder / "loud.nc", folder / "quiet.nc"], RunView()), folder / "comparison.html")
     yield from figure(browser, folder / "comparison.html", "#levels")
 
@@ -71,13 +68,12 @@ def times(of: Locator) -> list[float]:
 def clicked(of: Locator, part: float) -> float:
     """Click on a plot at a part of its width, between its curves; return the speed there by its axis."""
     box = of.locator(".nsewdrag").first.bounding_box()
-    assert box is not None
     of.page.mouse.click(box["x"] + part * box["width"], box["y"] + 0.6 * box["height"])
     low, high = of.locator(".plot").evaluate("node => node.layout.xaxis.range")
     return float(low + part * (high - low))
 
 
-def test_the_sound_lasts_as_long_as_the_run(order_map: Locator) -> None:
+def test_the_sound_lasts_as_long_as_the_run(order_map):
     players = order_map.locator("audio")
     expect(players).to_have_count(1)
     assert players.evaluate("one => one.duration") == pytest.approx(DURATION, abs=1e-3)
@@ -85,26 +81,24 @@ def test_the_sound_lasts_as_long_as_the_run(order_map: Locator) -> None:
     expect(order_map).to_contain_text("Full scale: 28 N")
 
 
-def test_the_cursor_is_at_the_speed_of_the_sound(order_map: Locator) -> None:
+def test_the_cursor_is_at_the_speed_of_the_sound(order_map):
     order_map.locator("audio").evaluate("one => { one.currentTime = 1.2; }")
     expect(order_map.locator("output")).to_have_text("540.0 rpm")  # TOP 1.2 / DURATION
     low, high = order_map.locator(".plot").evaluate("node => node.layout.xaxis.range")
     area, cursor = (order_map.locator(name).first.bounding_box() for name in (".nsewdrag", ".cursor"))
-    assert area is not None
-    assert cursor is not None
     expected = area["x"] + (540.0 - low) / (high - low) * area["width"]
     assert cursor["x"] + 1.0 == pytest.approx(expected, abs=1.5)
     assert cursor["height"] == pytest.approx(area["height"], abs=1.0)
 
 
-def test_a_click_on_the_map_seeks(order_map: Locator) -> None:
+def test_a_click_on_the_map_seeks(order_map):
     there = clicked(order_map, 0.75)
     order_map.page.wait_for_function("document.querySelector('#order_map audio').currentTime > 1.3")
     assert speed(order_map) == pytest.approx(there, rel=2e-3)
     assert times(order_map)[0] == pytest.approx(DURATION * there / TOP, rel=2e-3)
 
 
-def test_the_player_is_reached_by_the_keyboard(order_map: Locator) -> None:
+def test_the_player_is_reached_by_the_keyboard(order_map):
     order_map.locator("audio").focus()
     before = times(order_map)[0]
     order_map.page.keyboard.press("Home")
@@ -112,7 +106,7 @@ def test_the_player_is_reached_by_the_keyboard(order_map: Locator) -> None:
     assert before > 0.1
 
 
-def test_two_designs_are_heard_in_turn_at_the_same_speed(levels: Locator) -> None:
+def test_two_designs_are_heard_in_turn_at_the_same_speed(levels):
     players = levels.locator("audio")
     expect(players).to_have_count(2)
     there = clicked(levels, 0.5)
@@ -126,7 +120,7 @@ def test_two_designs_are_heard_in_turn_at_the_same_speed(levels: Locator) -> Non
     expect(players.nth(1)).to_be_hidden()
 
 
-def test_both_play_at_their_relative_level(levels: Locator) -> None:
+def test_both_play_at_their_relative_level(levels):
     """Decoded by the browser: the peaks are 1 and one half."""
     page: Page = levels.page
     peaks = page.evaluate(
@@ -139,7 +133,7 @@ def test_both_play_at_their_relative_level(levels: Locator) -> None:
     assert peaks == pytest.approx([1.0, 0.5], rel=1e-6)
 
 
-def test_without_scripts_the_sound_can_be_played(browser: Browser, folder: Path, order_map: Locator) -> None:
+def test_without_scripts_the_sound_can_be_played(browser, folder, order_map):
     context = browser.new_context(java_script_enabled=False)
     page = context.new_page()
     page.goto((folder / "report.html").as_uri())
@@ -179,7 +173,7 @@ class Runs:
 
 
 @pytest.fixture(scope="module")
-def runs(closed_forms: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Runs:
+def runs(closed_forms, tmp_path_factory):
     folder: Path = tmp_path_factory.mktemp("runs")
     run = closed_forms.run_up()
     run.to_netcdf(folder / "loud.nc")
@@ -188,7 +182,7 @@ def runs(closed_forms: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> 
 
 
 @pytest.fixture
-def heard(browser: Browser, address: str, runs: Runs) -> Iterator[Visit]:
+def heard(browser, address, runs):
     found = opened(browser, address)
     found.page.route("**/v1/results/*/figures*", runs.answer)
     found.page.route("**/v1/results/*/sound*", runs.answer)
@@ -196,7 +190,7 @@ def heard(browser: Browser, address: str, runs: Runs) -> Iterator[Visit]:
     found.page.close()
 
 
-def test_a_run_is_heard_under_its_order_map(heard: Visit) -> None:
+def test_a_run_is_heard_under_its_order_map(heard):
     page = heard.page
     page.evaluate(SHOW, [LOUD])
     order_map = page.locator("#shown [data-figure=order_map]")
@@ -216,7 +210,7 @@ def test_a_run_is_heard_under_its_order_map(heard: Visit) -> None:
     assert heard.complaints == []
 
 
-def test_two_runs_are_heard_in_turn(heard: Visit) -> None:
+def test_two_runs_are_heard_in_turn(heard):
     page = heard.page
     page.evaluate(SHOW, [LOUD, QUIET])
     levels = page.locator("#shown [data-figure=levels]")

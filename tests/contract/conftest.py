@@ -1,9 +1,5 @@
 """A service without results, which no test of a file gives a job; its fakes are importable here too."""
 
-from __future__ import annotations
-
-from collections.abc import Iterator
-
 import pytest
 from fastapi.testclient import TestClient
 from service_surroundings import quiet_log
@@ -15,7 +11,7 @@ __all__ = ["quiet_log"]
 
 
 @pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+def client(tmp_path_factory):
     with TestClient(create_app(Settings(data_directory=tmp_path_factory.mktemp("data")))) as found:
         yield found
         assert found.get("/v1/jobs").json()["jobs"] == []

@@ -1,17 +1,14 @@
 """A study is its folder, its presentation and a row: verb, process, client's method and page follow."""
 
-from __future__ import annotations
-
 import json
 import shutil
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 import structure
+from repository import ROOT
 
-ROOT = Path(__file__).parents[2]
 ROW = """
     made_up = StudyOf(
         _case(lambda: computations.MADE_UP),
@@ -90,7 +87,7 @@ print(json.dumps({
 
 
 @pytest.fixture(scope="module")
-def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def tree(tmp_path_factory):
     """Return a tree with a study more."""
     folder = tmp_path_factory.mktemp("tree")
     for name in {house.partition(".")[0] for house in structure.HOUSES} - {"lineofaction"}:
@@ -113,7 +110,7 @@ BEFORE = "\n\nflank = Studies.flank.function\n"
 """Line of the registry after its last row."""
 
 
-def test_verb_process_method_and_page_follow_from_a_row(tree: Path) -> None:
+def test_verb_process_method_and_page_follow_from_a_row(tree):
     done = subprocess.run(
         [sys.executable, "-P", "-c", FOUND, str(tree / "data")],
         cwd=tree, capture_output=True, text=True, check=False, timeout=300,

@@ -1,7 +1,5 @@
 """Wrong cases and scenes that cannot move: one clear error at every entry point, and nothing runs on."""
 
-from __future__ import annotations
-
 import json
 import os
 import re
@@ -41,13 +39,13 @@ def answered(bad: Bad, client: TestClient) -> Any:
     return client.post(f"/v1/processes/{bad.process}/execution", content=body, headers=headers)
 
 
-def test_there_are_at_least_thirty() -> None:
+def test_there_are_at_least_thirty():
     assert len(BAD_INPUTS) >= 30
     assert len({bad.name for bad in (*BAD_INPUTS, *BAD_FILES)}) == len(BAD_INPUTS) + len(BAD_FILES)
 
 
 @names((*BAD_INPUTS, *BAD_SCENES))
-def test_python(bad: Bad) -> None:
+def test_python(bad):
     before = children()
     with pytest.raises((InputError, DynamicsInputError)) as caught:
         bad.python()
@@ -59,9 +57,7 @@ def test_python(bad: Bad) -> None:
 
 
 @names((*BAD_INPUTS, *BAD_FILES, *BAD_SCENES))
-def test_command_line_and_http_say_the_same(
-    bad: Bad, client: TestClient, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_command_line_and_http_say_the_same(bad, client, tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     before, file, output = children(), tmp_path / "input.toml", tmp_path / "output.nc"
     file.write_text(toml_text(bad.table()))
@@ -82,7 +78,7 @@ def test_command_line_and_http_say_the_same(
     assert children() == before
 
 
-def test_the_value_shown_is_the_value_given(client: TestClient) -> None:
+def test_the_value_shown_is_the_value_given(client):
     for bad in BAD_INPUTS:
         if len(bad.changes) == 1 and bad.field in bad.changes:
             value = bad.changes[bad.field]
@@ -98,14 +94,14 @@ def test_the_value_shown_is_the_value_given(client: TestClient) -> None:
         ("face width infinite", "a finite number"),
     ],
 )
-def test_bounds_are_words_in_the_units_of_the_field(name: str, words: str, client: TestClient) -> None:
+def test_bounds_are_words_in_the_units_of_the_field(name, words, client):
     (bad,) = [case for case in BAD_INPUTS if case.name == name]
     (fault,) = answered(bad, client).json()["errors"]
     assert words in fault["bound"]
     assert fault["bound"].startswith(words) or fault["value"] == 95.0
 
 
-def test_what_is_right_is_not_refused() -> None:
+def test_what_is_right_is_not_refused():
     case = BadInput("good", lambda: None, "").table()
     assert check_case(validated(Case, case)).pinion.teeth == 20
     scene = validated(SceneInput, good_scene())

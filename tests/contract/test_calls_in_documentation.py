@@ -1,7 +1,5 @@
 """Documentation: what it shows in Python can be called so, and its pages are readable as text too."""
 
-from __future__ import annotations
-
 import ast
 import inspect
 import re
@@ -11,12 +9,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from repository import ROOT
 
 import lineofaction as loa
 from fe_contact import analyze
 from fe_contact.keywords import TableKeywords
 
-ROOT = Path(__file__).parents[2]
 PAGES = sorted(
     page
     for page in (ROOT / "README.md", *(ROOT / "docs").rglob("*.md"))
@@ -48,7 +46,7 @@ def imported(example: ast.Module) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_every_call_fits_its_signature(page: Path) -> None:
+def test_every_call_fits_its_signature(page):
     for example in examples(page):
         names = imported(example)
         for call in (node for node in ast.walk(example) if isinstance(node, ast.Call)):
@@ -60,7 +58,7 @@ def test_every_call_fits_its_signature(page: Path) -> None:
                     assert keywords.keys() <= known
 
 
-def test_pages_with_examples_are_found() -> None:
+def test_pages_with_examples_are_found():
     assert {"README.md", "flank-results.md", "studies.md", "accuracy.md"} <= {page.name for page in PAGES}
 
 
@@ -69,7 +67,7 @@ LINE, CELL = 120, 240
 
 
 @pytest.mark.parametrize("page", ALL_PAGES, ids=lambda page: str(page.relative_to(ROOT)))
-def test_lines_and_cells_are_short(page: Path) -> None:
+def test_lines_and_cells_are_short(page):
     lines = page.read_text("utf-8").splitlines()
     rows = [line for line in lines if line.startswith("|")]
     assert [line for line in lines if len(line) > LINE and line not in rows] == []
@@ -82,7 +80,7 @@ SITE = [
 
 
 @pytest.mark.parametrize("page", SITE, ids=lambda page: str(page.relative_to(ROOT)))
-def test_a_formula_is_closed_in_its_item(page: Path) -> None:
+def test_a_formula_is_closed_in_its_item(page):
     """A line that begins with a minus inside a formula is an item of a list to Markdown."""
     prose = re.sub(
         r"^```.*?^```|\$\$.*?\$\$|`[^`\n]*`|^    .*?$", "", page.read_text("utf-8"), flags=re.M | re.S
@@ -91,5 +89,5 @@ def test_a_formula_is_closed_in_its_item(page: Path) -> None:
     assert [item for item in items if item.count("$") % 2] == []
 
 
-def test_pages_are_found() -> None:
+def test_pages_are_found():
     assert len(ALL_PAGES) > 80

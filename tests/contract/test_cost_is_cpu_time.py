@@ -1,7 +1,5 @@
 """Every cost of a receipt is CPU time, children included; elapsed time stands under `wall_seconds`."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 import time
@@ -14,9 +12,7 @@ import structure
 from geared_scenes import gear_pair_scene
 
 from bounds.types import Json
-from dynamics.results import RunResult
-from dynamics.scene import Integration, Scene
-from dynamics.simulation import simulate, simulate_to_file
+from dynamics import Integration, RunResult, Scene, simulate, simulate_to_file
 from dynamics.types import RunStatus
 from model_studies.stage_clock import StageClock
 
@@ -66,7 +62,7 @@ WAYS = pytest.mark.parametrize("run", [_in_memory, _to_file, _resumed])
 
 @pytest.mark.law
 @WAYS
-def test_a_run_that_stalls_costs_no_more_and_lasts_longer(run: Runs, tmp_path: Path) -> None:
+def test_a_run_that_stalls_costs_no_more_and_lasts_longer(run, tmp_path):
     stalls = _Counted(lambda: time.sleep(STALL_S), 50)
     receipt = run(SCENE, tmp_path / "run.nc", stalls)
     cost, elapsed = receipt["seconds"], receipt["wall_seconds"]
@@ -77,13 +73,13 @@ def test_a_run_that_stalls_costs_no_more_and_lasts_longer(run: Runs, tmp_path: P
 
 
 @WAYS
-def test_what_a_child_does_costs(run: Runs, tmp_path: Path) -> None:
+def test_what_a_child_does_costs(run, tmp_path):
     receipt = run(SCENE, tmp_path / "run.nc", _Counted(_burn, 1))
     assert receipt["seconds"]["integration"] >= BURNT_S
 
 
 @pytest.mark.parametrize("run", [_in_memory, _to_file])
-def test_the_finer_run_that_measures_the_error_is_a_part_of_the_cost(run: Runs, tmp_path: Path) -> None:
+def test_the_finer_run_that_measures_the_error_is_a_part_of_the_cost(run, tmp_path):
     stalls = _Counted(lambda: time.sleep(STALL_S), 1000)
     receipt = run(FINER, tmp_path / "run.nc", stalls)
     cost, elapsed = receipt["seconds"]["error_estimate"], receipt["wall_seconds"]["error_estimate"]
@@ -92,7 +88,7 @@ def test_the_finer_run_that_measures_the_error_is_a_part_of_the_cost(run: Runs, 
     assert cost <= elapsed - 0.4 * stalls.calls * STALL_S
 
 
-def test_stages_of_a_table_count_alike() -> None:
+def test_stages_of_a_table_count_alike():
     clock = StageClock()
     with clock.stage("stalled"):
         time.sleep(10 * STALL_S)
@@ -103,7 +99,7 @@ def test_stages_of_a_table_count_alike() -> None:
     assert stages["child"]["cpu_seconds"] >= BURNT_S
 
 
-def test_libraries_read_no_other_clock() -> None:
+def test_libraries_read_no_other_clock():
     clocks = ("perf_counter", "process_time", "thread_time")
     houses = ("fe_contact", "dynamics", "lineofaction/gearbox", "lineofaction/report")
     files = [file for house in houses for file in structure.files_of(house)]

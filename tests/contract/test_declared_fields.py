@@ -1,7 +1,5 @@
 """A declared figure is at every entry point: case, question, design variable, scatter, names in messages."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import fields, replace
 from typing import Any
@@ -45,14 +43,14 @@ def as_written(facts: dict[str, Any]) -> dict[str, Any]:
     return {each.field: each.boundary_value(facts[each.name]) for each in FIGURES if each.name in facts}
 
 
-def test_all_but_the_grid_are_declared_numbers_or_names() -> None:
+def test_all_but_the_grid_are_declared_numbers_or_names():
     assert {entry.name for entry in fields(FlankModification)} - {figure.name for figure in FIGURES} == {
         "flank_grid"
     }
 
 
 @EVERY
-def test_a_case_and_the_library_mean_the_same(figure: Figure) -> None:
+def test_a_case_and_the_library_mean_the_same(figure):
     facts = with_length(figure)
     table = json.loads(json.dumps(CASE))
     table["pair"] |= {"helix_angle_deg": 10.0, "center_distance_mm": 81.5}
@@ -66,10 +64,10 @@ def test_a_case_and_the_library_mean_the_same(figure: Figure) -> None:
     assert figure.boundary_value(figure.default) == getattr(case.pair.wheel, figure.field)
 
 
-LATER = [figure for figure in FIGURES if figure.what.later]
+LATER = [figure for figure in FIGURES if figure.what.omit_default]
 
 
-def test_a_case_is_written_without_later_figures_that_it_does_not_use() -> None:
+def test_a_case_is_written_without_later_figures_that_it_does_not_use():
     """So it keeps the address of its result."""
     table = json.loads(json.dumps(CASE))
     plain = Case.model_validate_json(json.dumps(table)).model_dump(mode="json")["pair"]["pinion"]
@@ -81,7 +79,7 @@ def test_a_case_is_written_without_later_figures_that_it_does_not_use() -> None:
 
 
 @pytest.mark.parametrize("figure", [each for each in LATER if each.what.kind is not Kind.SHAPE])
-def test_a_case_is_written_with_the_later_figures_that_it_uses(figure: Figure) -> None:
+def test_a_case_is_written_with_the_later_figures_that_it_uses(figure):
     facts = with_length(figure)
     table = json.loads(json.dumps(CASE))
     table["pair"]["pinion"] |= as_written(facts)
@@ -91,7 +89,7 @@ def test_a_case_is_written_with_the_later_figures_that_it_uses(figure: Figure) -
 
 
 @EVERY
-def test_the_schema_has_the_bound_of_the_library(figure: Figure) -> None:
+def test_the_schema_has_the_bound_of_the_library(figure):
     schema = Case.model_json_schema()["$defs"]["GearInput"]["properties"][figure.field]
     if figure.what.kind is Kind.SHAPE:
         assert tuple(schema["enum"]) == figure.what.bound.names
@@ -106,7 +104,7 @@ def test_the_schema_has_the_bound_of_the_library(figure: Figure) -> None:
 
 
 @EVERY
-def test_it_can_be_changed_live_and_is_told_by_its_own_name(figure: Figure) -> None:
+def test_it_can_be_changed_live_and_is_told_by_its_own_name(figure):
     change = as_written(with_length(figure))
     question = LiveInput.model_validate_json(json.dumps({"torque_n_m": [1.0], "pinion": change}))
     assert question.pinion.model_dump(exclude_none=True) == change
@@ -124,7 +122,7 @@ BODIES = {
 
 
 @pytest.mark.parametrize("kind", BODIES, ids=lambda kind: kind.__name__)
-def test_a_body_of_a_case_means_that_of_the_library(kind: type[Any]) -> None:
+def test_a_body_of_a_case_means_that_of_the_library(kind):
     place, facts = BODIES[kind]
     table = json.loads(json.dumps(CASE))
     at = table
@@ -146,7 +144,7 @@ def test_a_body_of_a_case_means_that_of_the_library(kind: type[Any]) -> None:
     [(kind, each) for kind in BODIES for each in figures(kind)],
     ids=lambda one: getattr(one, "name", None) or one.__name__,
 )
-def test_a_body_is_refused_beyond_its_bound_by_case_and_library(kind: type[Any], figure: Figure) -> None:
+def test_a_body_is_refused_beyond_its_bound_by_case_and_library(kind, figure):
     place, facts = BODIES[kind]
     beyond = 1.01 * figure.what.bound.le
     with pytest.raises(InputError) as caught:
@@ -185,7 +183,7 @@ def case_of(kind: type[Any]) -> tuple[dict[str, Any], str]:
 
 
 @OF_GEARS
-def test_a_gear_of_a_case_means_that_of_the_library(kind: type[Any], figure: Figure) -> None:
+def test_a_gear_of_a_case_means_that_of_the_library(kind, figure):
     table, gear = case_of(kind)
     read = Case.model_validate_json(json.dumps(table)).pair
     value = getattr(getattr(gear_pair(Case.model_validate_json(json.dumps(table))), gear), figure.name)
@@ -197,7 +195,7 @@ def test_a_gear_of_a_case_means_that_of_the_library(kind: type[Any], figure: Fig
 
 
 @OF_GEARS
-def test_a_gear_is_refused_beyond_its_bound_by_case_and_library(kind: type[Any], figure: Figure) -> None:
+def test_a_gear_is_refused_beyond_its_bound_by_case_and_library(kind, figure):
     choice = figure.what.kind is Kind.CHOICE
     beyond = "no such name" if choice else type(figure.what.example)(2 * figure.what.bound.le)
     with pytest.raises(InputError) as caught:
@@ -215,7 +213,7 @@ def test_a_gear_is_refused_beyond_its_bound_by_case_and_library(kind: type[Any],
 
 
 @pytest.mark.parametrize(("kind", "teeth"), [(Gear, 4), (Gear, 2000), (RingGear, 12), (RingGear, 4000)])
-def test_a_case_takes_as_few_and_as_many_teeth_as_the_library(kind: type[Any], teeth: int) -> None:
+def test_a_case_takes_as_few_and_as_many_teeth_as_the_library(kind, teeth):
     table, gear = case_of(kind)
     table["pair"][gear]["teeth"] = teeth
     Case.model_validate_json(json.dumps(table))
@@ -225,7 +223,7 @@ def test_a_case_takes_as_few_and_as_many_teeth_as_the_library(kind: type[Any], t
         assert error.field != "teeth"
 
 
-def test_a_pair_is_refused_beyond_its_largest_center_distance_by_case_and_library() -> None:
+def test_a_pair_is_refused_beyond_its_largest_center_distance_by_case_and_library():
     (figure,) = figures(GearPair)
     with pytest.raises(InputError) as caught:
         GearPair(GEARS[Gear], GEARS[Gear], 2 * figure.what.bound.le)
@@ -237,7 +235,7 @@ def test_a_pair_is_refused_beyond_its_largest_center_distance_by_case_and_librar
     assert "pair.center_distance_mm" in str(refused.value)
 
 
-def test_design_variables_and_scatter_are_depths_and_lengths() -> None:
+def test_design_variables_and_scatter_are_depths_and_lengths():
     free = [each.field for each in FIGURES if each.name in QUANTITIES]
     assert list(GearVariablesInput.model_fields) == list(GearScatterInput.model_fields) == free
     kinds = {each.what.kind for each in FIGURES if each.name in QUANTITIES}
@@ -260,14 +258,14 @@ def pair_with(figure: Figure, scale: float = 1.0) -> GearPair:
 
 
 @DEPTHS
-def test_a_depth_too_small_to_be_made_is_implausible(figure: Figure) -> None:
+def test_a_depth_too_small_to_be_made_is_implausible(figure):
     assert not pair_findings(pair_with(figure))
     found = [finding.field for finding in pair_findings(pair_with(figure, 1e-3))]
     assert found == [f"pinion.{figure.name}"]
 
 
 @DEPTHS
-def test_a_plane_refuses_what_acts_across_the_face(figure: Figure) -> None:
+def test_a_plane_refuses_what_acts_across_the_face(figure):
     if Direction.FACE not in figure.what.along or figure.name in CORNERS:
         return
     with pytest.raises(InputError) as caught:

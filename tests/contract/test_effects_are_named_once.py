@@ -1,7 +1,5 @@
 """Effects are named once; what is neglected or off is said wherever there is a place for it."""
 
-from __future__ import annotations
-
 import ast
 import inspect
 import re
@@ -12,21 +10,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene, spring_table, with_gear, with_mesh
+from repository import ROOT
 
+from dynamics import CoastFlank, Scene, TimeLaw, simulate
 from dynamics.assembly import assemble
 from dynamics.effects import EFFECTS as OF_DYNAMICS
 from dynamics.influence import decide_effects, estimate_influences
-from dynamics.loads import TimeLaw
-from dynamics.meshes import CoastFlank
-from dynamics.scene import Scene
-from dynamics.simulation import simulate
 from fe_contact import FlankModification, Gear, GearPair, PitchDeviation, Shaft, SteDatabase, analyze
 from fe_contact.analysis.request import request
 from fe_contact.contact import ContactModel
 from fe_contact.effects import EFFECTS as OF_CONTACT
 from fe_contact.types import Json
 
-ROOT = Path(__file__).parents[2]
 PRODUCT = ("dynamics", "fe_contact", "model_studies", "lineofaction", "service")
 EXAMPLES = (
     "lineofaction/hardcases/",
@@ -112,7 +107,7 @@ def all_named() -> list[tuple[str, int, str]]:
 
 
 @pytest.mark.law
-def test_no_effect_is_named_outside_its_file_and_the_registry() -> None:
+def test_no_effect_is_named_outside_its_file_and_the_registry():
     places = all_named()
     assert [place for place in places if (place[0], place[2]) not in REMAINS] == []
     assert {(path, name) for path, _, name in places} == set(REMAINS)
@@ -129,19 +124,19 @@ def test_no_effect_is_named_outside_its_file_and_the_registry() -> None:
         "from dynamics.effects.gyroscopic import Gyroscopic",
     ],
 )
-def test_each_way_to_name_an_effect_is_seen(line: str) -> None:
+def test_each_way_to_name_an_effect_is_seen(line):
     names = {effect.name for effect in OF_DYNAMICS}
     assert list(named_in(line, names, {"Gyroscopic"}))
 
 
-def test_what_effects_of_the_contact_bring_is_brought_once() -> None:
+def test_what_effects_of_the_contact_bring_is_brought_once():
     brought = [effect.brings for effect in OF_CONTACT if effect.brings]
     assert len(set(brought)) == len(brought)
     switches = {"across_face", "corner_contact", "finite_width"}
     assert switches <= set(brought) & set(vars(ContactModel()))
 
 
-def test_what_effects_of_dynamics_add_is_added_once() -> None:
+def test_what_effects_of_dynamics_add_is_added_once():
     added = [addition for effect in OF_DYNAMICS for addition in effect.adds]
     assert len(set(added)) == len(added)
 
@@ -163,7 +158,7 @@ SCENES: dict[str, tuple[GearPair, Json]] = {
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 
@@ -183,9 +178,7 @@ def arrays(found: SteDatabase) -> Iterator[tuple[str, np.ndarray]]:
 @pytest.mark.law
 @pytest.mark.parametrize("scene", list(SCENES))
 @pytest.mark.parametrize("name", [effect.name for effect in OF_CONTACT])
-def test_a_table_with_an_effect_off_is_that_of_a_build_without_it(
-    scene: str, name: str, cache: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_table_with_an_effect_off_is_that_of_a_build_without_it(scene, name, cache, monkeypatch):
     if scene == "face" and name == "face_load_distribution":
         pytest.skip("no plane holds what acts across the face")
     off = table(scene, cache, {name: "off"})
@@ -200,7 +193,7 @@ def test_a_table_with_an_effect_off_is_that_of_a_build_without_it(
     assert compared > 100
 
 
-def test_the_registry_goes_with_the_request() -> None:
+def test_the_registry_goes_with_the_request():
     """A module that reads the registry by itself would escape the test above."""
     folder = Path(request.__file__).parent
     reading = {file.stem for file in folder.rglob("*.py") if "EFFECTS" in file.read_text()}
@@ -225,9 +218,7 @@ def everything() -> Scene:
 @pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize("name", [effect.name for effect in OF_DYNAMICS])
-def test_a_run_with_an_effect_off_is_that_of_a_build_without_it(
-    name: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_run_with_an_effect_off_is_that_of_a_build_without_it(name, monkeypatch):
     scene = everything()
     off = simulate(replace(scene, effects={name: "off"}))
     remaining = tuple(effect for effect in OF_DYNAMICS if effect.name != name)
@@ -246,9 +237,7 @@ def test_a_run_with_an_effect_off_is_that_of_a_build_without_it(
     assert off.statistics == without.statistics
 
 
-def test_a_run_with_an_effect_neglected_for_a_tolerance_is_that_of_a_build_without_it(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_run_with_an_effect_neglected_for_a_tolerance_is_that_of_a_build_without_it(monkeypatch):
     whole = everything()
     scene = replace(whole, drives=(replace(whole.drives[0], speed=TimeLaw.constant(40.0 * RPM)),))
     decision = decide_effects(replace(scene, tolerance=0.05))
@@ -265,7 +254,7 @@ def test_a_run_with_an_effect_neglected_for_a_tolerance_is_that_of_a_build_witho
     assert off.statistics == without.statistics
 
 
-def test_the_scene_has_most_effects_on() -> None:
+def test_the_scene_has_most_effects_on():
     entries = simulate(everything()).effect_ledger["entries"]
     on = {entry["effect"] for entry in entries if entry["on"]}
     assert on >= {"lateral", "axial", "tilt", "gyroscopic", "backlash"}

@@ -1,14 +1,11 @@
 """Every module imports, and the library computes, where the modules that POSIX alone has are missing."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
+from repository import ROOT
 
-ROOT = Path(__file__).parents[2]
 BLOCKED = f"""
 import importlib, pkgutil, sys, types
 sys.path.insert(0, {str(ROOT)!r})
@@ -43,7 +40,7 @@ def _run(code: str) -> str:
 
 
 @pytest.mark.law
-def test_every_module_imports_without_the_modules_of_posix() -> None:
+def test_every_module_imports_without_the_modules_of_posix():
     """What others import of them is loaded before: asyncio needs fcntl on POSIX, and not on Windows."""
     code = """
 before = set(import_all())
@@ -55,7 +52,7 @@ print(*before - set(import_all(but=("host.posix",))))
 
 
 @pytest.mark.nightly
-def test_without_them_a_pair_is_computed_to_the_same_last_bit() -> None:
+def test_without_them_a_pair_is_computed_to_the_same_last_bit():
     code = """
 import numpy as np
 from fe_contact import Gear, GearPair, analyze

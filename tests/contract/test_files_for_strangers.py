@@ -1,21 +1,18 @@
 """What somebody who finds the project looks for: how to cite, report, change and decide."""
 
-from __future__ import annotations
-
 import json
 import re
 import tomllib
-from pathlib import Path
 
 import pytest
 import yaml
+from repository import ROOT
 
-ROOT = Path(__file__).parents[2]
 GITHUB = ROOT / ".github"
 TEXTS = sorted([*GITHUB.rglob("*.md"), ROOT / "CONTRIBUTING.md", ROOT / "README.md"])
 
 
-def test_the_citation_names_the_license_of_the_package() -> None:
+def test_the_citation_names_the_license_of_the_package():
     cited = yaml.safe_load((ROOT / "CITATION.cff").read_text("utf-8"))
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     assert cited["cff-version"] == "1.2.0"
@@ -25,13 +22,13 @@ def test_the_citation_names_the_license_of_the_package() -> None:
 
 
 @pytest.mark.parametrize("text", TEXTS, ids=lambda file: file.name)
-def test_links_lead_somewhere(text: Path) -> None:
+def test_links_lead_somewhere(text):
     links = re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", text.read_text("utf-8"))
     missing = [link for link in links if ":" not in link and not (text.parent / link).exists()]
     assert missing == []
 
 
-def test_changes_of_forks_run_what_every_change_must_pass() -> None:
+def test_changes_of_forks_run_what_every_change_must_pass():
     (job,) = yaml.safe_load((GITHUB / "workflows" / "check.yml").read_text("utf-8"))["jobs"].values()
     assert job["steps"][-1]["run"] == "bash .ci/run"
     container = json.loads((ROOT / ".devcontainer" / "devcontainer.json").read_text("utf-8"))
@@ -39,7 +36,7 @@ def test_changes_of_forks_run_what_every_change_must_pass() -> None:
     assert (ROOT / script).exists()
 
 
-def test_a_template_asks_what_an_answer_needs() -> None:
+def test_a_template_asks_what_an_answer_needs():
     wrong = (GITHUB / "ISSUE_TEMPLATE" / "wrong-number.md").read_text("utf-8")
     assert "source, unit and condition" in wrong and "the error that the program states" in wrong
     for template in (GITHUB / "ISSUE_TEMPLATE").iterdir():
@@ -47,7 +44,7 @@ def test_a_template_asks_what_an_answer_needs() -> None:
         assert set(head) == {"name", "about", "labels"}
 
 
-def test_sources_of_the_paper_are_listed_and_used() -> None:
+def test_sources_of_the_paper_are_listed_and_used():
     paper = (ROOT / "docs" / "paper" / "paper.md").read_text("utf-8")
     listed = re.findall(r"^@\w+\{(\w+),", (ROOT / "docs" / "paper" / "paper.bib").read_text("utf-8"), re.M)
     assert set(re.findall(r"@(\w+)\b", paper.partition("# Summary")[2])) == set(listed)

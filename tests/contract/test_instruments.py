@@ -1,7 +1,5 @@
 """An instrument can be deleted: only rows name it from outside, and the tree without it works."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 import sys
@@ -12,8 +10,8 @@ import instruments
 import links
 import pytest
 import structure
+from repository import ROOT
 
-ROOT = Path(__file__).parents[2]
 NAMES = sorted(instruments.instruments())
 WORK = f"""
 import importlib, pkgutil, sys
@@ -43,7 +41,7 @@ def inside(name: str) -> AbstractSet[str]:
 
 @pytest.mark.law
 @pytest.mark.parametrize("name", NAMES)
-def test_only_rows_name_an_instrument_from_outside(name: str) -> None:
+def test_only_rows_name_an_instrument_from_outside(name):
     modules, importers = inside(name), instruments.modules().importers()
     assert modules
     outside = {(one, module) for module in modules for one in importers.get(module, ())}
@@ -55,7 +53,7 @@ def test_only_rows_name_an_instrument_from_outside(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_what_an_instrument_alone_uses_goes_with_it(name: str) -> None:
+def test_what_an_instrument_alone_uses_goes_with_it(name):
     modules, importers = inside(name), instruments.modules().importers()
     used = {
         module: {one for one in importers.get(module, ()) if not instruments.is_row(one)}
@@ -66,7 +64,7 @@ def test_what_an_instrument_alone_uses_goes_with_it(name: str) -> None:
     assert alone <= modules
 
 
-def test_paths_exist_and_belong_to_one_instrument() -> None:
+def test_paths_exist_and_belong_to_one_instrument():
     rows = instruments.instruments().values()
     paths = [path for one in rows for path in one.paths]
     assert len(paths) == len(set(paths))
@@ -74,7 +72,7 @@ def test_paths_exist_and_belong_to_one_instrument() -> None:
     assert [path for path in paths if not (ROOT / path).exists()] == []
 
 
-def test_links_to_a_page_that_goes_leave_their_text_or_their_entry(tmp_path: Path) -> None:
+def test_links_to_a_page_that_goes_leave_their_text_or_their_entry(tmp_path):
     (tmp_path / "docs").mkdir()
     page = tmp_path / "docs" / "page.md"
     page.write_text(
@@ -89,7 +87,7 @@ def test_links_to_a_page_that_goes_leave_their_text_or_their_entry(tmp_path: Pat
     assert links.dangling_links(tmp_path) == []
 
 
-def test_scripts_of_the_page_lose_the_rows_of_those_that_went(tmp_path: Path) -> None:
+def test_scripts_of_the_page_lose_the_rows_of_those_that_went(tmp_path):
     script = tmp_path / "rows.js"
     script.write_text('import { gone, more } from "./gone.js";\nconst ROWS = [\n  gone,\n  left,\n];\n')
     links.without_scripts(tmp_path, {"gone.js"})
@@ -130,7 +128,7 @@ def check_work_without(name: str, folder: Path) -> None:
 
 
 @pytest.mark.law
-def test_the_tree_without_an_instrument_works(tmp_path: Path) -> None:
+def test_the_tree_without_an_instrument_works(tmp_path):
     """The one whose number the files of the tree draw: another with every change."""
     drawn = sum(file.stat().st_size for house in structure.HOUSES for file in structure.files_of(house))
     check_work_without(NAMES[drawn % len(NAMES)], tmp_path)
@@ -138,5 +136,5 @@ def test_the_tree_without_an_instrument_works(tmp_path: Path) -> None:
 
 @pytest.mark.nightly
 @pytest.mark.parametrize("name", NAMES)
-def test_the_tree_without_any_instrument_works(name: str, tmp_path: Path) -> None:
+def test_the_tree_without_any_instrument_works(name, tmp_path):
     check_work_without(name, tmp_path)

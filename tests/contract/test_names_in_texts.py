@@ -4,8 +4,6 @@ A text is not followed by a rename as an import is, nor seen by the checker of t
 answers 500.
 """
 
-from __future__ import annotations
-
 import ast
 import re
 from collections.abc import Iterator
@@ -13,11 +11,11 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from repository import ROOT
 
 from lineofaction.cli.commands import FAMILIES
 from lineofaction.cli.verbs import Later
 
-ROOT = Path(__file__).parents[2]
 PACKAGES = (
     "bounds",
     "dynamics",
@@ -89,7 +87,7 @@ def texts() -> Iterator[Path]:
 
 
 @pytest.mark.law
-def test_what_texts_name_is_there() -> None:
+def test_what_texts_name_is_there():
     files = {file: file.read_text("utf-8") for file in texts()}
     assert sum(bool(NAME.search(content)) for content in files.values()) > 50
     found = {str(file.relative_to(ROOT)): list(stale(content)) for file, content in files.items()}
@@ -108,11 +106,11 @@ def test_what_texts_name_is_there() -> None:
         'loa = "lineofaction.cli:run"',
     ],
 )
-def test_a_name_that_is_gone_is_found(text: str) -> None:
+def test_a_name_that_is_gone_is_found(text):
     assert len(list(stale(text))) == 1
 
 
-def test_modules_that_verbs_load_later_are_those_that_the_types_name() -> None:
+def test_modules_that_verbs_load_later_are_those_that_the_types_name():
     """A verb of `loa` would end with a traceback; the checker of types reads the imports beside the texts."""
     for family in FAMILIES:
         tree = ast.parse(Path(str(family.__file__)).read_bytes())

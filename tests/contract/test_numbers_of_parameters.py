@@ -1,7 +1,5 @@
 """Callers pass few parameters, and no module imports itself through others."""
 
-from __future__ import annotations
-
 import ast
 import re
 from collections.abc import Collection, Iterator
@@ -9,8 +7,8 @@ from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
+from repository import ROOT
 
-ROOT = Path(__file__).parents[2]
 MAX, MAX_EXPORTED = 10, 8
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
@@ -37,7 +35,7 @@ def exported(package: Path) -> set[str]:
 @pytest.mark.parametrize(
     "package", ["host", "bounds", "model_studies", "fe_contact", "dynamics", "verification"]
 )
-def test_no_function_takes_many_parameters(package: str) -> None:
+def test_no_function_takes_many_parameters(package):
     public = exported(ROOT / package)
     found = {
         f"{file.relative_to(ROOT)}: {one.name}": parameters(one)
@@ -48,7 +46,7 @@ def test_no_function_takes_many_parameters(package: str) -> None:
     assert found == {}
 
 
-def test_self_is_no_parameter_and_a_splat_is_one() -> None:
+def test_self_is_no_parameter_and_a_splat_is_one():
     text = "def one(self, a, /, b, *c, d=0, **e): ...\ndef other(a, *, self): ..."
     assert [parameters(one) for one in ast.parse(text).body if isinstance(one, Function)] == [5, 2]
 
@@ -88,7 +86,7 @@ def above_definitions(text: str) -> str:
 
 
 @pytest.mark.law
-def test_imports_have_no_cycle() -> None:
+def test_imports_have_no_cycle():
     paths = {module_name(path): path for kind in PACKAGES for path in (ROOT / kind).rglob("*.py")}
     assert len(paths) > 700  # all of them were looked at
     trees = ((name, ast.parse(above_definitions(path.read_text()))) for name, path in paths.items())

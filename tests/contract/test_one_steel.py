@@ -3,8 +3,7 @@
 import pytest
 
 from dynamics.shafts import BeamSection
-from fe_contact import STEEL
-from fe_contact.shaft import Shaft
+from fe_contact import STEEL, Shaft
 from lineofaction.gearbox.schemas.gear import MaterialInput
 from lineofaction.gearbox.schemas.shafts import SectionInput
 

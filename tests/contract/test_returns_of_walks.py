@@ -5,15 +5,11 @@ the callee is entered although it waits further up the stack: whoever reads the 
 dataclasses generate does not count: there is nothing to read.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 from types import FrameType
-from typing import Any
 
 import pytest
 import structure
@@ -46,7 +42,7 @@ def returns(work: Callable[[], object]) -> set[Return]:
     found: set[Return] = set()
     stack: list[tuple[str, FrameType]] = []
 
-    def note(frame: FrameType, event: str, _argument: object) -> None:
+    def note(frame, event, _argument):
         if event == "call":
             package = _package(frame)
             if package is None:
@@ -75,13 +71,13 @@ def _package(frame: FrameType) -> str | None:
 
 
 @pytest.mark.law
-def test_from_a_bearing_force_to_decibels() -> None:
+def test_from_a_bearing_force_to_decibels():
     surface = SurfaceHousing("case", housing(), tuple(seat.name for seat in housing().seats))
     force, part = response(), part_of_scene(housing())
     scene = replace(gear_pair_scene(square_wave_table(), effects=ON), housings=(part,))
     model = SoundModel(scene, {part.name: housing()}, {part.name: radiation()})
 
-    def heard() -> None:
+    def heard():
         scene_sound(force, [surface], Radiation(boundary_elements=False))
         sound_band(model, SPEEDS, 2, {"housing_damping": USUAL_RANGES["housing_damping"]}, cases=1)
 
@@ -94,7 +90,7 @@ def test_from_a_bearing_force_to_decibels() -> None:
 
 
 @pytest.mark.law
-def test_from_a_relief_to_its_curves(tmp_path: Path) -> None:
+def test_from_a_relief_to_its_curves(tmp_path):
     case = Case.model_validate_json(json.dumps(CASE))
     table = analyze(
         gear_pair(case),
@@ -109,7 +105,7 @@ def test_from_a_relief_to_its_curves(tmp_path: Path) -> None:
     echoed = json.loads(json.dumps(case_json(case)))
     replace(table, metadata=replace(table.metadata, case=echoed)).to_netcdf(file)
 
-    def asked(relief: float) -> dict[str, Any]:
+    def asked(relief):
         pinion = {"tip_relief_um": relief, "tip_relief_length_mm": 0.3}
         question = {"torque_n_m": [2.0], "pinion": pinion}
         return live_ste({"file": str(file), "cache": str(tmp_path), "key": "table", "question": question})

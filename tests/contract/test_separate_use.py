@@ -1,14 +1,11 @@
 """The reader of REXS, rolling bearings and the compliance of teeth are imported without the rest."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
+from repository import ROOT
 
-ROOT = Path(__file__).parents[2]
 HOUSES = {"bounds", "dynamics", "fe_contact", "host", "lineofaction", "model_studies", "service"}
 HEAVY = {"fastapi", "gmsh", "h5py", "httpx2", "matplotlib", "meshlane", "numba", "numpy", "pandas", "plotly"}
 HEAVY |= {"pydantic", "rich", "scipy", "skfem", "sqlalchemy", "typer", "xarray"}
@@ -26,7 +23,7 @@ HEAVY |= {"pydantic", "rich", "scipy", "skfem", "sqlalchemy", "typer", "xarray"}
         ),
     ],
 )
-def test_a_part_is_imported_alone(module: str, houses: set[str], packages: set[str]) -> None:
+def test_a_part_is_imported_alone(module, houses, packages):
     code = f"import {module}, sys; print(*{{name.partition('.')[0] for name in sys.modules}})"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
     loaded = set(run.stdout.split())

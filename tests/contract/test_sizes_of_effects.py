@@ -1,8 +1,6 @@
 """The size of an effect is one number: in the plan, on the command line, in the report, on the page, in an
 ablation, in the receipt of a run."""
 
-from __future__ import annotations
-
 import json
 import re
 from dataclasses import replace
@@ -15,15 +13,13 @@ from command_line import loa
 from geared_scenes import RPM, gear_pair_scene, with_gear
 
 from bounds import engineering
-from dynamics.ablation import ablate as ablate_scene
+from dynamics import Outputs, Scene, TimeLaw, simulate
+from dynamics import ablate as ablate_scene
 from dynamics.acoustics import a_weighting
 from dynamics.influence.level_change import LevelChange
-from dynamics.loads import TimeLaw
-from dynamics.scene import Outputs, Scene
-from dynamics.simulation import simulate
+from fe_contact import SteDatabase
 from fe_contact.analysis.studies import ablation
 from fe_contact.analysis.studies.ablation import Figures
-from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.scene_effects import scene_table
 from lineofaction.gearbox.schemas import Case
@@ -89,7 +85,7 @@ CASES: dict[str, tuple[Json, list[float], Json]] = {
 
 
 @pytest.fixture(scope="module", autouse=True)
-def _one_cache(tmp_path_factory: pytest.TempPathFactory) -> Any:
+def _one_cache(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
         yield
@@ -125,7 +121,7 @@ def table_words(tables: list[Json]) -> dict[str, str]:
 @pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize("name", CASES)
-def test_five_outputs_tell_one_number(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_five_outputs_tell_one_number(name, tmp_path, monkeypatch):
     case = boundary_case(name)
     file, table = tmp_path / "case.json", tmp_path / "ste.nc"
     file.write_text(json.dumps(case), encoding="utf-8")
@@ -201,7 +197,7 @@ OFF = {"tilt": "off"}
 
 @pytest.mark.law
 @pytest.mark.parametrize("sound", [False, True], ids=["bearing forces", "sound"])
-def test_outputs_of_a_run_tell_one_number(sound: bool) -> None:
+def test_outputs_of_a_run_tell_one_number(sound):
     scene = tilting_pair(effects=OFF, outputs=Outputs(energy_audit=False))
     scene = replace(scene, quantity=FirstBearing() if sound else None)
     run = simulate(scene)
@@ -227,7 +223,7 @@ def test_outputs_of_a_run_tell_one_number(sound: bool) -> None:
 
 
 @pytest.mark.law
-def test_a_response_tells_the_number_of_a_run_at_its_speed() -> None:
+def test_a_response_tells_the_number_of_a_run_at_its_speed():
     scene = tilting_pair(outputs=Outputs(energy_audit=False))
     run = simulate(scene).effect_ledger["influences"]
     speed = scene.drives[0].speed.extreme / RPM

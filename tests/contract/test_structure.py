@@ -1,7 +1,5 @@
 """The structure of the house: no import points up, the picture is drawn from it, and no file is long."""
 
-from __future__ import annotations
-
 import ast
 from collections import Counter
 from importlib import import_module
@@ -10,11 +8,10 @@ from pathlib import Path
 import line_growth
 import pytest
 import structure
+from repository import ROOT
 
 import host
 from lineofaction.gearbox import schemas
-
-ROOT = Path(__file__).parents[2]
 
 LONGEST = 600
 WRITTEN = (".js", ".css", ".html")
@@ -44,7 +41,7 @@ WITHOUT_SUBJECT = {
 DEFINITIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
 
 
-def test_no_file_is_long() -> None:
+def test_no_file_is_long():
     page = (ROOT / "service" / "page" / "static").iterdir()
     files = [file for house in structure.HOUSES for file in structure.files_of(house)]
     files += [file for file in page if file.suffix in WRITTEN]
@@ -53,7 +50,7 @@ def test_no_file_is_long() -> None:
     assert {name for name, size in sizes.items() if size > LONGEST} == set()
 
 
-def test_growth_is_told_by_subject() -> None:
+def test_growth_is_told_by_subject():
     changes = [("dynamics/meshes", 150, 20), ("service/live", 3, 200), ("host/files.py", 1, 1)]
     today = Counter({"dynamics/meshes": 400, "service/live": 100, "bounds": 7})
     told = line_growth.table(today, iter(changes))
@@ -88,7 +85,7 @@ def described_twice(file: Path) -> list[str]:
     return found
 
 
-def test_the_description_of_a_field_stands_below_it() -> None:
+def test_the_description_of_a_field_stands_below_it():
     files = (file for house in structure.HOUSES for file in structure.files_of(house))
     assert [name for file in files for name in described_twice(file)] == []
 
@@ -107,7 +104,7 @@ def fragments(code: str) -> list[str]:
     return [text.partition("\n")[0] for text in texts if text.partition(" ")[0] in WITHOUT_SUBJECT]
 
 
-def test_a_text_begins_with_its_subject() -> None:
+def test_a_text_begins_with_its_subject():
     """What is described stands first: a text below a field is read without the field beside it."""
     assert fragments('WIDTH = 3\n"""Of the face, mm."""\n') == ["Of the face, mm."]
     assert fragments('WIDTH = 3\n"""Width of the face, mm."""\n') == []
@@ -174,7 +171,7 @@ def _bound_by(node: ast.stmt) -> set[str]:
     return {part.id for part in stored}
 
 
-def test_a_file_has_one_head() -> None:
+def test_a_file_has_one_head():
     """Two subjects are two files."""
     code = "# of all\n\ndef f(): ...\n\n\n# a note on g\ndef g(): ...\n\n\n# More\n\n\ndef h(): ...\n"
     assert second_heads(code) == ["# More"]
@@ -187,7 +184,7 @@ def test_a_file_has_one_head() -> None:
     assert heads == []
 
 
-def test_constants_stand_above_the_first_definition() -> None:
+def test_constants_stand_above_the_first_definition():
     code = "A = 1\n\n\ndef f(): ...\n\n\nB = f()\nC = A\nD = B\nE: int = 2\n"
     assert late_constants(code) == ["C", "E"]
     files = {
@@ -198,14 +195,14 @@ def test_constants_stand_above_the_first_definition() -> None:
     assert {str(file.relative_to(ROOT)): names for file, names in files.items() if names} == {}
 
 
-def test_tests_import_fewer_and_fewer_private_names() -> None:
+def test_tests_import_fewer_and_fewer_private_names():
     imported = (name for file in (ROOT / "tests").rglob("*.py") for name in structure.imported(file))
     private = [name for name in imported if name.rpartition(".")[2].startswith("_")]
     assert len(private) <= MAX_PRIVATE, private
 
 
 @pytest.mark.law
-def test_every_house_is_on_a_floor_and_no_import_points_up() -> None:
+def test_every_house_is_on_a_floor_and_no_import_points_up():
     packages = {path.parent.name for path in ROOT.glob("*/py.typed")} - {"lineofaction"}
     packages |= {f"lineofaction.{path.parent.name}" for path in (ROOT / "lineofaction").glob("*/__init__.py")}
     assert packages == set(structure.HOUSES)
@@ -213,12 +210,12 @@ def test_every_house_is_on_a_floor_and_no_import_points_up() -> None:
 
 
 @pytest.mark.law
-def test_the_picture_is_drawn_from_the_imports() -> None:
+def test_the_picture_is_drawn_from_the_imports():
     drawn = (ROOT / "docs" / "images" / "structure.svg").read_text("utf-8")
     assert drawn == structure.drawing(), "python scripts/structure.py docs/images/structure.svg"
 
 
-def test_names_imported_on_first_use_are_there() -> None:
+def test_names_imported_on_first_use_are_there():
     """A table says by text where each stands: no checker of types reads it."""
     for package in (host, schemas):
         modules = {name: f"{package.__name__}.{module}" for name, module in package.HOMES.items()}

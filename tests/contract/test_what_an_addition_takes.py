@@ -1,7 +1,5 @@
 """An effect of the dynamics is two product files, a bearing law is three: everything else follows."""
 
-from __future__ import annotations
-
 import json
 import shutil
 import subprocess
@@ -10,8 +8,8 @@ from pathlib import Path
 
 import pytest
 import structure
+from repository import ROOT
 
-ROOT = Path(__file__).parents[2]
 COPIED = ("dynamics", "lineofaction")
 EFFECT = '''"""An effect of rotors that is made up: it is on wherever a rotor has gears."""
 
@@ -177,7 +175,7 @@ def _found(tree: Path, code: str) -> object:
     return json.loads(done.stdout.splitlines()[-1])
 
 
-def test_an_effect_is_its_file_and_a_row(tmp_path: Path) -> None:
+def test_an_effect_is_its_file_and_a_row(tmp_path):
     tree = _tree(tmp_path)
     (tree / "dynamics/effects/settling.py").write_text(EFFECT, "utf-8")
     rows = {
@@ -189,7 +187,7 @@ def test_an_effect_is_its_file_and_a_row(tmp_path: Path) -> None:
 
 
 @pytest.mark.nightly
-def test_a_bearing_law_is_its_file_its_rows_and_its_table(tmp_path: Path) -> None:
+def test_a_bearing_law_is_its_file_its_rows_and_its_table(tmp_path):
     """A shaft under a force along its axis rests on the law as on a linear bearing of that stiffness."""
     tree = _tree(tmp_path)
     (tree / "dynamics/bearings/axial_spring.py").write_text(LAW, "utf-8")

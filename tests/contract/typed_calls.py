@@ -1,15 +1,12 @@
 """What mypy makes of the rows of the registry: `scripts/check` runs it on this file, nothing calls it."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import assert_type
 
 import lineofaction as loa
 from dynamics.linearize import ModalAnalysis
-from fe_contact import AnalysisOptions, TableAxes, analyze
-from fe_contact.analysis.studies.ablation import Ablation as CaseAblation
-from fe_contact.ste import SteDatabase
+from fe_contact import Ablation as CaseAblation
+from fe_contact import AnalysisOptions, SteDatabase, TableAxes, analyze
 from lineofaction.client import AsyncJob, AsyncLineOfActionClient, Job, LineOfActionClient
 from lineofaction.gearbox.studies.deflect import DeflectFigures
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection

@@ -1,7 +1,5 @@
 """Request objects from keywords as `analyze` takes them, for tests over several requests."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import fields
 from typing import Any

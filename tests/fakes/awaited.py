@@ -1,7 +1,5 @@
 """Coroutines of tests, in an event loop of their own: browser tests leave one running in this thread."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import Coroutine
 from concurrent.futures import ThreadPoolExecutor

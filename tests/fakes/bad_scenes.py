@@ -1,22 +1,16 @@
 """Scenes that cannot move, with the field at fault: in SI for Python, as a scene file elsewhere."""
 
-from __future__ import annotations
-
 import copy
 import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 from planetary_scenes import driven_scene, published_set
+from repository import EXAMPLES
 
-from dynamics.joints import Coupling, ImposedRotation
-from dynamics.loads import LoadTorque, TimeLaw
-from dynamics.scene import Scene
-from dynamics.simulation import simulate
+from dynamics import Coupling, ImposedRotation, LoadTorque, Scene, TimeLaw, simulate
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 Table = dict[str, Any]
 
 

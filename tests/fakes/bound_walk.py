@@ -1,7 +1,5 @@
 """A walk over the numeric fields of a schema: what each refuses, and what it says it would accept."""
 
-from __future__ import annotations
-
 import re
 import types
 from collections.abc import Callable, Iterator

@@ -1,7 +1,5 @@
 """The transmission error of a loaded pair at one position by CalculiX, on the mesh of the condensed peer."""
 
-from __future__ import annotations
-
 import re
 import shutil
 import subprocess
@@ -12,17 +10,16 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from fe_contact import Material, Status
 from fe_contact.geometry import ParallelAxes
 from fe_contact.hertz import contact_modulus, peak_pressure
-from fe_contact.material import Material
 from fe_contact.mesh.quadratic_mesh import SIDES, rotated
-from fe_contact.types import FloatArray, IntArray, Status
+from fe_contact.types import FloatArray, IntArray
 from host import child_environment, ending_signal
+from verification.full_contact import FullContactPoint, Resolution
 from verification.full_contact.condensation.modified_flank import removed_at_roll
 from verification.full_contact.condensation.placed_mesh import PlacedBody, placed_bodies
-from verification.full_contact.condensation.resolution import Resolution
 from verification.full_contact.condensation.sites import Range, contact_sites
-from verification.full_contact.table import FullContactPoint
 
 # The mesh of one position: the driving gear turned towards its mate.
 

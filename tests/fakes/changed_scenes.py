@@ -1,7 +1,5 @@
 """Examples with other values at dotted places, scenes on the small table, and where they are refused."""
 
-from __future__ import annotations
-
 import copy
 import re
 from collections.abc import Iterator, Mapping

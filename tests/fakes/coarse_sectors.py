@@ -1,7 +1,5 @@
 """Tooth sectors twice as coarse: laws of analyses that hold on every mesh are shown on the smallest."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Gears of few teeth, and sectors of them that are meshed coarsely."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any
@@ -33,7 +31,7 @@ def coarse(gear: Toothing, **fields: object) -> SectorRecipe:
         land_elements=1,
         merge_rows=(-1,),
     )
-    return replace(recipe, **fields)  # type: ignore[arg-type]
+    return replace(recipe, **fields)
 
 
 def coarse_plane(gear: Toothing, **fields: Any) -> MeshRecipe:

@@ -3,8 +3,6 @@
 The files of a verb are written one by one, each by a call; what it computes for them is the same.
 """
 
-from __future__ import annotations
-
 import pickle
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -5,8 +5,6 @@ tests share the results, each still said to be computed. The laws of condensing 
 tests/unit/fe_contact/compliance, whose conftest has a `condensed_once` that shares nothing.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -16,9 +14,8 @@ from typing import Any
 
 import pytest
 
-from fe_contact.compliance import cyclic_compliance, flank_compliance_2d
+from fe_contact.compliance import FlankCompliance, FlankCompliance3D, cyclic_compliance, flank_compliance_2d
 from fe_contact.compliance.cache import read_compliance, write_compliance
-from fe_contact.compliance.flank import FlankCompliance, FlankCompliance3D
 
 FOLDER = "LOA_TEST_CONDENSED_BODIES"
 """Names the folder to a warm process."""

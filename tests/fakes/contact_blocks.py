@@ -1,7 +1,5 @@
 """Blocks that stand for gears: rectangles clamped at their back, extruded."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from fe_contact.types import FloatArray, IntArray

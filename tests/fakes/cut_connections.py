@@ -1,7 +1,5 @@
 """A relay between a service and its database whose connections can be cut, as a network cuts them."""
 
-from __future__ import annotations
-
 import contextlib
 import socket
 import struct

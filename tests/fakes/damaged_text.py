@@ -1,7 +1,5 @@
 """Texts with one kind of damage, as files from outside have it."""
 
-from __future__ import annotations
-
 import builtins
 import random
 from collections import Counter

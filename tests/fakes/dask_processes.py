@@ -1,7 +1,5 @@
 """A Dask scheduler and workers in processes of their own, as an operator starts them."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess
@@ -35,7 +33,6 @@ class DaskProcesses:
         return f"tcp://127.0.0.1:{self.port}"
 
     def start_scheduler(self) -> None:
-        """Start a scheduler, again on the port that it had."""
         if self.port == 0:
             with closing(create_server(("127.0.0.1", 0))) as free:
                 self.port = free.getsockname()[1]
@@ -69,7 +66,7 @@ class DaskProcesses:
         """Call a function in all workers; return its answers by their addresses."""
         from distributed import Client  # noqa: PLC0415 (an extra)
 
-        with Client(self.address, set_as_default=False) as client:  # type: ignore[no-untyped-call]
+        with Client(self.address, set_as_default=False) as client:
             found: dict[str, Any] = client.run(function)
         return found
 
@@ -81,13 +78,13 @@ class DaskProcesses:
         """Return the names of the tasks that are kept for a server."""
         from distributed import Client  # noqa: PLC0415 (an extra)
 
-        with Client(self.address, set_as_default=False) as client:  # type: ignore[no-untyped-call]
+        with Client(self.address, set_as_default=False) as client:
             return list(map(str, client.list_datasets()))
 
     def await_workers(self, number: int) -> None:
         from distributed import Client  # noqa: PLC0415 (an extra)
 
-        with Client(self.address, set_as_default=False) as client:  # type: ignore[no-untyped-call]
+        with Client(self.address, set_as_default=False) as client:
             client.wait_for_workers(number, timeout=PATIENCE_S)
 
     def kill_worker(self) -> None:
@@ -103,7 +100,6 @@ class DaskProcesses:
         self.start_workers(number)
 
     def end_scheduler(self) -> None:
-        assert self.scheduler is not None
         self.scheduler.kill()
         self.scheduler.wait()
 

@@ -1,7 +1,5 @@
 """Documents of results beside the models that declare them."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator, Mapping
 from typing import Any

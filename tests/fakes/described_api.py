@@ -1,7 +1,5 @@
 """The description of the API with all its processes, made once: it takes a second."""
 
-from __future__ import annotations
-
 import tempfile
 from pathlib import Path
 from typing import Any

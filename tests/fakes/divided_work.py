@@ -1,7 +1,5 @@
 """Small inputs whose work is done in parts: a case in the plane, and a search of better flanks."""
 
-from __future__ import annotations
-
 from typing import Any
 
 GEAR = {"teeth": 20, "face_width_mm": 10.0, "bore_diameter_mm": 40.0, "thickness_allowance_um": 60.0}

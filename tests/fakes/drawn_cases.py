@@ -4,8 +4,6 @@ Which fifth follows from the names of the cases and from the version of the proj
 run and every worker, the next version draws another, and five versions in a row draw every case.
 """
 
-from __future__ import annotations
-
 import re
 import zlib
 from collections.abc import Callable, Iterable, Sequence
@@ -52,5 +50,4 @@ def draw(names: Iterable[str], turn: int) -> set[str]:
 def turn() -> int:
     """Return a number that the next version has one more of."""
     version = re.search(r'^version = "(.+)"', _PROJECT.read_text(encoding="utf-8"), re.MULTILINE)
-    assert version is not None
     return sum(map(int, re.findall(r"\d+", version[1])))

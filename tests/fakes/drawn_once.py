@@ -4,8 +4,6 @@ All tests of all workers share the images by what is drawn. The laws of drawing 
 `lineofaction.report.drawing.image` itself.
 """
 
-from __future__ import annotations
-
 import hashlib
 import os
 import pickle

@@ -1,19 +1,13 @@
 """Trains of gears drawn at random, and where their teeth touch: involutes are turned until they meet."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from dynamics.joints import ImposedRotation
-from dynamics.loads import TimeLaw
-from dynamics.meshes import GearMesh
+from dynamics import GearBody, GearMesh, ImposedRotation, Inertia, Scene, Shaft, TimeLaw
 from dynamics.meshes.stiffness_table import straight_table
-from dynamics.scene import Scene
-from dynamics.shafts import GearBody, Inertia, Shaft
 
 PER_TOOTH = 1e-3  # base radius per tooth, m
 PITCH = 2.0 * math.pi * PER_TOOTH

@@ -4,8 +4,6 @@ They are small ones (`small_inputs`), changed by drawn extremes. Fields of a stu
 list one entry, of a number the least that is declared, of a choice any, of a switch the other side.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from random import Random

@@ -4,8 +4,6 @@ Started as ``python fake_process.py DESCRIPTOR``: the socket to listen on, which
 address outlives the process. Settings come from the environment. It loads none of the libraries that compute.
 """
 
-from __future__ import annotations
-
 import signal
 import socket
 import sys

@@ -1,7 +1,5 @@
 """Gear units with one fault each, as text of their files."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from pathlib import Path

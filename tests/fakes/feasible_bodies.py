@@ -24,8 +24,6 @@ Place = tuple[str | int, ...]
 
 
 class Fields:
-    """The fields of a document's schemas."""
-
     def __init__(self, document: Mapping[str, Any]) -> None:
         self._components = document["components"]
         self._validators: dict[str, jsonschema_rs.Draft202012Validator] = {}
@@ -285,7 +283,6 @@ def about(example: Json, case: Json) -> Json:
 
 
 def _relieved(case: Json) -> Json:
-    """Return the same pair with tip relief."""
     relieved = copy.deepcopy(case)
     for name in ("pinion", "wheel"):
         module = case["pair"]["normal_module_mm"]

@@ -1,7 +1,5 @@
 """Meshes that lead to other files, or on which a reader does not end, by name: a suffix and a content."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

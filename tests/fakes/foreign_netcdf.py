@@ -1,7 +1,5 @@
 """HDF5 files that reach out of themselves: made of a good file, one of its variables struck."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any

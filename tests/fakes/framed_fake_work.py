@@ -1,7 +1,5 @@
 """Work of a child process that answers each order with the same, or leaves."""
 
-from __future__ import annotations
-
 import os
 import sys
 

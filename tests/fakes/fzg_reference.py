@@ -1,7 +1,5 @@
 """Published figures of gears of FZG (folder LOA_FZG_REFERENCE)."""
 
-from __future__ import annotations
-
 import os
 import re
 from pathlib import Path

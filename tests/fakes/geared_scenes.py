@@ -5,17 +5,13 @@ rest, a deflection that grows with force^0.96 (20/20 pair in full contact: 0.963
 400). `spring_table` is F = k (d - e(x)).
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from dynamics.loads import TimeLaw
+from dynamics import GearBody, Scene, TimeLaw, hollow_cylinder, pair_scene
 from dynamics.meshes.mesh_table import FIELDS
-from dynamics.scene import Scene, pair_scene
-from dynamics.shafts import GearBody, hollow_cylinder
 
 NOMINAL_FORCE = 2660.0
 BASE_RADIUS = 0.040 * math.cos(math.radians(20.0))

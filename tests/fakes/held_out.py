@@ -1,7 +1,5 @@
 """Error of a table's interpolation, measured at points it does not hold."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -5,8 +5,6 @@ References
 .. [1] K. L. Johnson, Contact Mechanics, Cambridge University Press 1985, sections 5.5 and 5.6.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

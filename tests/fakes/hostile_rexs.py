@@ -1,7 +1,5 @@
 """Damaged and hostile REXS files, made from the small model."""
 
-from __future__ import annotations
-
 import io
 import json
 import random

@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 from geared_scenes import gear_pair_scene, spring_table, with_bushings
 
-from dynamics.joints import Housing
-from dynamics.loads import TimeLaw
+from dynamics import Housing, TimeLaw
 
 ON = {"lateral": "on", "axial": "on", "tilt": "on", "housing_modes": "on"}
 NAMES = ("input.left", "input.right", "output.left", "output.right")

@@ -5,10 +5,7 @@ from dataclasses import replace
 import numpy as np
 from geared_scenes import gear_pair_scene, spring_table, with_gear
 
-from dynamics.bearings import Bushing
-from dynamics.joints import Coupling, Housing
-from dynamics.loads import TimeLaw
-from dynamics.shafts import Inertia, Shaft
+from dynamics import Bushing, Coupling, Housing, Inertia, Shaft, TimeLaw
 
 ON = {"lateral": "on", "axial": "on", "tilt": "on", "housing_modes": "on"}
 OFF = ON | {"housing_modes": "off"}

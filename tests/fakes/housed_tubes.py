@@ -1,7 +1,5 @@
 """A gear pair whose bearings sit in a tube, reduced from its mesh, bolted to the ground or on a mount."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

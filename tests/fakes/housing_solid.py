@@ -1,7 +1,5 @@
 """A small housing from a STEP file under the scene of two equal gears, one bearing a shaft."""
 
-from __future__ import annotations
-
 import copy
 import json
 import math

@@ -55,7 +55,6 @@ class Part:
 
     @property
     def pid(self) -> int:
-        assert self.process is not None
         return self.process.pid
 
     def heeds_stops(self) -> bool:
@@ -65,7 +64,6 @@ class Part:
         return bool(caught >> (signal.SIGTERM - 1) & 1)
 
     def end(self, number: signal.Signals) -> int:
-        assert self.process is not None
         self.process.send_signal(number)
         return self.process.wait(timeout=PATIENCE_S)
 
@@ -108,7 +106,7 @@ class Witness:
                         self._look_at(client, job, text)
 
     def _get(self, client: httpx2.Client, path: str, **more: Mapping[str, str]) -> httpx2.Response:
-        answer = client.get(path, **more)  # type: ignore[arg-type]
+        answer = client.get(path, **more)
         self.answers[answer.status_code] += 1
         return answer
 
@@ -263,7 +261,7 @@ class KilledService:
         """Wait until every job has ended; return their states."""
         ends: dict[str, Any] = {}
         for job in self.jobs:
-            until(lambda job=job: self._ended(job, ends))  # type: ignore[misc]
+            until(lambda job=job: self._ended(job, ends))
         return ends
 
     def _ended(self, job: str, ends: dict[str, Any]) -> bool:

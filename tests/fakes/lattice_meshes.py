@@ -1,7 +1,5 @@
 """Meshes of quadratic tetrahedra on a lattice, mapped to bodies in closed form."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from itertools import permutations
 

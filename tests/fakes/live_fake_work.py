@@ -1,7 +1,5 @@
 """Fakes for live questions: they answer, wait, die, fail or hog memory on request."""
 
-from __future__ import annotations
-
 import os
 import signal
 import time

@@ -1,7 +1,5 @@
 """A module whose import takes a while, and which counts the imports that began."""
 
-from __future__ import annotations
-
 import os
 import time
 

@@ -1,7 +1,5 @@
 """Tables of long periods made of short ones, and scenes with them."""
 
-from __future__ import annotations
-
 from dataclasses import fields, replace
 
 import numpy as np

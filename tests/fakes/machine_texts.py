@@ -4,8 +4,6 @@ The machine looks at the gear from above. Its files are written by going round t
 left flanks and plus on right ones, leads go up, teeth and pitches follow the direction of counting.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass

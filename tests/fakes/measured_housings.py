@@ -1,7 +1,5 @@
 """Universal files with frequency responses, as other programs write them by pyuff."""
 
-from __future__ import annotations
-
 import gc
 import warnings
 from collections.abc import Iterable

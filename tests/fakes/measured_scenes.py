@@ -1,7 +1,5 @@
 """The small scene of two gears in a measured housing: a rigid mass of 40 kg, pushed at one bearing."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Gear meshes by themselves, for the tests of other engines."""
 
-from __future__ import annotations
-
 from geared_scenes import BASE_RADIUS, square_wave_table
 
 from dynamics.engines import MeshElement

@@ -1,7 +1,5 @@
 """The position of a mesh in the kinematic motion, as the compiled loops compute it."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from dynamics.arrays.arrays import KinematicMotion

@@ -4,8 +4,6 @@ Every service of a test has a database of its own. The laws of migrations are in
 tests/unit/service/test_schema_upgrades.py, which overrides the fixture.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import pytest
@@ -18,7 +16,6 @@ _statements: list[str] = []
 
 @pytest.fixture(scope="module", autouse=True)
 def migrated_once() -> Iterator[None]:
-    """Migrate what is no empty SQLite database."""
     migrate = database.migrate
 
     def copied(connection: Connection, revision: str | None) -> None:
@@ -39,5 +36,4 @@ def migrated_once() -> Iterator[None]:
 def _content(connection: Connection) -> list[str]:
     """Return the statements that make the tables and rows of a SQLite database."""
     driver = connection.connection.driver_connection
-    assert driver is not None
     return [line for line in driver.iterdump() if line not in ("BEGIN TRANSACTION;", "COMMIT;")]

@@ -1,7 +1,5 @@
 """The run that example inputs name: stored, and never opened."""
 
-from __future__ import annotations
-
 import tempfile
 from pathlib import Path
 

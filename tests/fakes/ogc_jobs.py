@@ -1,7 +1,5 @@
 """Names of OGC API - Processes, links of its documents, and jobs that are entered as it says."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from fastapi.testclient import TestClient

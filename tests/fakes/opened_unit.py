@@ -1,7 +1,5 @@
 """A REXS document opened: its scene as dynamics takes it, its account, its deflection on straight tables."""
 
-from __future__ import annotations
-
 import tomllib
 from typing import Any
 
@@ -78,7 +76,6 @@ def content(scene: SceneInput) -> dict[str, Any]:
 
 
 def said(unit: OpenedUnit | GearUnit, component: int, item: str) -> tuple[str, str]:
-    """Return fate and words of a line of the account."""
     lines = unit.lines if isinstance(unit, OpenedUnit) else unit.account.lines()
     (line,) = [line for line in lines if (line.component, line.item) == (component, item)]
     return line.fate, line.words

@@ -1,7 +1,5 @@
 """Directories of the user that are a test's own, for the conftest of a folder."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

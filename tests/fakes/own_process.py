@@ -1,7 +1,5 @@
 """Programs in processes of their own, and what the system knows of these."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys
@@ -9,7 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-ROOT = Path(__file__).resolve().parents[2]
+from repository import ROOT
 
 
 def python(
@@ -23,7 +21,6 @@ def python(
 
 
 def children(pid: int) -> list[int]:
-    """Return the children of all threads of a process."""
     found: list[int] = []
     for task in Path(f"/proc/{pid}/task").iterdir():
         with suppress(FileNotFoundError, ProcessLookupError):  # a thread that ended meanwhile

@@ -6,8 +6,6 @@ beyond its error), "arithmetic" (a change or a level that is not that of the num
 what the service answers) or "bare" (a number without a subject).
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections import defaultdict
@@ -178,7 +176,6 @@ def _of_the_report(numbers: Iterable[Printed], rows: Iterable[tuple[str, str]]) 
     for name, text in rows:
         match = STATED.fullmatch(name)
         for number in known if match else ():
-            assert match is not None
             what = match["what"].replace("-", " ").removesuffix(" STE")
             if number.what != what or not number.subject.endswith(f"; at {match['torque']}"):
                 continue
@@ -204,7 +201,6 @@ FIGURES: Mapping[str, tuple[str, int | None]] = {
 
 
 def _of_the_service(numbers: Iterable[Printed], state: Mapping[str, Any], address: str) -> Iterator[str]:
-    """Yield numbers that are not what the service answers to what the address says."""
     if not state["key"]:
         return
     own = "now" if state["alone"] else state["on"]

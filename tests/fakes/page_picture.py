@@ -1,7 +1,5 @@
 """The three-dimensional picture of a page: what it shows when nothing moves, where its vertices stand."""
 
-from __future__ import annotations
-
 import base64
 from io import BytesIO
 from typing import Any

@@ -1,7 +1,5 @@
 """What the tests of the page share: a service, its small case, and a page that is watched."""
 
-from __future__ import annotations
-
 import copy
 import json
 import os
@@ -75,7 +73,7 @@ def opened(browser: Browser, address: str, scheme: str = "light", width: int = 1
     """Open the page and note what it does; without a fragment at a section, where nothing is computed."""
     page = _tab(browser, address)
     page.set_viewport_size({"width": width, "height": 900})
-    page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
+    page.emulate_media(color_scheme=scheme)
     page.set_default_timeout(PATIENCE)
     expect.set_options(timeout=PATIENCE)
     seen = Visit(page)
@@ -91,7 +89,6 @@ def bare(browser: Browser, address: str) -> Page:
     """Open a file of the page by itself: its modules can be imported, and nothing is drawn or asked."""
     page = _tab(browser, address)
     answer = page.goto(f"{address}/page/style.css")
-    assert answer is not None
     assert answer.ok
     return page
 
@@ -136,7 +133,6 @@ def shown(browser: Browser, address: str, key: str) -> Visit:
 
 
 def answered(page: Page) -> None:
-    """Wait for the live figures of a result."""
     page.wait_for_selector("#live-figures[data-answers]", state="attached")
 
 
@@ -232,7 +228,7 @@ def to_print(page: Page, save: Callable[[], None]) -> Printed:
     """Return the report that `save` downloads, as a browser without the service prints it."""
     with page.expect_download() as saved:
         save()
-    report = page.context.browser.new_page(java_script_enabled=False)  # type: ignore[union-attr]
+    report = page.context.browser.new_page(java_script_enabled=False)
     report.set_content(saved.value.path().read_text(encoding="utf-8"))
     printed = Printed(report.pdf(prefer_css_page_size=True, tagged=True))
     report.close()

@@ -6,17 +6,12 @@ inertias over radius squared, stiffnesses and pressure angle. Radii drop out of 
 follow from tooth numbers that can be assembled.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
 from geared_scenes import spring_table
 
-from dynamics.joints import FreeRotation, ImposedRotation
-from dynamics.loads import LoadTorque, TimeLaw
-from dynamics.scene import PlanetarySet, Scene
-from dynamics.shafts import Inertia
+from dynamics import FreeRotation, ImposedRotation, Inertia, LoadTorque, PlanetarySet, Scene, TimeLaw
 
 PRESSURE_ANGLE = math.radians(24.6)
 MESH_STIFFNESS = 5e8

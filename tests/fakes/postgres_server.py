@@ -1,7 +1,5 @@
 """A PostgreSQL server of the tests' own: made from what is installed, on a socket of its own."""
 
-from __future__ import annotations
-
 import os
 import pwd
 import shutil
@@ -55,7 +53,6 @@ class PostgresServer:
 
     def fall(self) -> None:
         """End it at once: no transaction ends, no connection is told (``pg_ctl stop -m immediate``)."""
-        assert self._process is not None
         self._process.send_signal(signal.SIGQUIT)
         self._process.wait()
 
@@ -92,7 +89,6 @@ class PostgresServer:
         with self.administration() as connection:
             ended = "SELECT count(pg_terminate_backend(pid)) FROM pg_stat_activity WHERE datname = %s"
             row = connection.execute(ended, (name,)).fetchone()
-        assert row is not None
         return int(row[0])
 
     @contextmanager

@@ -5,8 +5,6 @@ error is that of its second digit. What a program answers as JSON beside the tex
 has: the value under a key and the error under the same key with "error" in it.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import re
@@ -89,7 +87,6 @@ def _error_of(token: str, errors: Mapping[float, float]) -> float | None:
 
 
 def _errors(answer: Any) -> Iterator[tuple[float, float]]:
-    """Yield numbers of an answer with their errors."""
     if isinstance(answer, list):
         for part in answer:
             yield from _errors(part)

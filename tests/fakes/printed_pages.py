@@ -32,7 +32,6 @@ class Element:
     places: list[Place] = field(default_factory=list)
 
     def all(self, *kinds: str) -> Iterator[Element]:
-        """Yield this element and those in it that are of these kinds."""
         if self.kind in kinds:
             yield self
         for child in self.children:
@@ -48,19 +47,17 @@ class Element:
 
 
 class Printed:
-    """A PDF, read."""
-
     def __init__(self, content: bytes) -> None:
         self.size = len(content)
         reader = PdfReader(BytesIO(content))
-        self._numbers = {page.indirect_reference.idnum: n for n, page in enumerate(reader.pages)}  # type: ignore[union-attr]
+        self._numbers = {page.indirect_reference.idnum: n for n, page in enumerate(reader.pages)}
         self._texts: dict[Place, str] = {}
         self.corners: defaultdict[int, list[NDArray[np.float64]]] = defaultdict(list)
         """By page: two opposite corners of each picture, and where each piece of text begins."""
         self.attachments = {name: files[0] for name, files in reader.attachments.items()}
         self.pages = [self._read(number, page) for number, page in enumerate(reader.pages)]
         self.pictures = [len(page.images) for page in reader.pages]
-        root = reader.trailer["/Root"]["/StructTreeRoot"]  # type: ignore[index]
+        root = reader.trailer["/Root"]["/StructTreeRoot"]
         self.document = self._element(root, None)
 
     def words(self, element: Element) -> str:
@@ -75,7 +72,6 @@ class Printed:
         return found + [plain(title) for title in pictures if title]
 
     def _read(self, number: int, page: Any) -> str:
-        """Return the text of a page, and keep its pieces."""
         fonts = {name: _letters(font.get_object()) for name, font in page["/Resources"]["/Font"].items()}
         pieces_open: list[int | None] = [None]  # a ligature is a span within one
         letters: dict[bytes, str] = {}

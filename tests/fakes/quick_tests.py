@@ -4,8 +4,6 @@ A file is as quick as what it calls, and what it calls it imports: no list of te
 sorted by itself.
 """
 
-from __future__ import annotations
-
 from types import ModuleType
 
 import pytest

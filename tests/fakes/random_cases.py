@@ -1,7 +1,5 @@
 """Random cases: what is requested, how each is measured, and the kind of its end."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence

@@ -1,7 +1,5 @@
 """Fakes for readers of foreign bytes: they write, hang, loop, die, hog memory or fail on request."""
 
-from __future__ import annotations
-
 import ctypes
 import os
 import time

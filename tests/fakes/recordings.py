@@ -1,7 +1,5 @@
 """Recordings as other programs write them: two channels, an acceleration and a speed, in every format."""
 
-from __future__ import annotations
-
 import warnings
 import wave
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Reduced housings of random matrices."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The reference files of REXS (folder LOA_REXS_REFERENCE), in the form of the project's tables."""
 
-from __future__ import annotations
-
 import functools
 import itertools
 import os

@@ -1,7 +1,5 @@
 """A REXS model of one cylindrical stage: pinion 11 on shaft 1, wheel 12 on shaft 2, stage 20."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Iterable, Mapping
 from importlib.resources import files

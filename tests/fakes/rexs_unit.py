@@ -1,7 +1,5 @@
 """REXS models of whole gear units: two helical stages on three shafts, stated bearings, a planetary set."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from types import MappingProxyType

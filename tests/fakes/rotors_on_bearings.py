@@ -5,10 +5,8 @@ from dataclasses import replace
 import numpy as np
 from geared_scenes import gear_pair_scene, spring_table
 
+from dynamics import Coupling, Inertia, Shaft, TimeLaw
 from dynamics.bearings import BallBearing, RollerBearing, RollingBearing
-from dynamics.joints import Coupling
-from dynamics.loads import TimeLaw
-from dynamics.shafts import Inertia, Shaft
 
 ON = {"lateral": "on", "axial": "on", "tilt": "on"}
 DEEP_GROOVE = BallBearing(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3, clearance=1e-5)

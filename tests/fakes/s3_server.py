@@ -3,8 +3,6 @@
 LOA_TEST_S3_ENDPOINT names a server to use instead (moto, MinIO), with the AWS_ variables for its keys.
 """
 
-from __future__ import annotations
-
 import hashlib
 import os
 import threading

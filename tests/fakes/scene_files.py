@@ -1,7 +1,5 @@
 """A small scene as a file, for the tests of the verbs on scenes: two equal gears on one bushing each."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from small_table import small_table

@@ -1,7 +1,5 @@
 """Scenes that end badly, each in its own way, and one that does not."""
 
-from __future__ import annotations
-
 import math
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """An application behind a socket, served as `loa serve` serves it, by a thread of this process."""
 
-from __future__ import annotations
-
 import socket
 import threading
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """The work of the fake process; imports little, as its worker starts often."""
 
-from __future__ import annotations
-
 import logging
 import os
 import resource

@@ -1,7 +1,5 @@
 """Small processes that stand in for analyze and simulate: they end, fail, hang or die on request."""
 
-from __future__ import annotations
-
 from typing import Any, Literal
 
 from pydantic import Field
@@ -38,8 +36,6 @@ class Wish(BoundaryModel):
 
 
 class FakeInputs(BoundaryModel):
-    """Inputs of the fake."""
-
     wish: Wish
 
 

@@ -1,7 +1,5 @@
 """Fixtures around every test of the service, for the conftest of its folder."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator
 from pathlib import Path
@@ -20,7 +18,6 @@ FAKES = str(Path(__file__).resolve().parent)
 
 @pytest.fixture(autouse=True)
 def workers_find_fakes(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let workers import the fakes."""
     path = os.pathsep.join(part for part in (FAKES, os.environ.get("PYTHONPATH", "")) if part)
     monkeypatch.setenv("PYTHONPATH", path)
 

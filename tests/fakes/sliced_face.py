@@ -4,8 +4,6 @@ The slice at t = z/b, -1/2..1/2, is pressed in by d - m t and carries k(x, a) (d
 that is above zero: the load's centroid, and the potential of force and moment, are known.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Inputs of every process that take seconds: a small pair by the coarsest model, and few of everything."""
 
-from __future__ import annotations
-
 import copy
 import tempfile
 from functools import cache

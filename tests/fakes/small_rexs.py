@@ -1,7 +1,5 @@
 """A small REXS model with a value of every form."""
 
-from __future__ import annotations
-
 from lineofaction.gearbox.rexs.model import (
     Attribute,
     Component,

@@ -1,7 +1,5 @@
 """A small STE database in closed form: a pair of constant stiffness per contact, two pairs sharing."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

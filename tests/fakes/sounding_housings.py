@@ -1,7 +1,5 @@
 """Reduced housings of matrices with the surface of a hull, for sound in closed form."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

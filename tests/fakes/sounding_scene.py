@@ -1,7 +1,5 @@
 """A gear pair in a sounding housing: its response, radiation and sound; a rigid sphere on springs."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 

@@ -1,7 +1,5 @@
 """Flanks on springs in closed form: compliances of about those of finite elements, in no time."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from fe_contact.analysis.pairs.pair_contact import PairContact

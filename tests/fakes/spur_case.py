@@ -1,7 +1,5 @@
 """The spur pair of the verbs' tests as a case file writes it."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """The gears of most tests of contact analysis: module 4 mm, 25 mm wide."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any

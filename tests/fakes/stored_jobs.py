@@ -1,7 +1,5 @@
 """A network in memory that holds results of all cases, for the client: jobs end after a few looks."""
 
-from __future__ import annotations
-
 import base64
 import hashlib
 import json
@@ -75,19 +73,16 @@ class StoredJobs:
 def against(
     network: Callable[[httpx2.Request], httpx2.Response], cache: Path, **options: Any
 ) -> LineOfActionClient:
-    """Return a client of a network in memory."""
     return LineOfActionClient(ADDRESS, cache_dir=cache, transport=httpx2.MockTransport(network), **options)
 
 
 def awaited_against(
     network: Callable[[httpx2.Request], httpx2.Response], cache: Path
 ) -> AsyncLineOfActionClient:
-    """Return an awaited client of a network in memory."""
     return AsyncLineOfActionClient(ADDRESS, cache_dir=cache, transport=httpx2.MockTransport(network))
 
 
 def case(teeth: int = 20) -> dict[str, Any]:
-    """Return a case that its teeth name."""
     pair = {"normal_module_mm": 4.0, "center_distance_mm": 80.0, "pinion": {"teeth": teeth, **_GEAR}}
     return {"pair": pair | {"wheel": {"teeth": 20, **_GEAR}}, "load": {"torque_n_m": [10.0, 100.0]}}
 

@@ -4,8 +4,6 @@ The contract of studies (tests/api/test_contract_of_studies.py) asks each questi
 over HTTP. A study without a row here fails it.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """A question to a study, asked in Python, by the verb and over HTTP, each once."""
 
-from __future__ import annotations
-
 import json
 import pickle
 import re
@@ -67,8 +65,6 @@ class Ended:
 
 
 class StudyRuns:
-    """A row of the studies, and what its question gives each way."""
-
     def __init__(self, row: StudyRow, folder: Path, served: Served) -> None:
         self.row, self.folder, self.served = row, folder, served
         self.study: Study = row.registered

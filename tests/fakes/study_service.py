@@ -1,7 +1,5 @@
 """A running service that holds a table, and what the tests of its studies of cases and scenes share."""
 
-from __future__ import annotations
-
 import base64
 import hashlib
 import json
@@ -102,7 +100,6 @@ def study_service(directory: Path) -> Iterator[Served]:
 
 
 def scene_by_hash(directory: Path, duration: float) -> SceneInput:
-    """Return a scene of `duration` s with its table by hash."""
     given = read_model(SceneInput, scene_file(directory, duration=duration))
     (mesh,) = given.meshes
     by_hash = mesh.model_copy(update={"database_file": None, "database_hash": KEY})
@@ -110,7 +107,7 @@ def scene_by_hash(directory: Path, duration: float) -> SceneInput:
 
 
 def prepared(process: Process, **inputs: Any) -> dict[str, Any]:
-    return process.prepare(process.inputs.model_validate_json(json.dumps(inputs)), None)  # type: ignore[arg-type]
+    return process.prepare(process.inputs.model_validate_json(json.dumps(inputs)), None)
 
 
 def without(names: tuple[str, ...], value: Any) -> Any:

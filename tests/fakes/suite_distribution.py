@@ -4,8 +4,6 @@ The first test of a worker that opens a page starts a service, has it analyze a 
 day that is half of what the tests of the browser take; at night they take long enough for all workers.
 """
 
-from __future__ import annotations
-
 import pytest
 from xdist.remote import Producer
 from xdist.scheduler import LoadFileScheduling

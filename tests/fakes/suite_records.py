@@ -9,8 +9,6 @@ A run without `--all` renews what it runs: slow tests that it leaves out stay on
 their file rested on when they passed.
 """
 
-from __future__ import annotations
-
 import csv
 import time
 from collections.abc import Iterable, Iterator
@@ -27,8 +25,6 @@ _PROPERTY, _SHARED = "cpu_seconds", "shared_cpu_seconds"
 
 
 class SuiteRecords:
-    """Measures each test, in the worker that runs it, and renews the records where the run is led."""
-
     def __init__(self) -> None:
         self.shared = self.start = 0.0
         self.fixtures: dict[str, float] = {}

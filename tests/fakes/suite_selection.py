@@ -10,8 +10,6 @@ and what it rested on when it passed; the nightly run renews it. Files that are 
 whole, and with `--all` everything does.
 """
 
-from __future__ import annotations
-
 import ast
 import csv
 import hashlib
@@ -130,7 +128,7 @@ def _changed(name: str, rested_on: str) -> bool:
 
 def _shared(item: pytest.Item, costs: dict[str, float]) -> float:
     """Return what the dear ones of the fixtures cost that a test shares with others of its file."""
-    names = item.fixturenames  # type: ignore[attr-defined]
+    names = item.fixturenames
     file = item.nodeid.partition("::")[0]
     return sum(cost for name in names if (cost := costs.get(f"{file}::{name}", 0.0)) > LONG)
 

@@ -1,7 +1,5 @@
 """The motion of a housing's surface across itself, by the elements' shape functions."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from dynamics.housings.quadrature import over_surface, triangle

@@ -1,7 +1,5 @@
 """Runs in closed form: forces on bearings that follow meshes whose frequency changes evenly."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 from typing import cast
 

@@ -1,7 +1,5 @@
 """Gaps between rigid involute helicoids whose axes are tilted against each other, by rotation in space."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import ClassVar
 

@@ -1,7 +1,5 @@
 """Tables as text of a TOML file."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

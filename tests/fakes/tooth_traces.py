@@ -1,7 +1,5 @@
 """Traces of measuring machines on single teeth, and an oracle of the gap by nothing but many samples."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A helical two-stage unit of elastic shafts on rolling bearings in a sounding housing, and other flanks."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 
@@ -52,7 +50,6 @@ def far_table():
 
 
 def unit(first=None, second=None, rolling: bool = True) -> Scene:
-    """The unit with the tables of its stages."""
     scene = two_stages(table(), effects=EFFECTS, torque=300.0)
     meshes = zip(scene.meshes, (first or table(), second or table()), strict=True)
     scene = replace(scene, meshes=tuple(replace(mesh, table=own) for mesh, own in meshes))

@@ -1,7 +1,5 @@
 """Reduced housings of meshed tubes around z: a cantilever, and a short one of two seats."""
 
-from __future__ import annotations
-
 from functools import cache
 
 from lattice_meshes import tube

@@ -3,8 +3,6 @@
 An eccentric tube, so that all its modes couple to its four seats, which stand one behind the other.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -124,7 +122,6 @@ def _drawn(ranges, cases: int, seed: int) -> list[list[float]]:
 
 
 def covered(band: SoundBand, powers: list[OrderPower]) -> SimpleNamespace:
-    """Return the shares of the cases inside of each band of a kind."""
     weighted = np.array([power.weighted_level for power in powers])
     total = np.array([power.total_weighted_level for power in powers])
     mean = 10.0 * np.log10([np.trapezoid(10.0 ** (row / 10.0), band.speed) for row in total])

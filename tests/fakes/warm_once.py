@@ -6,8 +6,6 @@ does by itself is in tests/unit/service/worker/test_warm_process.py and where se
 own.
 """
 
-from __future__ import annotations
-
 import os
 import threading
 from collections.abc import Iterator
@@ -32,7 +30,6 @@ class _WarmProcesses:
         self._starts = threading.Lock()
 
     def launch(self, launcher: Launcher, ends: Ends) -> ChildProcess:
-        """Fork a child in place of `Launcher.launch`."""
         key = (launcher._work, *launcher._modules)
         with self._starts:
             server = self._found.get(key)

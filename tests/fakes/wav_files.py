@@ -1,7 +1,5 @@
 """WAV files as other programs read them: samples, and quantity, unit and full scale in the RIFF comment."""
 
-from __future__ import annotations
-
 import io
 import json
 import struct

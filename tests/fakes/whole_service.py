@@ -3,8 +3,6 @@
 Nothing that is submitted to it is worked on; live questions and plans are answered.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from pathlib import Path

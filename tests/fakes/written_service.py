@@ -1,7 +1,5 @@
 """A service with a key and all processes, whose work is written, not computed (`written_work`)."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -22,8 +20,6 @@ from service.worker.process import Registry, default_registry
 
 @dataclass(frozen=True)
 class Service:
-    """A service with a key."""
-
     url: str
     key: str
     description: dict[str, Any]

@@ -1,7 +1,5 @@
 """Work of processes that computes nothing: it writes a file with the kind that it is named for."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 

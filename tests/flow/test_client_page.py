@@ -1,20 +1,17 @@
 """What the pages of the Python client show runs as shown; the paper's flow runs again without its service."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 import re
 import runpy
 import subprocess
 import sys
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from condensed_once import find_condensed
+from repository import ROOT
 from small_table import small_table
 
 from dynamics.results import RunResult
@@ -23,16 +20,13 @@ from lineofaction.client import LineOfActionClient, OfflineWarning, ResultCache
 from lineofaction.gearbox.problems import BadInput
 
 RESTS_ON = ("docs/client.md", "docs/how-to/call-a-service.md", "examples")
-ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "client.md").read_text(encoding="utf-8")
 RECIPES = (ROOT / "docs" / "how-to" / "call-a-service.md").read_text(encoding="utf-8")
 KEY = "ab" * 32
 
 
 @pytest.fixture(scope="module")
-def service(
-    tmp_path_factory: pytest.TempPathFactory, condensed_bodies: Path
-) -> Iterator[tuple[subprocess.Popen[str], str]]:
+def service(tmp_path_factory, condensed_bodies):
     folder = tmp_path_factory.mktemp("service")
     find_condensed(condensed_bodies, folder)
     with subprocess.Popen(
@@ -42,7 +36,6 @@ def service(
         stderr=subprocess.DEVNULL,
         text=True,
     ) as process:
-        assert process.stdout is not None
         line = process.stdout.readline()
         yield process, line[line.index("http://") :].strip()
         process.terminate()
@@ -50,16 +43,14 @@ def service(
 
 
 @pytest.fixture(autouse=True)
-def _as_a_user(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, service: tuple[subprocess.Popen[str], str]
-) -> None:
+def _as_a_user(monkeypatch, tmp_path, service):
     monkeypatch.chdir(ROOT)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.setenv("LOA_SERVICE", service[1])
 
 
 @pytest.mark.chain
-def test_the_scripts_of_the_page_run_one_after_the_other(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_scripts_of_the_page_run_one_after_the_other(capsys):
     scripts = re.findall(r"```python\n(.*?)```", RECIPES, re.DOTALL)
     assert len(scripts) == 16  # the first one, and the recipes
     names: dict[str, Any] = {}
@@ -93,7 +84,7 @@ def test_the_scripts_of_the_page_run_one_after_the_other(capsys: pytest.CaptureF
     assert float(run_up) == pytest.approx(100.0 / (0.04 * np.cos(np.radians(20.0))), rel=2e-3)
 
 
-def test_the_sheet_of_an_inspection_goes_into_a_case(tmp_path: Path) -> None:
+def test_the_sheet_of_an_inspection_goes_into_a_case(tmp_path):
     sheet = tmp_path / "pinion.csv"
     rows = "".join(f"{tooth},left,pitch,{tooth % 2}\n" for tooth in range(1, 21))
     sheet.write_text(f"tooth,flank,trace,deviation_um\n{rows}", encoding="utf-8")
@@ -109,16 +100,11 @@ def test_the_sheet_of_an_inspection_goes_into_a_case(tmp_path: Path) -> None:
 
 
 @pytest.mark.chain  # by the bodies that the scripts had condensed
-def test_the_paper_s_flow_runs_again_without_the_service(
-    service: tuple[subprocess.Popen[str], str],
-    monkeypatch: pytest.MonkeyPatch,
-    tmp_path: Path,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
+def test_the_paper_s_flow_runs_again_without_the_service(service, monkeypatch, tmp_path, capsys):
     examples = ROOT / "examples"
     monkeypatch.syspath_prepend(str(examples))
 
-    def run(output: Path) -> str:
+    def run(output):
         monkeypatch.setattr(sys, "argv", ["run_up_from_service.py", "-o", str(output)])
         runpy.run_path(str(examples / "run_up_from_service.py"), run_name="__main__")
         return capsys.readouterr().out
@@ -134,7 +120,7 @@ def test_the_paper_s_flow_runs_again_without_the_service(
     assert fundamental and 286.5 < float(fundamental.group(1)) < 302.4  # the paper's figure: 287 to 303 Hz
 
 
-def test_what_the_page_installs_is_enough_to_ask_a_service(tmp_path: Path) -> None:
+def test_what_the_page_installs_is_enough_to_ask_a_service(tmp_path):
     """With what extras bring out of reach, tables are fetched, opened and asked."""
     assert "pip install lineofaction\n" in PAGE
     hidden = [name for names in MODULES.values() for name in names]

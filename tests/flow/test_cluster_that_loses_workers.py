@@ -1,7 +1,5 @@
 """Tables and studies on a cluster whose processes are killed in mid-run: complete, equal to the last bit."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess
@@ -57,7 +55,7 @@ class Cluster:
         while len(self.alive) < count:
             command = [sys.executable, *WORKER, self.address]
             quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-            self.processes.append(subprocess.Popen(command, **quiet))  # type: ignore[call-overload]
+            self.processes.append(subprocess.Popen(command, **quiet))
         self.client.wait_for_workers(count)
 
     @property
@@ -94,7 +92,7 @@ class Losing:
 
 
 @pytest.fixture(scope="module")
-def cluster() -> Iterator[Cluster]:
+def cluster():
     with (
         distributed.LocalCluster(n_workers=0, dashboard_address=None, host="127.0.0.1") as scheduler,
         distributed.Client(scheduler, set_as_default=False) as client,
@@ -110,13 +108,13 @@ def cluster() -> Iterator[Cluster]:
 
 
 @pytest.fixture(autouse=True)
-def small_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
+def small_tasks(monkeypatch):
     monkeypatch.setattr(contact_lines, "TASK_SECONDS", 0.01)
     monkeypatch.setattr(dispatch, "START_SECONDS", 0.0)
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 
@@ -135,7 +133,7 @@ def table(cache: Path, workers: Workers = InProcess()) -> SteDatabase:  # noqa: 
 
 
 @pytest.fixture(scope="module")
-def alone(cache: Path) -> SteDatabase:
+def alone(cache):
     return table(cache)
 
 
@@ -146,9 +144,7 @@ def assert_same(one: SteDatabase, other: SteDatabase) -> None:
 
 
 @pytest.mark.nightly
-def test_a_table_of_three_workers_one_of_which_is_killed(
-    cluster: Cluster, cache: Path, alone: SteDatabase
-) -> None:
+def test_a_table_of_three_workers_one_of_which_is_killed(cluster, cache, alone):
     cluster.at_least(3)
     workers = Losing(ByDask(cluster.client), lambda: cluster.kill_busy(1), "solve_block")
     assert_same(alone, table(cache, workers))
@@ -158,7 +154,7 @@ def test_a_table_of_three_workers_one_of_which_is_killed(
 
 
 @pytest.mark.nightly
-def test_a_sensitivity_sweep_of_three_workers_one_of_which_is_killed(cluster: Cluster, cache: Path) -> None:
+def test_a_sensitivity_sweep_of_three_workers_one_of_which_is_killed(cluster, cache):
     cluster.at_least(3)
     workers = Losing(ByDask(cluster.client), lambda: cluster.kill_busy(1), "solve_block")
     asked: dict[str, Any] = {
@@ -178,7 +174,7 @@ def test_a_sensitivity_sweep_of_three_workers_one_of_which_is_killed(cluster: Cl
 
 
 @pytest.mark.nightly
-def test_a_monte_carlo_of_two_workers_one_of_which_is_killed(cluster: Cluster, cache: Path) -> None:
+def test_a_monte_carlo_of_two_workers_one_of_which_is_killed(cluster, cache):
     cluster.at_least(2)
     slopes = Tolerances(0.0, {"pinion.profile_slope": 10e-6, "wheel.profile_slope": 5e-6})
     workers = Losing(ByDask(cluster.client), lambda: cluster.kill_busy(1), "curves_of_samples")
@@ -199,7 +195,7 @@ def test_a_monte_carlo_of_two_workers_one_of_which_is_killed(cluster: Cluster, c
 
 
 @pytest.mark.law
-def test_what_two_callers_want_at_once_is_done_once(cluster: Cluster, tmp_path: Path) -> None:
+def test_what_two_callers_want_at_once_is_done_once(cluster, tmp_path):
     cluster.at_least(1)
     links = [str(tmp_path / str(number)) for number in range(12)]
     with distributed.Client(cluster.address, set_as_default=False) as other:
@@ -208,20 +204,18 @@ def test_what_two_callers_want_at_once_is_done_once(cluster: Cluster, tmp_path: 
             for client in (cluster.client, other, cluster.client)
         )
         next(third)
-        third.close()  # type: ignore[attr-defined]
+        third.close()
         assert list(first) == list(second) == [None] * len(links)
     assert sorted(map(os.readlink, links)) == ["nowhere"] * len(links)
 
 
 @pytest.mark.law
-def test_a_gear_is_condensed_once_for_all_machines_and_the_oldest_one_goes(
-    cluster: Cluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_gear_is_condensed_once_for_all_machines_and_the_oldest_one_goes(cluster, tmp_path, monkeypatch):
     cluster.at_least(2)
     monkeypatch.setattr(dask_cluster, "MAX_RESULTS", 2)
     first, second = replace(FEW_TEETH, teeth=10), FEW_TEETH
 
-    def tasks(machine: str, *gears: Gear) -> int:
+    def tasks(machine, *gears):
         """Return how many were condensed for a machine that has none of them."""
         (tmp_path / machine).mkdir()
         with distributed.Client(cluster.address, set_as_default=False) as client:
@@ -237,9 +231,7 @@ def test_a_gear_is_condensed_once_for_all_machines_and_the_oldest_one_goes(
     assert [tasks("d", replace(first, teeth=11)), tasks("e", second), tasks("f", first)] == [1, 0, 1]
 
 
-def test_what_a_cluster_leaves_whose_last_worker_is_killed_is_done_here(
-    cluster: Cluster, cache: Path, alone: SteDatabase
-) -> None:
+def test_what_a_cluster_leaves_whose_last_worker_is_killed_is_done_here(cluster, cache, alone):
     cluster.at_least(1)
     losing = Losing(ByDask(cluster.client, patience=1.0), lambda: cluster.kill_busy(9), "solve_block")
     told: list[WorkersLost] = []
@@ -251,7 +243,7 @@ def test_what_a_cluster_leaves_whose_last_worker_is_killed_is_done_here(
     assert receipt["lost"] == str(told[0]) and receipt["tasks"] >= losing.after
 
 
-def test_a_cluster_without_workers_ends_the_run_and_says_so(cluster: Cluster) -> None:
+def test_a_cluster_without_workers_ends_the_run_and_says_so(cluster):
     cluster.kill_busy(9)
     begun = time.monotonic()
     with pytest.raises(WorkersLost, match=r"no worker for 0\.5 s: 0 of 2 tasks were done\. Start workers"):
@@ -260,7 +252,7 @@ def test_a_cluster_without_workers_ends_the_run_and_says_so(cluster: Cluster) ->
 
 
 @pytest.mark.nightly
-def test_a_scheduler_that_goes_after_the_last_result_loses_nothing() -> None:
+def test_a_scheduler_that_goes_after_the_last_result_loses_nothing():
     scheduler = distributed.LocalCluster(n_workers=1, processes=False, dashboard_address=None)
     with distributed.Client(scheduler, set_as_default=False, timeout=5.0) as client:
         results = ByDask(client).run(kept_quotient, 1.0, [2.0, 4.0])
@@ -271,7 +263,7 @@ def test_a_scheduler_that_goes_after_the_last_result_loses_nothing() -> None:
 
 @pytest.mark.nightly
 @pytest.mark.parametrize("kept", [False, True])
-def test_a_scheduler_that_goes_ends_the_run_and_says_so(kept: bool) -> None:
+def test_a_scheduler_that_goes_ends_the_run_and_says_so(kept):
     scheduler = distributed.LocalCluster(n_workers=0, dashboard_address=None, host="127.0.0.1")
     with distributed.Client(scheduler, set_as_default=False, timeout=5.0) as client:
         workers = ByDask(client)

@@ -1,7 +1,5 @@
 """Examples run: scenes whose energy balances close, and a ring gear from its case to its report."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -9,9 +7,8 @@ from pathlib import Path
 import pytest
 from command_line import loa
 
-from dynamics.simulation import simulate
-from fe_contact import analyze
-from fe_contact.ste import SteDatabase
+from dynamics import simulate
+from fe_contact import SteDatabase, analyze
 from lineofaction.gearbox.convert.case import analysis_options, gear_pair, table_axes
 from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.subjects import scene_of, with_case
@@ -61,13 +58,13 @@ def output_of(*arguments: object) -> str:
 
 
 @pytest.fixture(scope="module")
-def table(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def table(tmp_path_factory):
     file = tmp_path_factory.mktemp("ring") / "ring.nc"
     output_of("analyze", RING, "-o", file)
     return file
 
 
-def test_the_example_becomes_a_table(table: Path) -> None:
+def test_the_example_becomes_a_table(table):
     found = SteDatabase.from_netcdf(table)
     assert found.geometry.internal
     assert not found.status.any()
@@ -75,7 +72,7 @@ def test_the_example_becomes_a_table(table: Path) -> None:
     assert found.load_share.sum(axis=-1) == pytest.approx(1.0, abs=1e-12)
 
 
-def test_its_curve_and_its_report_can_be_read(table: Path, tmp_path: Path) -> None:
+def test_its_curve_and_its_report_can_be_read(table, tmp_path):
     curve = json.loads(output_of("ste", table, "--torque", 60, "--json"))
     assert curve
     page = tmp_path / "ring.html"

@@ -1,7 +1,5 @@
 """A unit from its REXS file, or a scene, to its report: every verb takes the folder, none a file in it."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 
@@ -34,7 +32,7 @@ VERBS = {
 
 
 @pytest.mark.nightly
-def test_every_verb_takes_the_folder_that_open_made(tmp_path: Path) -> None:
+def test_every_verb_takes_the_folder_that_open_made(tmp_path):
     unit = tmp_path / "unit"
     assert loa("open", UNIT, "-o", unit).exit_code == 0
     for verb, options in VERBS.items():
@@ -92,7 +90,7 @@ def gearbox(folder: Path) -> None:
 
 
 @pytest.mark.nightly
-def test_every_verb_takes_the_folder_to_which_a_housing_is_added(tmp_path: Path) -> None:
+def test_every_verb_takes_the_folder_to_which_a_housing_is_added(tmp_path):
     unit = tmp_path / "unit"
     gearbox(unit)
     block = write_block(tmp_path / "block.step")

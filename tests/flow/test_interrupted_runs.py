@@ -1,7 +1,5 @@
 """A run through the whole command line: Ctrl-C in the middle and --resume, against one that never stopped."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal
@@ -90,7 +88,7 @@ def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.law
-def test_ctrl_c_and_resume_give_the_file_of_a_run_that_never_stopped(tmp_path: Path) -> None:
+def test_ctrl_c_and_resume_give_the_file_of_a_run_that_never_stopped(tmp_path):
     scene_file(tmp_path, duration=DURATION, rate=RATE)
     whole, parts = tmp_path / "whole.nc", tmp_path / "parts.nc"
     stopped = interrupted_in_the_middle(tmp_path, parts)

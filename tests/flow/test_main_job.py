@@ -1,7 +1,5 @@
 """The main job runs from case to report, says what it found, and leaves nothing running."""
 
-from __future__ import annotations
-
 import json
 import os
 import re
@@ -13,12 +11,12 @@ from pathlib import Path
 
 import pytest
 from condensed_once import find_condensed
+from repository import ROOT
 from running_service import PATIENCE_S, until
 
 from service.page.example_cases import examples
 
 RESTS_ON = ("examples",)
-ROOT = Path(__file__).parents[2]
 JOB = ROOT / "examples" / "main_job.py"
 HELICAL = ROOT / "examples" / "helical_ev_23_67.toml"
 
@@ -42,7 +40,7 @@ def running(folder: Path) -> list[int]:
 
 
 @pytest.fixture(scope="module")
-def job(tmp_path_factory: pytest.TempPathFactory, condensed_bodies: Path) -> tuple[Path, str]:
+def job(tmp_path_factory, condensed_bodies):
     """Run the whole job once; return its folder and what it printed."""
     folder = tmp_path_factory.mktemp("main-job")
     find_condensed(condensed_bodies, folder / "out" / "service")
@@ -63,7 +61,7 @@ def number(text: str, label: str) -> float:
     return float(found.group(1))
 
 
-def test_the_summary_holds_the_known_figures(job: tuple[Path, str]) -> None:
+def test_the_summary_holds_the_known_figures(job):
     _, text = job
     assert number(text, "mean STE at 100 N m") == pytest.approx(6.245, rel=0.003)
     assert number(text, "peak-to-peak STE at 100 N m") == pytest.approx(2.799, rel=0.01)
@@ -78,7 +76,7 @@ def test_the_summary_holds_the_known_figures(job: tuple[Path, str]) -> None:
     assert number(helical, "peak-to-peak STE at 100 N m") == pytest.approx(0.392, rel=0.02)
 
 
-def test_the_report_and_its_images_are_written(job: tuple[Path, str]) -> None:
+def test_the_report_and_its_images_are_written(job):
     folder, text = job
     assert str(folder / "report.html") in text
     page = (folder / "report.html").read_text(encoding="utf-8")
@@ -102,7 +100,7 @@ def test_the_report_and_its_images_are_written(job: tuple[Path, str]) -> None:
     assert "Gear pair 23/67" in helical and '<figure id="face_load">' in helical
 
 
-def test_the_page_will_open_on_figures_that_are_drawn(job: tuple[Path, str]) -> None:
+def test_the_page_will_open_on_figures_that_are_drawn(job):
     folder, _ = job
     first = tomllib.loads(HELICAL.read_text(encoding="utf-8"))
     assert first == examples()[0].content
@@ -110,12 +108,12 @@ def test_the_page_will_open_on_figures_that_are_drawn(job: tuple[Path, str]) -> 
     assert json.loads(kept.read_text(encoding="utf-8"))["title"] == "Gear pair 23/67"
 
 
-def test_nothing_is_left_running(job: tuple[Path, str]) -> None:
+def test_nothing_is_left_running(job):
     assert running(job[0]) == []
 
 
 @pytest.mark.law
-def test_stopped_in_the_middle_it_stops_its_service(tmp_path: Path) -> None:
+def test_stopped_in_the_middle_it_stops_its_service(tmp_path):
     started = subprocess.Popen(
         [sys.executable, str(JOB), "--out", str(tmp_path / "out")],
         env=environment(tmp_path),

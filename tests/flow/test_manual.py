@@ -1,32 +1,29 @@
 """README, tutorials and how-to guides run as they stand, show what comes out, and answer newcomers."""
 
-from __future__ import annotations
-
 import os
 import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import manual
 import pytest
 from condensed_once import find_condensed
+from repository import ROOT
 
 RESTS_ON = ("README.md", "docs/studies.md", "docs/tutorials", "docs/how-to", "examples")
-ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 
 
 @pytest.fixture(scope="module")
-def folder() -> Iterator[Path]:
+def folder():
     with manual.folder() as made:
         yield made
 
 
 @pytest.fixture(scope="module")
-def ran() -> set[Path]:
+def ran():
     """Pages that have run in the folder: their files are there."""
     return set()
 
@@ -45,7 +42,7 @@ PAGES = [
 
 @pytest.mark.chain
 @pytest.mark.parametrize("page", PAGES)
-def test_the_page_runs_and_makes_its_pictures(page: Path, folder: Path, ran: set[Path]) -> None:
+def test_the_page_runs_and_makes_its_pictures(page, folder, ran):
     for before in manual.needed(page):
         if before not in ran | {page}:
             list(manual.run_page(before))  # whether it shows what comes out, its own test asks
@@ -55,7 +52,7 @@ def test_the_page_runs_and_makes_its_pictures(page: Path, folder: Path, ran: set
     assert [name for name in manual.pictures(page) if not (folder / name).is_file()] == []
 
 
-def test_a_number_that_is_wrong_is_seen() -> None:
+def test_a_number_that_is_wrong_is_seen():
     output = "torque N m  force N\n     100  2660.4 ±2\n"
     assert manual.shown("100 2660 ±2", output)
     assert not manual.shown("100 2760 ±2", output)
@@ -79,7 +76,7 @@ def renewed_page(folder: Path, shown: str) -> tuple[list[str], str]:
     return [found.nearest for found in stale if found.renewed is None], page.read_text("utf-8")
 
 
-def test_a_stale_number_is_renewed_and_the_rest_of_its_page_left(tmp_path: Path) -> None:
+def test_a_stale_number_is_renewed_and_the_rest_of_its_page_left(tmp_path):
     rest = "\nmean force 8 N\n"
     alone, text = renewed_page(tmp_path, f"mean STE at 120 N m: 15.00 µm\n8   0.06 ±0.01   0.29 ±0.02{rest}")
     assert alone == []
@@ -88,14 +85,14 @@ def test_a_stale_number_is_renewed_and_the_rest_of_its_page_left(tmp_path: Path)
     assert list(manual.run_page(tmp_path / "page.md")) == []
 
 
-def test_a_line_without_a_partner_is_reported_beside_the_nearest_and_left(tmp_path: Path) -> None:
+def test_a_line_without_a_partner_is_reported_beside_the_nearest_and_left(tmp_path):
     lines = "9  0.06 ±0.01  0.30 ±0.02\nmean moment 9 kN\n"
     alone, text = renewed_page(tmp_path, lines)
     assert alone == ["  8  0.0475 ±0.01  0.293 ±0.02", "mean moment 9 N m"]
     assert lines in text
 
 
-def test_a_guide_runs_after_those_whose_files_it_goes_on_with() -> None:
+def test_a_guide_runs_after_those_whose_files_it_goes_on_with():
     by_name = {(page.parent.name, page.stem): page for page in manual.pages()}
     guide, spur = by_name["how-to", "quiet-flanks-by-search"], by_name["tutorials", "industrial-spur-pair"]
     assert manual.needed(guide) == [spur, guide]
@@ -112,12 +109,12 @@ def questions() -> list[tuple[str, Path]]:
     return [(question, (DOCS / target).resolve()) for question, target in rows]
 
 
-def test_there_are_twenty_questions() -> None:
+def test_there_are_twenty_questions():
     assert len(questions()) == 20
 
 
 @pytest.mark.parametrize(("question", "answer"), questions(), ids=lambda value: getattr(value, "stem", ""))
-def test_a_question_is_answered_within_two_clicks(question: str, answer: Path) -> None:
+def test_a_question_is_answered_within_two_clicks(question, answer):
     front, list_of_questions = DOCS / "index.md", DOCS / "questions.md"
     doors = links(front) - {list_of_questions}
     assert answer in doors | {page for door in doors for page in links(door)}, question
@@ -160,7 +157,7 @@ def run_python(code: str, folder: Path, warnings: str = "error") -> subprocess.C
 
 
 @pytest.mark.chain  # by the bodies of its tutorial
-def test_the_helical_example_has_six_lines_and_runs(tmp_path: Path, condensed_bodies: Path) -> None:
+def test_the_helical_example_has_six_lines_and_runs(tmp_path, condensed_bodies):
     find_condensed(condensed_bodies, tmp_path / "cache" / "lineofaction")
     code = blocks("python")[0]
     assert len([line for line in code.splitlines() if line]) == 6
@@ -170,7 +167,7 @@ def test_the_helical_example_has_six_lines_and_runs(tmp_path: Path, condensed_bo
 
 
 @pytest.mark.nightly
-def test_a_unit_sounds_in_six_lines_without_a_server(tmp_path: Path) -> None:
+def test_a_unit_sounds_in_six_lines_without_a_server(tmp_path):
     example = ROOT / "examples" / "two_stage"
     shutil.copyfile(example / "two_stage.rexs", tmp_path / "unit.rexs")
     run_python(WRITE_CASE.format(example=str(example)), tmp_path)
@@ -180,25 +177,25 @@ def test_a_unit_sounds_in_six_lines_without_a_server(tmp_path: Path) -> None:
     assert "level" in run_python(code, tmp_path, "default").stdout
 
 
-def test_a_new_user_finds_the_program_and_the_examples() -> None:
+def test_a_new_user_finds_the_program_and_the_examples():
     shell = "".join(blocks("sh"))
     assert shell.index("./scripts/run") < shell.index("source .venv/bin/activate") < shell.index("loa ")
     named = re.findall(r"examples/\S+\.toml", shell)
     assert len(named) >= 3 and [name for name in named if not (ROOT / name).is_file()] == []
 
 
-def test_the_page_is_short() -> None:
+def test_the_page_is_short():
     assert len(README.splitlines()) <= 120
 
 
-def test_links_and_pictures_lead_somewhere() -> None:
+def test_links_and_pictures_lead_somewhere():
     targets = re.findall(r"\]\(([^)#]+)\)", README)
     assert len(targets) > 5
     missing = [t for t in targets if not t.startswith("https://") and not (ROOT / t).exists()]
     assert missing == []
 
 
-def test_commands_named_in_the_readme_exist() -> None:
+def test_commands_named_in_the_readme_exist():
     scripts = set(re.findall(r"\./(scripts/[a-z-]+)", README))
     assert scripts >= {"scripts/run", "scripts/test", "scripts/bench"}
     for script in scripts:

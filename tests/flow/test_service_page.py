@@ -1,14 +1,11 @@
 """What the page on the service shows with curl works as shown, against a service that runs."""
 
-from __future__ import annotations
-
 import json
 import os
 import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -22,7 +19,7 @@ ADDRESS = "http://127.0.0.1:8321"
 
 
 @pytest.fixture
-def address(tmp_path: Path, condensed_bodies: Path) -> Iterator[str]:
+def address(tmp_path, condensed_bodies):
     """A service, started as the page says but on a free port."""
     find_condensed(condensed_bodies, tmp_path / "data")
     environment = os.environ | {"OMP_NUM_THREADS": "1", "XDG_CACHE_HOME": str(tmp_path / "cache")}
@@ -37,7 +34,7 @@ def address(tmp_path: Path, condensed_bodies: Path) -> Iterator[str]:
 
 
 @pytest.mark.skipif(shutil.which("curl") is None, reason="curl is not here")
-def test_the_first_steps_work_with_curl(tmp_path: Path, address: str) -> None:
+def test_the_first_steps_work_with_curl(tmp_path, address):
     start, *steps = STEPS
     assert start.strip() == "loa serve"
     assert len(steps) == 3 and ADDRESS in steps[0]

@@ -4,8 +4,6 @@ The questions are the rows of the contract of studies. A study whose row sends n
 with the reason.
 """
 
-from __future__ import annotations
-
 import json
 import warnings
 from collections.abc import Callable, Iterator, Sequence
@@ -73,7 +71,7 @@ Ask = Callable[[StudyRow, Workers], Figures]
 
 
 @pytest.fixture(scope="module", autouse=True)
-def small_tasks() -> Iterator[pytest.MonkeyPatch]:
+def small_tasks():
     """Divide small questions as large ones are."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(contact_lines, "TASK_SECONDS", 0.0005)
@@ -82,10 +80,10 @@ def small_tasks() -> Iterator[pytest.MonkeyPatch]:
 
 
 @pytest.fixture(scope="module")
-def ask(small_tasks: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFactory) -> Ask:
+def ask(small_tasks, tmp_path_factory):
     """Return what puts the question of a row in Python, with a cache of its own."""
 
-    def figures(row: StudyRow, workers: Workers) -> Figures:
+    def figures(row, workers):
         small_tasks.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
         inputs, study = row.inputs | WIDER.get(str(row), {}), row.registered
         subject = inputs.pop(row.subject)
@@ -101,10 +99,10 @@ def ask(small_tasks: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFactor
 
 
 @pytest.fixture(scope="module")
-def here(ask: Ask) -> Callable[[StudyRow], Figures]:
+def here(ask):
     known: dict[str, Figures] = {}
 
-    def figures(row: StudyRow) -> Figures:
+    def figures(row):
         if str(row) not in known:
             known[str(row)] = ask(row, InProcess())
         return known[str(row)]
@@ -116,7 +114,7 @@ NIGHTLY = pytest.mark.nightly
 
 
 @pytest.fixture(scope="module", params=[pytest.param(1, marks=NIGHTLY), 2, pytest.param(4, marks=NIGHTLY)])
-def pool(request: pytest.FixtureRequest) -> Iterator[Workers]:
+def pool(request):
     with local_processes(request.param) as processes:
         yield processes
 
@@ -124,9 +122,7 @@ def pool(request: pytest.FixtureRequest) -> Iterator[Workers]:
 @pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize("row", ROWS, ids=str)
-def test_a_study_gives_the_same_bits_by_any_number_of_processes(
-    row: StudyRow, pool: Workers, ask: Ask, here: Callable[[StudyRow], Figures]
-) -> None:
+def test_a_study_gives_the_same_bits_by_any_number_of_processes(row, pool, ask, here):
     workers, before = Noting(pool), pool.cost.cpu_seconds
     assert ask(row, workers) == here(row)
     assert (len(workers.own(row)) > 0) is (str(row) not in WHOLE)
@@ -136,7 +132,7 @@ def test_a_study_gives_the_same_bits_by_any_number_of_processes(
 @pytest.mark.law
 @pytest.mark.nightly
 @pytest.mark.filterwarnings("ignore")
-def test_a_study_gives_the_same_bits_by_a_cluster(ask: Ask, here: Callable[[StudyRow], Figures]) -> None:
+def test_a_study_gives_the_same_bits_by_a_cluster(ask, here):
     distributed = pytest.importorskip("distributed", reason="the extra dask is not installed")
     rows = [row for row in ROWS if str(row) in BY_DASK]
     assert len(rows) == len(BY_DASK)

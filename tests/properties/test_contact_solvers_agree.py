@@ -5,8 +5,6 @@ any size beside zero, edges of every angle, identical contacts, arms that differ
 1e-4 to 1e3 of nominal.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -4,8 +4,6 @@ Bodies are springs in closed form, so that an example takes milliseconds. What f
 same laws in tests/stability.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,13 +12,11 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from sprung_flanks import on_springs
 
+from fe_contact import AnalysisOptions, FlankModification, Gear, GearPair, Material, PitchDeviation, TableAxes
 from fe_contact.analysis.pairs.pair_contact import PairContact
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.contact import ContactModel, ContactSolution
 from fe_contact.errors import InputError
-from fe_contact.geometry import FlankModification, Gear, GearPair, PitchDeviation
-from fe_contact.material import Material
-from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning.plan import make_plan
 
 LAWS = settings(suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow])
@@ -107,7 +103,7 @@ def elastic(solution: ContactSolution) -> np.ndarray:
 
 @LAWS
 @given(pairs())
-def test_contact_holds_and_shares_are_positive_and_sum_to_one(case: Loaded) -> None:
+def test_contact_holds_and_shares_are_positive_and_sum_to_one(case):
     problem, solution = case.contact.solve(case.model, POSITIONS, case.load)
     assert solution.converged
     assert solution.residuals.max() < 1e-9
@@ -119,7 +115,7 @@ def test_contact_holds_and_shares_are_positive_and_sum_to_one(case: Loaded) -> N
 
 @LAWS
 @given(pairs())
-def test_deflection_grows_with_load_and_stiffness_does_not_fall(case: Loaded) -> None:
+def test_deflection_grows_with_load_and_stiffness_does_not_fall(case):
     solution = case.solve()
     assert np.all(np.diff(solution.deflection, axis=1) > 0.0)
     assert np.all(solution.tangent > 0.0)
@@ -129,8 +125,8 @@ def test_deflection_grows_with_load_and_stiffness_does_not_fall(case: Loaded) ->
 
 @LAWS
 @given(pairs(), st.floats(0.02, 50.0))
-def test_lengths_scale_and_forces_scale_with_their_square(case: Loaded, scale: float) -> None:
-    def scaled(gear: Gear) -> Gear:
+def test_lengths_scale_and_forces_scale_with_their_square(case, scale):
+    def scaled(gear):
         lengths = ("normal_module", "face_width", "bore_diameter")
         names = ("tip_relief", "tip_relief_length", "profile_crowning")
         modification = replace(gear.modification, **{n: scale * getattr(gear.modification, n) for n in names})
@@ -148,7 +144,7 @@ def test_lengths_scale_and_forces_scale_with_their_square(case: Loaded, scale: f
 
 @LAWS
 @given(pairs())
-def test_either_gear_may_drive(case: Loaded) -> None:
+def test_either_gear_may_drive(case):
     """Position x by the one gear is -x by the other, where contact is on the line of action.
 
     But for lever arms on sloped flanks: the torque is that of gear 1, the lag that of gear 2.
@@ -162,7 +158,7 @@ def test_either_gear_may_drive(case: Loaded) -> None:
 
 @LAWS
 @given(pairs(alike=True))
-def test_a_pair_of_equal_gears_is_its_own_mirror_image(case: Loaded) -> None:
+def test_a_pair_of_equal_gears_is_its_own_mirror_image(case):
     """But for lever arms on sloped flanks: the torque is that of gear 1, the lag that of gear 2."""
     position = (POSITIONS + 1e-3) % 1.0
     solution = case.solve(position, corner_contact=False).deflection
@@ -181,7 +177,7 @@ def steepest_slope(case: Loaded, position: np.ndarray) -> float:
 
 @LAWS
 @given(pairs(), st.floats(-1.0, 1.0))
-def test_a_rigid_offset_is_added(case: Loaded, part: float) -> None:
+def test_a_rigid_offset_is_added(case, part):
     """All teeth of one gear out of their places by the same: STE shifts by that along the line of action."""
     pinion = case.pair.pinion
     deviation = part * 5e-4 * pinion.normal_module
@@ -195,7 +191,7 @@ def test_a_rigid_offset_is_added(case: Loaded, part: float) -> None:
 
 @LAWS
 @given(pairs(), st.floats(0.0, 1.0))
-def test_all_repeats_after_one_base_pitch(case: Loaded, position: float) -> None:
+def test_all_repeats_after_one_base_pitch(case, position):
     here, there = (case.solve(np.array([x])) for x in (position, position + 1.0))
     assert there.deflection == pytest.approx(here.deflection, rel=1e-9, abs=0.0)
     # from the end of one pitch to the start of the next other pairs have other indices: a dropped one shows
@@ -205,7 +201,7 @@ def test_all_repeats_after_one_base_pitch(case: Loaded, position: float) -> None
 
 @LAWS
 @given(pairs(), st.floats(0.0, 1.0))
-def test_taking_material_off_never_lowers_the_deflection(case: Loaded, part: float) -> None:
+def test_taking_material_off_never_lowers_the_deflection(case, part):
     wheel = case.pair.wheel
     more = wheel.modification.profile_crowning + part * 1e-3 * wheel.normal_module
     worn = replace(wheel, modification=replace(wheel.modification, profile_crowning=more))

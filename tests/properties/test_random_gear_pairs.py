@@ -1,7 +1,5 @@
 """Laws of geometry over random feasible gears and pairs, and over ring gears and the pinions inside them."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any
@@ -62,7 +60,7 @@ def pairs(draw: st.DrawFn) -> GearPair:
 
 
 @given(gears())
-def test_profile_is_one_continuous_curve_of_unit_speed(gear: Gear) -> None:
+def test_profile_is_one_continuous_curve_of_unit_speed(gear):
     profile = tooth_profile(gear)
     assert profile.s_space <= profile.s_root < profile.s_form < profile.s_tip
     unit = gear.normal_module
@@ -75,7 +73,7 @@ def test_profile_is_one_continuous_curve_of_unit_speed(gear: Gear) -> None:
 
 
 @given(gears())
-def test_normals_are_unit_everywhere_and_smooth_at_the_form_point_unless_undercut(gear: Gear) -> None:
+def test_normals_are_unit_everywhere_and_smooth_at_the_form_point_unless_undercut(gear):
     profile = tooth_profile(gear)
     normals = profile.normal(np.linspace(profile.s_space, profile.s_tip, 200))
     assert np.hypot(*normals.T) == pytest.approx(np.ones(200), rel=1e-13)
@@ -87,7 +85,7 @@ def test_normals_are_unit_everywhere_and_smooth_at_the_form_point_unless_undercu
 
 
 @given(gears())
-def test_tooth_has_material_and_space_at_every_radius(gear: Gear) -> None:
+def test_tooth_has_material_and_space_at_every_radius(gear):
     profile = tooth_profile(gear)
     x, y = profile.flank(np.linspace(profile.s_space, profile.s_tip, 300)).T
     angle, radius = np.arctan2(x, y), np.hypot(x, y)
@@ -98,7 +96,7 @@ def test_tooth_has_material_and_space_at_every_radius(gear: Gear) -> None:
 
 
 @given(pairs())
-def test_feasible_pair_keeps_contact_on_the_involutes(pair: GearPair) -> None:
+def test_feasible_pair_keeps_contact_on_the_involutes(pair):
     path = pair.path_of_contact
     assert pair.total_contact_ratio >= 1.0
     assert path.start >= pair.pinion.form_roll_length * (1.0 - 1e-9)
@@ -107,7 +105,7 @@ def test_feasible_pair_keeps_contact_on_the_involutes(pair: GearPair) -> None:
 
 
 @given(pairs())
-def test_swapping_and_mirroring_change_nothing_that_matters(pair: GearPair) -> None:
+def test_swapping_and_mirroring_change_nothing_that_matters(pair):
     swapped = pair.swapped()
     mirrored = GearPair(
         replace(pair.pinion, helix_angle=-pair.pinion.helix_angle),
@@ -121,8 +119,8 @@ def test_swapping_and_mirroring_change_nothing_that_matters(pair: GearPair) -> N
 
 
 @given(pairs(), st.floats(0.05, 20.0))
-def test_lengths_scale(pair: GearPair, scale: float) -> None:
-    def scaled(gear: Gear) -> Gear:
+def test_lengths_scale(pair, scale):
+    def scaled(gear):
         lengths = {
             name: getattr(gear, name) * scale for name in ("normal_module", "face_width", "bore_diameter")
         }
@@ -139,9 +137,7 @@ def test_lengths_scale(pair: GearPair, scale: float) -> None:
 
 
 @given(pairs(), st.sampled_from(["approach", "exit"]), st.floats(1e-6, 2.0))
-def test_corner_gap_is_never_negative_and_starts_from_contact(
-    pair: GearPair, side: Any, reach: float
-) -> None:
+def test_corner_gap_is_never_negative_and_starts_from_contact(pair, side, reach):
     over = np.linspace(0.0, reach * pair.pinion.normal_module, 25)
     state = corner_contact(pair, side, over)
     assert state.valid[0]
@@ -208,7 +204,7 @@ def internal_pairs(draw: st.DrawFn) -> InternalGearPair:
 
 
 @given(rings())
-def test_profile_of_a_ring_is_one_continuous_curve_of_unit_speed(gear: RingGear) -> None:
+def test_profile_of_a_ring_is_one_continuous_curve_of_unit_speed(gear):
     profile, unit = tooth_profile(gear), gear.normal_module
     assert profile.s_space <= profile.s_root < profile.s_form < profile.s_tip < 0.0
     for joint in (profile.s_root, profile.s_form):
@@ -223,7 +219,7 @@ def test_profile_of_a_ring_is_one_continuous_curve_of_unit_speed(gear: RingGear)
 
 
 @given(rings())
-def test_tooth_of_a_ring_has_material_and_space_at_every_radius(gear: RingGear) -> None:
+def test_tooth_of_a_ring_has_material_and_space_at_every_radius(gear):
     profile = tooth_profile(gear)
     s = np.linspace(profile.s_space, profile.s_tip, 300)
     x, y = profile.flank(s).T
@@ -237,7 +233,7 @@ def test_tooth_of_a_ring_has_material_and_space_at_every_radius(gear: RingGear) 
 
 
 @given(internal_pairs())
-def test_feasible_internal_pair_keeps_contact_on_the_involutes(pair: InternalGearPair) -> None:
+def test_feasible_internal_pair_keeps_contact_on_the_involutes(pair):
     path, module = pair.path_of_contact, pair.pinion.normal_module
     assert pair.total_contact_ratio >= 1.0
     assert path.start >= pair.pinion.form_roll_length * (1.0 - 1e-9)
@@ -249,7 +245,7 @@ def test_feasible_internal_pair_keeps_contact_on_the_involutes(pair: InternalGea
 
 
 @given(internal_pairs(), st.floats(-0.5, 0.5))
-def test_outlines_of_a_feasible_pair_never_overlap(pair: InternalGearPair, phase: float) -> None:
+def test_outlines_of_a_feasible_pair_never_overlap(pair, phase):
     first, second = polar_flank(pair.pinion), polar_flank(pair.wheel)
     working = involute_function(pair.working_pressure_angle)
     turn = 2.0 * math.pi * phase / pair.pinion.teeth
@@ -292,8 +288,8 @@ def deepest(
 
 
 @given(internal_pairs(), st.floats(0.05, 20.0))
-def test_lengths_scale_and_hands_mirror(pair: InternalGearPair, scale: float) -> None:
-    def scaled(gear: Any, size: str) -> Any:
+def test_lengths_scale_and_hands_mirror(pair, scale):
+    def scaled(gear, size):
         lengths = {name: getattr(gear, name) * scale for name in ("normal_module", "face_width", size)}
         return replace(gear, helix_angle=-gear.helix_angle, **lengths)
 

@@ -1,7 +1,5 @@
 """Random feasible gears and ring gears have good meshes and tooth sectors, or are refused by the geometry."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -35,7 +33,7 @@ def sizes(
 ) -> st.SearchStrategy[dict[str, Any]]:
     """Return fields of gears: the helix angle from and to degrees, the face width from and to modules."""
 
-    def in_si(numbers: dict[str, Any]) -> dict[str, Any]:
+    def in_si(numbers):
         angles = {name: np.radians(numbers[name]) for name in ("normal_pressure_angle", "helix_angle")}
         return numbers | angles | {"face_width": numbers["face_width"] * numbers["normal_module"]}
 
@@ -91,7 +89,7 @@ def check_section(gear: Gear | RingGear, recipe: SectorRecipe) -> Any:
 @given(
     sizes(EXTERNAL | {"addendum_coefficient": st.floats(0.8, 1.3)}, helix=(0.0, 35.0), width=(6.0, 6.0)), BORE
 )
-def test_mesh_of_a_random_gear_is_good(numbers: dict[str, Any], bore: float) -> None:
+def test_mesh_of_a_random_gear_is_good(numbers, bore):
     gear = external(numbers, bore)
     mesh = check_mesh(gear, 0.5 * gear.bore_diameter)
     assert mesh.sector.s[0] <= mesh.sector.s[-1] - 0.5 * gear.normal_module
@@ -104,7 +102,7 @@ def test_mesh_of_a_random_gear_is_good(numbers: dict[str, Any], bore: float) -> 
     BORE,
     st.sampled_from(["draft", "standard", "fine", "even_load"]),
 )
-def test_sector_of_a_random_gear_is_good(numbers: dict[str, Any], bore: float, level: str) -> None:
+def test_sector_of_a_random_gear_is_good(numbers, bore, level):
     gear = external(numbers, bore)
     recipe = getattr(SectorRecipe, level)(gear)
     section = check_section(gear, recipe)
@@ -121,13 +119,13 @@ def test_sector_of_a_random_gear_is_good(numbers: dict[str, Any], bore: float, l
     st.floats(0.3, 15.0),
     st.sampled_from(["draft", "standard", "fine"]),
 )
-def test_mesh_of_a_random_ring_gear_is_good(numbers: dict[str, Any], rim: float, level: str) -> None:
+def test_mesh_of_a_random_ring_gear_is_good(numbers, rim, level):
     gear = internal(numbers, rim)
     check_mesh(gear, gear.seat_radius)
     check_section(gear, getattr(SectorRecipe, level)(gear))
 
 
-def test_a_root_land_too_short_for_an_element_is_part_of_its_neighbor() -> None:
+def test_a_root_land_too_short_for_an_element_is_part_of_its_neighbor():
     """A nearly sharp root and a margin that reaches down to it: the land is 7 um long, elements 1.5 mm."""
     numbers = {"teeth": 30, "normal_module": 31.25e-3, "face_width": 187.5e-3, "cutter_teeth": 13}
     numbers |= {"normal_pressure_angle": 0.4526947747360292, "root_radius_coefficient": 0.00390625}

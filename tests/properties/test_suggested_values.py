@@ -1,7 +1,5 @@
 """A value that an error suggests is accepted when it is typed as printed; above and below it, by a digit."""
 
-from __future__ import annotations
-
 import copy
 import re
 from collections import Counter
@@ -21,7 +19,7 @@ NUDGE = {"above": 1.1e-6, "below": -1.1e-6, "less than": -1.1e-6}
 SHIFT_SUM = re.compile(rf"x_1 \+ x_2 = ({NUMBER})")
 
 
-def test_every_suggested_value_is_accepted_as_typed() -> None:
+def test_every_suggested_value_is_accepted_as_typed():
     random, seen = np.random.default_rng(14), Counter[str]()
     for _ in range(1500):
         table = random_table(random)

@@ -4,8 +4,6 @@ True touching points break no law; those that end where the flanks are not are d
 closed form.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,7 +11,7 @@ import pytest
 from sprung_flanks import on_springs
 from spur_gears import gear
 
-from fe_contact import FlankGrid, GearPair, ToothFlank
+from fe_contact import AnalysisOptions, FlankGrid, Gear, GearPair, TableAxes, ToothFlank
 from fe_contact.analysis.checks.law import LawCheck
 from fe_contact.analysis.checks.table_laws import check_laws
 from fe_contact.analysis.pairs.operating_points import OperatingPoint
@@ -25,8 +23,6 @@ from fe_contact.contact.flank_slope import rolls_at
 from fe_contact.contact.model import MeetingTeeth
 from fe_contact.contact.plain_touch import conjugate_touch
 from fe_contact.errors import InputError
-from fe_contact.geometry import Gear
-from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning.plan import make_plan
 
 POSITIONS = np.arange(32) / 32
@@ -107,9 +103,7 @@ def true_no_load(case: Solved) -> np.ndarray:
 @pytest.mark.parametrize("side", ["pinion", "wheel"])
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.drawn
-def test_laws_pass_true_touching_points_and_find_out_others(
-    kind: str, side: str, teeth: int, seed: int
-) -> None:
+def test_laws_pass_true_touching_points_and_find_out_others(kind, side, teeth, seed):
     random = np.random.default_rng([seed, teeth, len(kind), len(side)])
     gears = {"pinion": gear(24), "wheel": gear(24)}
     try:

@@ -1,7 +1,5 @@
 """One damaged position: its points are marked and say why, the rest stands as if nothing were."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Sequence
 from dataclasses import replace
@@ -43,7 +41,7 @@ def table(**how: object) -> SteDatabase:
 
 
 @pytest.fixture(scope="module", params=[{"positions": 32}, {"positions": 32, "receipt": "minimal"}, {}])
-def both(request) -> tuple[SteDatabase, SteDatabase]:
+def both(request):
     """The table as it should be, and the damaged one."""
     sound = table(**request.param)
     with pytest.MonkeyPatch.context() as patch:
@@ -51,7 +49,7 @@ def both(request) -> tuple[SteDatabase, SteDatabase]:
         return sound, table(**request.param)
 
 
-def test_the_failed_points_are_marked_and_the_rest_is_as_it_would_be(both) -> None:
+def test_the_failed_points_are_marked_and_the_rest_is_as_it_would_be(both):
     _, damaged = both
     at = damaged.position == DAMAGED
     assert at.sum() == 1
@@ -72,7 +70,7 @@ def test_the_failed_points_are_marked_and_the_rest_is_as_it_would_be(both) -> No
     assert len(damaged.metadata.receipt["support_loads_left_out"]) == sound.support_force.size
 
 
-def test_the_table_says_which_failed_and_answers_only_if_asked(both, tmp_path) -> None:
+def test_the_table_says_which_failed_and_answers_only_if_asked(both, tmp_path):
     sound, damaged = both
     assert "3 of" in damaged.summary() and "position 0.25" in damaged.summary()
     assert "SINGULAR" in damaged.summary()
@@ -89,7 +87,7 @@ def test_the_table_says_which_failed_and_answers_only_if_asked(both, tmp_path) -
     assert SteDatabase.from_netcdf(tmp_path / "ste.nc").identical(damaged)
 
 
-def test_flank_results_say_which_position_failed_and_why() -> None:
+def test_flank_results_say_which_position_failed_and_why():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(room, "solve_contact", damaging)
         said = r"1 of 64 positions have no solution \(position 0.25: SINGULAR\)"

@@ -1,10 +1,8 @@
 """Every hard scene passes, by laws of physics; `loa hardcases` runs the same."""
 
-from __future__ import annotations
-
 import pytest
 
-from lineofaction.hardcases import HARD_SCENES, HardScene
+from lineofaction.hardcases import HARD_SCENES
 
 LONG = (
     "ten_million_", "job_", "worker_killed_at_every_attempt", "mesher_without_end",
@@ -26,12 +24,12 @@ SCENES = [
 @pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize("scene", SCENES)
-def test_scene(scene: HardScene) -> None:
+def test_scene(scene):
     outcome = scene.run()
     assert outcome.passed, f"{scene.criterion} But: {outcome.failure}"
 
 
-def test_scenes_are_told_apart_and_explained() -> None:
+def test_scenes_are_told_apart_and_explained():
     assert len({scene.name for scene in HARD_SCENES}) == len(HARD_SCENES)
     for scene in HARD_SCENES:
         assert scene.hard_because.endswith(".") and scene.criterion.endswith("."), scene.name

@@ -1,7 +1,5 @@
 """Forty odd inputs that can be computed, are: a sound table each. Infeasible ones are in tests/contract."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 from typing import Any
@@ -10,11 +8,8 @@ import pytest
 from bad_inputs import BAD_INPUTS
 from random_cases import assessed
 
-from fe_contact import Gear, GearPair
-from fe_contact.analysis.analyze import analyze
+from fe_contact import FlankModification, Gear, GearPair, Material, PitchDeviation, analyze
 from fe_contact.errors import InputError
-from fe_contact.geometry import FlankModification, PitchDeviation
-from fe_contact.material import Material
 
 MM, UM, DEG = 1e-3, 1e-6, math.pi / 180.0
 Fields = dict[str, Any]
@@ -170,19 +165,19 @@ def judged(odd: Odd) -> Any:
 @pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize("odd", [judged(odd) for odd in ODD])
-def test_what_is_odd_but_feasible_is_computed(odd: Odd) -> None:
+def test_what_is_odd_but_feasible_is_computed(odd):
     figures = assessed(odd.pair(), odd.arguments())
     assert all(f.passed for f in figures if f.name != "CPU time, s"), [
         str(f) for f in figures if not f.passed
     ]
 
 
-def test_there_are_forty_of_either() -> None:
+def test_there_are_forty_of_either():
     assert len({odd.name for odd in ODD}) >= 40
     assert len({bad.name for bad in BAD_INPUTS}) >= 40
 
 
-def test_a_helical_disc_that_bends_as_a_plate_is_refused() -> None:
+def test_a_helical_disc_that_bends_as_a_plate_is_refused():
     disc = {"teeth": 40, "normal_module": 2 * MM, "face_width": 0.3 * MM, "bore_diameter": 20 * MM}
     sides = [Gear(helix_angle=angle * DEG, **disc) for angle in (25.0, -25.0)]
     with pytest.raises(InputError, match=r"pinion.face_width = 0.0003: must be at least 0.000\d+ m"):

@@ -1,7 +1,5 @@
 """Largest pressure of plane flank results against full contact that resolves the strip."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest
@@ -28,7 +26,7 @@ PAIRS = {
 
 @pytest.mark.law
 @pytest.mark.parametrize("name", PAIRS)
-def test_the_stated_error_covers_full_contact(name: str) -> None:
+def test_the_stated_error_covers_full_contact(name):
     """Where one pair of teeth carries clear of the edges."""
     meshing, position = PAIRS[name], 0.05
     torque = 150e3 * meshing.face_width * meshing.pinion.base_radius

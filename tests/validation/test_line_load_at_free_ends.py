@@ -1,16 +1,14 @@
 """Largest line load and K_Hbeta of misaligned pairs against full contact that resolves the free ends."""
 
-from __future__ import annotations
-
 import pytest
 
-from benchmarks.full_contact_line_load import LineLoadCase, compared, line_load_cases
+from benchmarks.full_contact_line_load import compared, line_load_cases
 from fe_contact import AnalysisOptions, OperatingPoint, flank_results
 
 
 @pytest.mark.law
 @pytest.mark.parametrize("case", line_load_cases(), ids=lambda case: case.name)
-def test_stated_errors_of_a_draft_cover_full_contact(case: LineLoadCase) -> None:
+def test_stated_errors_of_a_draft_cover_full_contact(case):
     peaks = [peak for peak in compared(case, "draft") if peak.stated == peak.stated]
     assert {peak.quantity for peak in peaks} >= {"line_load_n_per_mm"}
     for peak in peaks:
@@ -20,7 +18,7 @@ def test_stated_errors_of_a_draft_cover_full_contact(case: LineLoadCase) -> None
 
 @pytest.mark.nightly
 @pytest.mark.parametrize("case", line_load_cases(), ids=lambda case: case.name)
-def test_the_standard_level_is_within_two_percent_of_full_contact(case: LineLoadCase) -> None:
+def test_the_standard_level_is_within_two_percent_of_full_contact(case):
     for peak in compared(case, "standard"):
         assert abs(peak.value - peak.peer) <= 0.02 * peak.peer + peak.peer_error, peak
 
@@ -30,7 +28,7 @@ END_LOAD = 218.9e3
 
 
 @pytest.mark.law
-def test_the_load_falls_towards_a_free_end_as_in_full_contact() -> None:
+def test_the_load_falls_towards_a_free_end_as_in_full_contact():
     """It is highest further in; plane strain up to the end has it 16 % too high, and highest there."""
     case = line_load_cases()[0]
     point = OperatingPoint(torque=case.torque, misalignment=15e-6)

@@ -1,7 +1,5 @@
 """The scene of Palermo et al. (ISMA 2010) on the finite-element table: both techniques, force, damping."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -9,9 +7,8 @@ import pytest
 from geared_scenes import BASE_RADIUS, RPM, gear_pair_scene
 from spur_gears import PAIR
 
-from dynamics.loads import TimeLaw
-from dynamics.orders import find_peaks, mesh_orders, window_spectrum
-from dynamics.simulation import simulate
+from dynamics import TimeLaw, mesh_orders, simulate
+from dynamics.orders import find_peaks, window_spectrum
 from fe_contact import analyze
 
 # the paper gives no damping; measured gear pairs have mesh damping ratios of 0.03 to 0.17

@@ -1,7 +1,5 @@
 """Gear pairs typed as they are printed are computed; what rounding makes is told from what jams."""
 
-from __future__ import annotations
-
 import csv
 import math
 from dataclasses import replace
@@ -81,7 +79,7 @@ def jams_most(row: Row) -> float:
     return computed_backlash(pair) / pair.pinion.normal_module
 
 
-def test_forty_pairs_of_several_sources_are_there() -> None:
+def test_forty_pairs_of_several_sources_are_there():
     published = [row for row in PAIRS if row["kind"] == "published"]
     assert len(PAIRS) >= 40
     assert len(published) >= 25
@@ -94,7 +92,7 @@ def test_forty_pairs_of_several_sources_are_there() -> None:
 
 
 @pytest.mark.parametrize("row", PAIRS, ids=names)
-def test_a_printed_pair_is_accepted_with_the_backlash_it_has(row: Row) -> None:
+def test_a_printed_pair_is_accepted_with_the_backlash_it_has(row):
     pair = gear_pair(printed_case(row))
     computed = computed_backlash(pair)
     rounding = backlash_rounding(pair.pinion, pair.wheel, pair.center_distance)
@@ -104,7 +102,7 @@ def test_a_printed_pair_is_accepted_with_the_backlash_it_has(row: Row) -> None:
 
 
 @pytest.mark.parametrize("row", PAIRS, ids=names)
-def test_teeth_that_are_too_thick_are_accepted_up_to_the_rounding_and_refused_beyond(row: Row) -> None:
+def test_teeth_that_are_too_thick_are_accepted_up_to_the_rounding_and_refused_beyond(row):
     pair = gear_pair(printed_case(row))
     shifts = [gear.profile_shift_coefficient for gear in (pair.pinion, pair.wheel)]
     digit = 2.0 * PROFILE_SHIFT.rounding(*shifts) or 1e-4
@@ -133,7 +131,7 @@ def largest_rounding(pair: ParallelAxes, wheel: Toothing) -> float:
         *(half_shift if shift else 0.0 for shift in shifts),
     )
 
-    def moved(index: int, by: float) -> float:
+    def moved(index, by):
         return nominal_backlash(pair, *(value + by * (i == index) for i, value in enumerate(values)))
 
     return sum(0.5 * abs(moved(i, half) - moved(i, -half)) for i, half in enumerate(halves))
@@ -150,7 +148,7 @@ def nominal_backlash(pair: ParallelAxes, m_n: float, beta: float, a: float, x_1:
     return base_module * (total * (inv(working) - inv(transverse)) - 2.0 * (x_1 + x_2) * tangent)
 
 
-def test_the_printed_pair_that_jams_most_gets_its_table() -> None:
+def test_the_printed_pair_that_jams_most_gets_its_table():
     row = min(PAIRS, key=jams_most)
     assert not float(row["helix_angle_deg"])
     check_table(row, "plane_strain")
@@ -158,7 +156,7 @@ def test_the_printed_pair_that_jams_most_gets_its_table() -> None:
 
 @pytest.mark.nightly
 @pytest.mark.parametrize("row", PAIRS, ids=names)
-def test_a_printed_pair_gets_its_table(row: Row) -> None:
+def test_a_printed_pair_gets_its_table(row):
     check_table(row, "auto")
 
 

@@ -4,8 +4,6 @@ The closed forms are of others; the boundary elements know the conditions of con
 penetration): neither the ends of the strip nor its middle, nor how the pressure ends.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -5,8 +5,6 @@ wheel's tooth points down from a center on +y; a ring's stands on +y of a center
 that its loaded flank is the left one here.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any
@@ -15,21 +13,11 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from fe_contact import FlankModification, Gear, GearPair, InternalGearPair, RingGear
 from fe_contact.contact.plain_touch import conjugate_touch
 from fe_contact.contact.touch import modified_touch
 from fe_contact.effects.flank_modification import ModificationGap
-from fe_contact.geometry import (
-    FlankModification,
-    Gear,
-    GearPair,
-    InternalGearPair,
-    ParallelAxes,
-    RingGear,
-    Toothing,
-    corner_contact,
-    tooth_profile,
-)
-from fe_contact.geometry.corner_contact import Side
+from fe_contact.geometry import ParallelAxes, Side, Toothing, corner_contact, tooth_profile
 
 
 def gear(teeth: int, **fields: Any) -> Gear:
@@ -145,7 +133,7 @@ def _overshoots(pair: ParallelAxes, side: Side) -> np.ndarray:
 @pytest.mark.drawn
 @pytest.mark.parametrize("side", ["approach", "exit"])
 @pytest.mark.parametrize("name", PAIRS)
-def test_gap_is_the_lag_that_makes_rigid_flanks_touch(name: str, side: Side, record_figure: Any) -> None:
+def test_gap_is_the_lag_that_makes_rigid_flanks_touch(name, side, record_figure):
     pair = PAIRS[name]
     assembly, path = Assembly(pair), pair.path_of_contact
     over = _overshoots(pair, side)
@@ -161,7 +149,7 @@ def test_gap_is_the_lag_that_makes_rigid_flanks_touch(name: str, side: Side, rec
 
 @pytest.mark.parametrize("side", ["approach", "exit"])
 @pytest.mark.parametrize("name", PAIRS)
-def test_touching_point_slope_and_lever_arms_are_those_of_the_placed_gears(name: str, side: Side) -> None:
+def test_touching_point_slope_and_lever_arms_are_those_of_the_placed_gears(name, side):
     pair = PAIRS[name]
     assembly, path = Assembly(pair), pair.path_of_contact
     for over in _overshoots(pair, side):
@@ -194,7 +182,7 @@ def test_touching_point_slope_and_lever_arms_are_those_of_the_placed_gears(name:
 
 
 @pytest.mark.parametrize("name", PAIRS)
-def test_conjugate_flanks_touch_without_gap_inside_the_path(name: str) -> None:
+def test_conjugate_flanks_touch_without_gap_inside_the_path(name):
     pair = PAIRS[name]
     assembly, path = Assembly(pair), pair.path_of_contact
     for roll in np.linspace(path.start, path.end, 7)[1:-1]:
@@ -214,7 +202,7 @@ def relieved(pair: ParallelAxes) -> ParallelAxes:
     "name",
     ["20/20", pytest.param("36/96 internal", marks=pytest.mark.nightly), "24/70 internal helical"],
 )
-def test_gap_of_a_relieved_wheel_is_the_lag_that_makes_its_flank_touch(name: str, record_figure: Any) -> None:
+def test_gap_of_a_relieved_wheel_is_the_lag_that_makes_its_flank_touch(name, record_figure):
     """The wheel's flank, moved along its normals by the relief, against the plain pinion.
 
     A slope m' moves the touching point off the line of action and turns the normal: the lever arm of the
@@ -231,7 +219,7 @@ def test_gap_of_a_relieved_wheel_is_the_lag_that_makes_its_flank_touch(name: str
     removed = wheel.modification.material_removed(wheel, roll_2)
     points = profile.flank(s) - removed[:, None] * profile.normal(s)
 
-    def clearance(lag: float, roll: float) -> float:
+    def clearance(lag, roll):
         first, second = assembly.turns(roll, lag)
         return _angle_past(assembly.placed(points, second) + assembly.up, pair.pinion, first)
 
@@ -266,9 +254,7 @@ RELIEF = FlankModification(tip_relief=DEPTH, tip_relief_length=4e-3)
 @pytest.mark.parametrize("sloped", [False, True])
 @pytest.mark.parametrize("side", ["approach", "exit"])
 @pytest.mark.parametrize("name", ["20/20", "17/43 shifted", "43/17 shifted", "36/96 internal"])
-def test_gap_of_a_relieved_tip_edge_is_the_lag_that_makes_it_touch(
-    name: str, side: Side, sloped: bool, record_figure: Any
-) -> None:
+def test_gap_of_a_relieved_tip_edge_is_the_lag_that_makes_it_touch(name, side, sloped, record_figure):
     """The edge is the end of the relieved flank, moved along its normal; the mate is a plain involute.
 
     A lag closes what is removed from gear 2 by the lever arm of its edge, up to two per cent less than on
@@ -288,7 +274,7 @@ def test_gap_of_a_relieved_tip_edge_is_the_lag_that_makes_it_touch(
     removed = relief.material_removed(body, roll) if sloped else np.full(roll.shape, DEPTH)
     points, assembly = profile.flank(s) - removed[:, None] * profile.normal(s), Assembly(pair)
 
-    def clearance(lag: float, at: float) -> float:
+    def clearance(lag, at):
         first, second = assembly.turns(at, lag)
         if gear:
             return _angle_past(assembly.placed(points, second) + assembly.up, pair.pinion, first)

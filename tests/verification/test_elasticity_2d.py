@@ -1,7 +1,5 @@
 """Plane elasticity against exact solutions: patch test, and a clamped ring (level and rate)."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np
@@ -11,10 +9,9 @@ from scipy.sparse.linalg import splu
 from skfem import Basis, ElementTriP2, ElementVector, MeshTri2
 from skfem.models.elasticity import linear_elasticity
 
+from fe_contact import Gear, Material
 from fe_contact.compliance import PlaneHypothesis
 from fe_contact.compliance.plane_elasticity import stiffness_matrix
-from fe_contact.geometry import Gear
-from fe_contact.material import Material
 from fe_contact.mesh import MeshRecipe, mesh_gear
 
 STEEL = Material()
@@ -23,7 +20,7 @@ INNER, OUTER = 20e-3, 45e-3
 
 
 @pytest.mark.parametrize("hypothesis", HYPOTHESES, ids=lambda h: h.value)
-def test_patch_of_curved_elements_keeps_constant_strain(hypothesis: PlaneHypothesis) -> None:
+def test_patch_of_curved_elements_keeps_constant_strain(hypothesis):
     gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
     sector = mesh_gear(gear, MeshRecipe.standard(gear)).sector
     lam, mu = hypothesis.lame_parameters(STEEL)
@@ -42,7 +39,7 @@ def test_patch_of_curved_elements_keeps_constant_strain(hypothesis: PlaneHypothe
     assert area == pytest.approx(exact, rel=1e-9)
 
 
-def test_equals_the_weak_form_of_scikit_fem() -> None:
+def test_equals_the_weak_form_of_scikit_fem():
     """In its own vector element, apart from numbers of nodes: the same energy of any motion."""
     points, triangles = ring_mesh(6)
     lame = PlaneHypothesis.PLANE_STRESS.lame_parameters(STEEL)
@@ -65,7 +62,7 @@ def element_areas(points: np.ndarray, triangles: np.ndarray) -> float:
     return total
 
 
-def test_rigid_motion_costs_no_energy() -> None:
+def test_rigid_motion_costs_no_energy():
     points, triangles = ring_mesh(6)
     matrix = stiffness_matrix(points, triangles, PlaneHypothesis.PLANE_STRAIN.lame_parameters(STEEL))
     turned = np.stack([-points[:, 1], points[:, 0]], axis=-1)
@@ -83,7 +80,7 @@ def ring_mesh(radial: int) -> tuple[np.ndarray, np.ndarray]:
         -1, 2
     )
 
-    def node(i: np.ndarray, j: np.ndarray) -> np.ndarray:
+    def node(i, j):
         return i * 2 * around + j % (2 * around)
 
     i, j = (2 * a.ravel() for a in np.meshgrid(np.arange(radial), np.arange(around), indexing="ij"))
@@ -143,11 +140,8 @@ def exact_pressure(hypothesis: PlaneHypothesis) -> float:
     ("traction", "exact"), [(along_rim, exact_shear), (inward, exact_pressure)], ids=["shear", "pressure"]
 )
 def test_clamped_ring_converges_to_its_closed_form_at_fourth_order(
-    hypothesis: PlaneHypothesis,
-    traction: Callable[[np.ndarray], np.ndarray],
-    exact: Callable[[PlaneHypothesis], float],
-    record_figure: Callable[..., None],
-) -> None:
+    hypothesis, traction, exact, record_figure
+):
     expected = exact(hypothesis)
     errors = [abs(outer_work(n, hypothesis, traction) / expected - 1.0) for n in (3, 6, 12)]
     rates = np.log2(np.array(errors[:-1]) / errors[1:])

@@ -1,8 +1,5 @@
 """Three-dimensional flank compliance against plane strain, under refinement, and over plane strain by 3 %."""
 
-from __future__ import annotations
-
-from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
 
@@ -87,7 +84,7 @@ def per_width(compliance: FlankCompliance3D, tooth: int = 0) -> float:
     return float(GEAR.face_width * (forces @ compliance.block(tooth, 0) @ forces))
 
 
-def test_one_layer_held_axially_is_plane_strain(record_figure: Callable[..., None]) -> None:
+def test_one_layer_held_axially_is_plane_strain(record_figure):
     flat = flank_compliance(GEAR, MeshRecipe.standard(GEAR))
     forces = plane_forces(flat.s)
     for tooth in (0, 1, -1, 2):
@@ -106,16 +103,14 @@ def test_one_layer_held_axially_is_plane_strain(record_figure: Callable[..., Non
 
 
 @pytest.fixture(scope="module")
-def by_layers() -> dict[int, FlankCompliance3D]:
+def by_layers():
     """The draft section with more and more equal layers."""
     recipe = replace(SectorRecipe.draft(GEAR), layer_growth=1.0, merge_rows=())
     return {n: flank_compliance_3d(GEAR, replace(recipe, layers=n)) for n in (4, 8, 16)}
 
 
 @pytest.mark.parametrize("where", ["mid-face", "end"])
-def test_self_compliance_converges_with_the_layers(
-    by_layers: dict[int, FlankCompliance3D], where: str, record_figure: Callable[..., None]
-) -> None:
+def test_self_compliance_converges_with_the_layers(by_layers, where, record_figure):
     """A slice of a quarter of the face."""
     width = GEAR.face_width / 4.0
     low = -0.5 * width if where == "mid-face" else 0.5 * GEAR.face_width - width
@@ -133,7 +128,7 @@ def test_self_compliance_converges_with_the_layers(
     )  # fmt: skip
 
 
-def test_merging_layers_in_the_body_is_harmless() -> None:
+def test_merging_layers_in_the_body_is_harmless():
     recipe = replace(SectorRecipe.draft(GEAR), layer_growth=1.0)
     found = {rows: flank_compliance_3d(GEAR, replace(recipe, merge_rows=rows)) for rows in ((), (-2,))}
     forces = patch(found[()], 0.0, GEAR.face_width / 12.0)
@@ -160,9 +155,7 @@ def deflection(compliance: np.ndarray, force: float, width: float) -> float:
 
 
 @pytest.mark.parametrize("level", ["draft", pytest.param("standard", marks=pytest.mark.nightly)])
-def test_mesh_deflection_is_three_percent_above_plane_strain(
-    level: str, record_figure: Callable[..., None]
-) -> None:
+def test_mesh_deflection_is_three_percent_above_plane_strain(level, record_figure):
     """20/20 spur pair, 100 N m, pitch point: resolved contact says 1.028 to 1.030, the fine recipe 1.0290."""
     recipe = getattr(SectorRecipe, level)(GEAR)
     force, slices = 100.0 / GEAR.base_radius, 15

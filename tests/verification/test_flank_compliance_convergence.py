@@ -1,8 +1,5 @@
 """Self compliance of a contact patch converges under refinement, and is smooth in where the patch lies."""
 
-from __future__ import annotations
-
-from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
 
@@ -45,7 +42,7 @@ def self_compliance(compliance: FlankCompliance, centers: np.ndarray) -> np.ndar
 
 
 @pytest.fixture(scope="module")
-def compliances() -> dict[float, FlankCompliance]:
+def compliances():
     """Single-tooth compliance by refinement of the standard recipe."""
     return {f: flank_compliance(GEAR, STANDARD.refined(f), teeth=1) for f in (0.5, 1.0, 2.0)}
 
@@ -54,9 +51,7 @@ def centers(compliance: FlankCompliance) -> np.ndarray:
     return np.linspace(0.1, 0.85, 200) * compliance.s_tip
 
 
-def test_self_compliance_converges_at_the_rate_of_the_element(
-    compliances: dict[float, FlankCompliance], record_figure: Callable[..., None]
-) -> None:
+def test_self_compliance_converges_at_the_rate_of_the_element(compliances, record_figure):
     mean = {f: self_compliance(c, centers(c)).mean() for f, c in compliances.items()}
     # The pressure ends in square roots: the energy of such a field converges with h^3, not h^4.
     steps = mean[1.0] - mean[0.5], mean[2.0] - mean[1.0]
@@ -72,9 +67,7 @@ def test_self_compliance_converges_at_the_rate_of_the_element(
     record_figure("self compliance of a patch: error, standard recipe", error, "at most 1e-3", "1", "limit")
 
 
-def test_position_noise_is_below_a_nanometer(
-    compliances: dict[float, FlankCompliance], record_figure: Callable[..., None]
-) -> None:
+def test_position_noise_is_below_a_nanometer(compliances, record_figure):
     coarse, fine = compliances[1.0], compliances[2.0]
     at = centers(coarse)
     line_load = 106.42e3  # N/m: 100 N m on the 20/20 pair
@@ -86,7 +79,7 @@ def test_position_noise_is_below_a_nanometer(
     )
 
 
-def test_result_does_not_hang_on_the_sizes_away_from_the_flank() -> None:
+def test_result_does_not_hang_on_the_sizes_away_from_the_flank():
     at = centers(flank_compliance(GEAR, STANDARD, teeth=1))
     reference = self_compliance(flank_compliance(GEAR, STANDARD, teeth=1), at).mean()
     for change in (

@@ -1,7 +1,5 @@
 """The gear case that the two-stage example writes: bores where the bearings are, its mass, its first mode."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path
@@ -16,7 +14,6 @@ from dynamics.housings import (
     Foot,
     MeshedHousing,
     Plane,
-    ReducedHousing,
     SeatBore,
     TetrahedralMesh,
     mesh_step,
@@ -41,7 +38,7 @@ POSITIONS = {
 
 
 @pytest.fixture(scope="module")
-def step(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def step(tmp_path_factory):
     """The STEP file of the case, for the scene of the opened unit."""
     folder = tmp_path_factory.mktemp("case")
     scene: Any = OpenedUnit.of(read_rexs(EXAMPLE / "two_stage.rexs")).scene
@@ -53,7 +50,7 @@ def step(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def mesh(step: Path) -> TetrahedralMesh:
+def mesh(step):
     """A coarse mesh of it: Delaunay's method alone leaves slivers at this size, which are refused."""
     return mesh_step(step, ELEMENT_SIZE)
 
@@ -65,14 +62,14 @@ def bores(mesh: TetrahedralMesh) -> tuple[SeatBore, ...]:
 
 
 @pytest.fixture(scope="module")
-def case(mesh: TetrahedralMesh) -> ReducedHousing:
+def case(mesh):
     """The case on its feet with a few modes."""
     low = float(mesh.points[:, 1].min())
     feet = (Foot("pads", Plane((0.0, low, 0.0), (0.0, -1.0, 0.0))),)
     return reduced_housing(MeshedHousing(mesh, SPHEROIDAL_CAST_IRON, bores(mesh), feet, modes=4))
 
 
-def test_bores_are_where_the_bearings_are(mesh: TetrahedralMesh) -> None:
+def test_bores_are_where_the_bearings_are(mesh):
     """All the way round, with the outer diameter of the bearing, over the width of its ring."""
     for seat in bores(mesh):
         wall = mesh.points[np.unique(seat.bore.triangles(mesh))] - np.array(seat.bore.position)
@@ -82,7 +79,7 @@ def test_bores_are_where_the_bearings_are(mesh: TetrahedralMesh) -> None:
         assert np.ptp(wall[:, 2]) == pytest.approx(seat.bore.length, rel=1e-6), seat.name
 
 
-def test_it_stands_on_four_pads(mesh: TetrahedralMesh) -> None:
+def test_it_stands_on_four_pads(mesh):
     low = float(mesh.points[:, 1].min())
     foot = mesh.points[np.unique(Plane((0.0, low, 0.0), (0.0, -1.0, 0.0)).triangles(mesh))]
     middle = (foot.min(axis=0) + foot.max(axis=0)) / 2.0
@@ -90,14 +87,13 @@ def test_it_stands_on_four_pads(mesh: TetrahedralMesh) -> None:
     assert corners == {(-1, -1), (-1, 1), (1, -1), (1, 1)}
 
 
-def test_mass_and_first_mode_are_those_of_a_small_gear_case(case: ReducedHousing) -> None:
-    assert case.body is not None and case.checks is not None
+def test_mass_and_first_mode_are_those_of_a_small_gear_case(case):
     assert 15.0 < case.body.mass < 60.0
     assert 500.0 < case.frequency[0] < 1200.0
     assert case.checks.volume < 1e-9
 
 
-def test_a_force_across_a_bearing_moves_its_seat_by_a_micrometer_per_kilonewton(case: ReducedHousing) -> None:
+def test_a_force_across_a_bearing_moves_its_seat_by_a_micrometer_per_kilonewton(case):
     """And one along the shaft by more: it bends the end wall."""
     seats = case.motions
     compliance = np.diag(np.linalg.inv(case.stiffness[:seats, :seats])).reshape(-1, 5) * 1e9  # um/kN

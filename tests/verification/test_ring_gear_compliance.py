@@ -1,9 +1,6 @@
 """Compliance of ring gears: annulus in torsion, 2-D against 3-D, refinement, thickness of the rim."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -57,7 +54,7 @@ def work_of_twist(gear: RingGear, recipe: MeshRecipe) -> tuple[float, float]:
     return float(right @ solve(right[:, None])[:, 0]), moment
 
 
-def test_a_thicker_rim_adds_the_twist_of_an_annulus(record_figure: Any) -> None:
+def test_a_thicker_rim_adds_the_twist_of_an_annulus(record_figure):
     """Right flanks pushed and left flanks pulled alike: a torque, and no mean radial force.
 
     Away from the teeth the field is then axisymmetric, whatever they look like, and what the rim beyond R_1
@@ -73,7 +70,7 @@ def test_a_thicker_rim_adds_the_twist_of_an_annulus(record_figure: Any) -> None:
     assert exact > 0.1 * thin
 
 
-def test_a_rim_held_farther_out_is_softer_and_couples_the_teeth_more() -> None:
+def test_a_rim_held_farther_out_is_softer_and_couples_the_teeth_more():
     """What is held farther in moves less (Rayleigh); a rim that is hardly there leaves the tooth alone."""
     root = 2.0 * RING.root_radius
     rims = [replace(RING, rim_diameter=root * factor) for factor in (1.002, 1.03, 1.1, 1.3)]
@@ -84,7 +81,7 @@ def test_a_rim_held_farther_out_is_softer_and_couples_the_teeth_more() -> None:
     assert found[0, 1] < 0.01 * found[0, 0]
 
 
-def test_plane_strain_in_three_dimensions_is_the_transverse_section(record_figure: Any) -> None:
+def test_plane_strain_in_three_dimensions_is_the_transverse_section(record_figure):
     recipe = replace(SectorRecipe.fine(RING), layers=1, merge_rows=(), layer_growth=1.0)
     found = flank_compliance_3d(RING, recipe, reach=2, support=PlaneStrain())
     on = (found.s[:-2:2] >= found.s_form)[None].astype(float)
@@ -98,7 +95,7 @@ def test_plane_strain_in_three_dimensions_is_the_transverse_section(record_figur
 
 
 @pytest.mark.law
-def test_compliance_converges_under_refinement(record_figure: Any) -> None:
+def test_compliance_converges_under_refinement(record_figure):
     recipe = MeshRecipe.standard(RING)
     half, full, double = (by_distance(RING, recipe.refined(f)) for f in (0.5, 1.0, 2.0))
     coarse_error, error = np.abs(half / double - 1.0), np.abs(full / double - 1.0)

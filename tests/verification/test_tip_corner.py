@@ -1,10 +1,7 @@
 """The finite elements of a tip corner yield as the wedge that the local law takes it for."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -22,7 +19,7 @@ GEARS = {
 
 
 @pytest.mark.parametrize("name", GEARS)
-def test_the_corner_at_a_tip_is_a_wedge(name: str, record_figure: Any) -> None:
+def test_the_corner_at_a_tip_is_a_wedge(name, record_figure):
     """Self compliance of patches c at the edge: its slope in -ln(c) tends to k_w as c falls, evenly in c."""
     gear = GEARS[name]
     recipe = MeshRecipe.standard(gear)

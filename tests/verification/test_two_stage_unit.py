@@ -1,7 +1,5 @@
 """A gearbox from its REXS file to the sound of its case before and after `optimize`, by the verbs."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys
@@ -11,8 +9,7 @@ import numpy as np
 import pytest
 from wav_files import read_wav
 
-from dynamics.acoustics import free_field_pressure
-from dynamics.acoustics.air import Air
+from dynamics.acoustics import Air, free_field_pressure
 from dynamics.noise import RadiatedSound
 from dynamics.types import FloatArray
 
@@ -47,7 +44,7 @@ def order_of(sound: RadiatedSound) -> int:
 
 
 @pytest.mark.nightly
-def test_the_unit_is_cast_deflected_optimized_and_heard(tmp_path: Path) -> None:
+def test_the_unit_is_cast_deflected_optimized_and_heard(tmp_path):
     command = [sys.executable, SCRIPT, "-o", tmp_path, "--quick"]
     printed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     rows = {

@@ -23,8 +23,8 @@ class SolvedPosition:
 
     def with_error(self, coarse: SolvedPosition) -> SolvedPosition:
         """Return the points with errors: their differences from those of a coarser mesh."""
-        both = zip(self.contacts, coarse.contacts, strict=True)
-        return replace(self, contacts=tuple(_with_differences(point, other) for point, other in both))
+        pairs = zip(self.contacts, coarse.contacts, strict=True)
+        return replace(self, contacts=tuple(_with_differences(point, other) for point, other in pairs))
 
 
 def _with_differences(fine: Loads, coarse: Loads) -> Loads:

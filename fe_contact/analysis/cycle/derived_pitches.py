@@ -146,8 +146,8 @@ class DerivedPitches:
         return list(zip((self.contact.position, self.contact.load), values, strict=True))
 
     def _changed(self, contact: CycleContact, rows: IntArray, loads: IntArray) -> FloatArray:
-        states = [contact.nominal()[1]]
-        states += [contact.solved(part) for part in in_parts(self.pitches)]
+        _, nominal = contact.nominal()
+        states = [nominal, *(contact.solved(part) for part in in_parts(self.pitches))]
         solved = [np.stack([state.solution.deflection, _arms(state)], axis=-1) for state in states]
         change = contact.by_pitch(np.concatenate(solved)) - self.at_state[:, rows][:, :, loads]
         p, load = np.indices((rows.size, loads.size))
@@ -346,15 +346,15 @@ def _contact(
         name: _flat(envelope.exact_in(values, envelope.arrays[name][1:])) for name, values in arrays.items()
     }
     solution = ContactSolution(
-        first.solution.load,
-        solved["static_transmission_error"],
-        solved["tangent_compliance"],
-        first.solution.force,
-        solved["status"],
-        solved["iterations"],
-        solved["residuals"],
-        solved["beyond"],
-        unloaded.ravel(),
+        load=first.solution.load,
+        deflection=solved["static_transmission_error"],
+        tangent=solved["tangent_compliance"],
+        force=first.solution.force,
+        status=solved["status"],
+        iterations=solved["iterations"],
+        residuals=solved["residuals"],
+        beyond=solved["beyond"],
+        no_load=unloaded.ravel(),
     )
     depth = (
         envelope.arrays["edge_depth"].max(axis=(0, 1))

@@ -202,19 +202,19 @@ class Envelope:
         minimum = LeastTangents.of(tangent, gaps, np.arange(contact.pitches))
         drawn = np.random.default_rng(0).choice(contact.pitches, DRAWN, replace=False)
         without = LeastTangents.of(tangent, gaps, drawn)
-        none = np.empty((0, *minimum.ste.shape[1:]))
+        no_curves = np.empty((0, *minimum.ste.shape[1:]))
         return cls(
-            contact,
-            keep,
-            gaps,
-            tangent.value.mean(axis=0),
-            np.empty(0, dtype=np.int64),
-            none,
-            np.empty((0, *minimum.sums.shape[1:])),
-            {name: values[None] for name, values in keep(state).items()},
-            minimum,
-            drawn,
-            without,
+            contact=contact,
+            keep=keep,
+            gaps=gaps,
+            nominal=tangent.value.mean(axis=0),
+            pitches=np.empty(0, dtype=np.int64),
+            exact=no_curves,
+            exact_sums=np.empty((0, *minimum.sums.shape[1:])),
+            arrays={name: values[None] for name, values in keep(state).items()},
+            minimum=minimum,
+            drawn=drawn,
+            without=without,
         ).about(drawn)
 
     @classmethod

@@ -60,7 +60,8 @@ def _unloaded(envelope: Envelope) -> FloatArray:
     """
     contact = envelope.contact
     model, gaps = contact.point.model, envelope.gaps
-    plain = contact.nominal()[1].problem.candidates.gap
+    _, nominal = contact.nominal()
+    plain = nominal.problem.candidates.gap
     by_pair = np.transpose(plain.reshape(len(plain), gaps.pair.size, -1), (1, 0, 2))  # (pairs, P, slices)
     gap = np.empty((model.period, len(plain)))
     for pitch in range(model.period):

@@ -175,9 +175,9 @@ def _tangents(gaps: ToothGaps, state: SolvedState, states: int) -> list[Tangent]
     weight, weights = load_weights(problem, solution, state.rows)
     sums = load_sums(problem, solution, state.rows)
     pairs, loads = gaps.pair.size, solution.load.size
-    every = np.concatenate([weight[None], weights]) * arm
-    shape = len(every), states, -1, loads, pairs, every.shape[3] // pairs
-    by_state = np.transpose(every.reshape(shape), (1, 4, 2, 5, 3, 0))  # (states, J, P, M, L, 1 + Q)
+    all_weights = np.concatenate([weight[None], weights]) * arm
+    shape = len(all_weights), states, -1, loads, pairs, all_weights.shape[3] // pairs
+    by_state = np.transpose(all_weights.reshape(shape), (1, 4, 2, 5, 3, 0))  # (states, J, P, M, L, 1 + Q)
     tangents = []
     for value, mean, parts in zip(
         np.split(solution.deflection, states), np.split(sums, states), by_state, strict=True

@@ -54,7 +54,7 @@ def excitation_errors(table: SteDatabase, force: float) -> ExcitationErrors:
             arms = all_sources(table.load_arm_error[:, FIRST_HARMONIC:, :, m, d])
             of_arm = np.maximum(of_arm, [np.interp(at, table.force, curve) for curve in arms])
     unknown = np.full(HARMONICS, np.nan)
-    sliding = sliding_sums(table)[0]
+    sliding, _ = sliding_sums(table)
     between = errors_by_halves(table.position, sliding.reshape(len(sliding), -1), table.period).curves
     by_load = between.reshape(-1, *sliding.shape[1:]).max(axis=(2, 3))
     between_positions = np.array([np.interp(at, table.force, curve) for curve in by_load[FIRST_HARMONIC:]])

@@ -10,10 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bounds.brief import brief
-from fe_contact.analysis.flanks.solved_operating_point import (
-    checked_positions,
-    solve_operating_point,
-)
+from fe_contact.analysis.flanks.solved_operating_point import checked_positions, solve_operating_point
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import as_checked
 from fe_contact.analysis.request.solved_run import SolvedOperatingPoint

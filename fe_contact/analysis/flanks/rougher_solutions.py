@@ -47,16 +47,16 @@ def rougher_solutions(solved: SolvedOperatingPoint, cache: Path | None) -> Itera
     cache : Path, optional
         Directory of flank compliances: the coarse meshes are taken from it, or computed.
     """
-    contact, plan, half = solved.contact, solved.plan, solved
+    contact, plan, decimated = solved.contact, solved.plan, solved
     for even in halves(solved.problem.candidates.position)[:1]:
-        half = _at(solved, even)
+        decimated = _at(solved, even)
     if plan.discretization.slices > 1:
-        yield Rougher(half, _on(half, contact.in_slices(plan.discretization.coarse_slices)))
+        yield Rougher(decimated, _on(decimated, contact.in_slices(plan.discretization.coarse_slices)))
     plain = contact.in_plane_strain  # the coarse meshes have no correction for the finite width
-    by_mesh = [half if plain is contact else _on(half, plain)]
+    by_mesh = [decimated if plain is contact else _on(decimated, plain)]
     if plain.in_coarse_patches is not plain:
-        by_mesh.append(_on(half, plain.in_coarse_patches))
-    by_mesh.append(_on(half, pair_contact(contact.pair, plan, cache, coarse=True)))
+        by_mesh.append(_on(decimated, plain.in_coarse_patches))
+    by_mesh.append(_on(decimated, pair_contact(contact.pair, plan, cache, coarse=True)))
     yield from (Rougher(*ends) for ends in pairwise(by_mesh))
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections import OrderedDict
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -51,6 +51,16 @@ FEWEST_POSITIONS = 16
 """Least number of positions of a base pitch of such a period."""
 CACHED_DISTANCES = 2
 """Changes of the center distance at which the compliance stays assembled."""
+
+
+class _CondensedProblem(NamedTuple):
+    """Data of a contact solution: request, bodies with the flanks, operating point, positions and plan."""
+
+    checked: Checked
+    contacts: CondensedContacts
+    points: OperatingPoints
+    nodes: PositionNodes
+    plan: Plan
 
 
 @dataclass
@@ -179,9 +189,8 @@ class CondensedPair:
 
         Parameters and errors are those of `table`.
         """
-        operating_point = pair, torques, misalignment, center_distance_change
-        checked, _, points, nodes, plan = self.contact_problem(*operating_point)
-        return _solved(checked, plan, points, nodes)
+        problem = self.contact_problem(pair, torques, misalignment, center_distance_change)
+        return _solved(problem.checked, problem.plan, problem.points, problem.nodes)
 
     def solve_rougher(
         self,
@@ -194,25 +203,21 @@ class CondensedPair:
 
         The changes of a result on the flanks measure its error. Parameters and errors are those of `table`.
         """
-        checked, contacts, points, nodes, plan = self.contact_problem(
-            pair, torques, misalignment, center_distance_change
-        )
+        problem = self.contact_problem(pair, torques, misalignment, center_distance_change)
         return tuple(
-            _solved(checked, plan, points.on(rougher), nodes)
-            for rougher in (contacts.sliced, contacts.coarse)
+            _solved(problem.checked, problem.plan, problem.points.on(rougher), problem.nodes)
+            for rougher in (problem.contacts.sliced, problem.contacts.coarse)
             if rougher is not None
         )
 
     def contact_problem(
         self, pair: ParallelAxes, torques: FloatArray, misalignment: float, change: float
-    ) -> tuple[Checked, CondensedContacts, OperatingPoints, PositionNodes, Plan]:
-        """Return the data of a contact solution: request, bodies with the flanks, positions and plan.
-
-        Parameters and errors are those of `table`.
-        """
+    ) -> _CondensedProblem:
+        """Return the data of a contact solution; parameters and errors are those of `table`."""
         checked = self._request_at(pair, torques, misalignment, change)
         nodes, plan = self._laid_out(checked)
-        return checked, *self._placed(checked), nodes, plan
+        contacts, points = self._placed(checked)
+        return _CondensedProblem(checked, contacts, points, nodes, plan)
 
     def _request_at(
         self, pair: ParallelAxes, torques: FloatArray, misalignment: float, change: float

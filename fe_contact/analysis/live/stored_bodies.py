@@ -50,8 +50,8 @@ def condensed_pair(
         return None
     coarse = None
     if compute or bodies_are_cached(pair, plan, cache, changes, coarse=True):
-        coarse = pair_contact(pair, plan, cache, True, changes)
-    contacts = CondensedContacts.of(pair_contact(pair, plan, cache, False, changes), coarse)
+        coarse = pair_contact(pair, plan, cache, coarse=True, distance_changes=changes)
+    contacts = CondensedContacts.of(pair_contact(pair, plan, cache, distance_changes=changes), coarse)
     entries = [entry for entry in database.metadata.effect_ledger if isinstance(entry, dict)]
     neglected = {  # effects of the bodies that the scene called for and nobody switched off, and why
         entry["name"]: str(entry["decision"])

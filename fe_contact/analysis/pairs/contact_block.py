@@ -77,9 +77,9 @@ def _points(bodies: Bodies, block: ContactBlock) -> list[OperatingPoint]:
 
 def solve_block(bodies: Bodies, block: ContactBlock) -> SolvedBlock:
     """Assemble and solve a block: one task."""
-    where = block.candidates.position
+    position = block.candidates.position
     contacts = tuple(
-        solved_in_parts(point, where, block.loads, block.pitches, edges=block.edges)
+        solved_in_parts(point, position, block.loads, block.pitches, edges=block.edges)
         for point in _points(bodies, block)
     )
     # all models and sets of loads have the compliance of the first

@@ -1,4 +1,7 @@
-"""Depth of tip edges inside the mating flanks in a contact that was solved without them."""
+"""Depth of tip edges inside the mating flanks in a contact that was solved without them.
+
+Sizes: P positions, L loads, m or more candidates with contacts of edges, n without them.
+"""
 
 from __future__ import annotations
 
@@ -29,21 +32,23 @@ def edge_depth(point: OperatingPoint, problem: ContactProblem, solution: Contact
 
     The forces are those of the solution. The motion of the unloaded edges with the loaded teeth is included.
     """
-    where = problem.candidates.position
-    phase, pitch = where[: len(problem.compliance)] % 1.0, np.floor(where).astype(np.int64)
+    position, phases = problem.candidates.position, len(problem.compliance)
+    # row r has the phase r modulo their number: every pitch has the same phases
+    phase, pitch = position[:phases] % 1.0, np.floor(position).astype(np.int64)
     model = replace(point.model, corner_contact=True)
     edges = point.contact.problem(model, phase, pitch if model.tooth_gaps else None)
     touch = edges.candidates.touch
     off_line = (touch.lever_1 != 1.0) | (touch.lever_2 != 1.0)  # contacts of edges off the line of action
-    force = _carried(problem.candidates, edges.candidates, np.nan_to_num(solution.force))
+    force = _with_zeros(problem.candidates, edges.candidates, np.nan_to_num(solution.force))
     motion = edges.displacement(force)
-    closing = edges.candidates.motion_arm[:, None, :] * np.nan_to_num(solution.deflection)[:, :, None]
-    gap = np.where(off_line, touch.gap, np.inf) * edges.candidates.motion_arm
+    approach = edges.candidates.motion_arm  # (P, m), normal approach per unit deflection
+    closing = approach[:, None, :] * np.nan_to_num(solution.deflection)[:, :, None]
+    gap = np.where(off_line, touch.gap, np.inf) * approach
     return np.asarray(np.max(closing - motion - gap[:, None, :], axis=(0, 2), initial=0.0))
 
 
-def _carried(part: Candidates, whole: Candidates, force: FloatArray) -> FloatArray:
-    """Return the forces (P, L, n) on candidates that are `part` of others, on the `whole` of these."""
+def _with_zeros(part: Candidates, whole: Candidates, force: FloatArray) -> FloatArray:
+    """Return the forces (P, L, m) on all candidates `whole`, from `force` (P, L, n) on `part` of them."""
     column = {key: i for i, key in enumerate(zip(whole.pair.tolist(), whole.face_position, strict=True))}
     carried = np.zeros((*force.shape[:2], whole.pair.size))
     keys = zip(part.pair.tolist(), part.face_position, strict=True)

@@ -48,7 +48,7 @@ def expected_curves(checked: Checked) -> ExpectedCurves | None:
     )
     points = operating_points(scene, checked.decision, SpringContact(request.pair, plan, law=LAW)).places
     position, load = np.arange(POSITIONS) / POSITIONS, _sampled(request.load, LOADS)
-    solved = [point.solve(position, load)[1] for point in points]
+    solved = [solution for _, solution in (point.solve(position, load) for point in points)]
     # errors grow with what the load adds: a misaligned pair leads at no load
     unloaded = np.concatenate([np.full(load.size, np.mean(thin.no_load)) for thin in solved])
     added = COUPLED_MEAN * (np.concatenate([np.mean(thin.deflection, axis=0) for thin in solved]) - unloaded)

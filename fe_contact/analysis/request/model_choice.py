@@ -85,7 +85,7 @@ class Decision:
         error = expected_error(request.pair, plan, curves, model_chosen=request.model_chosen)
         work = effort(request.pair, plan, model, request.alignments)
         option = MeshOption(level, plan.discretization.slices, error, work)
-        return replace(self, mesh=MeshChoice(option, True, reason), plan=plan)
+        return replace(self, mesh=MeshChoice(option, met=True, reason=reason), plan=plan)
 
     def predicted(self, cache: Path | None) -> Prediction:
         """Predict the cost of the run, with the compliances that are in the cache."""
@@ -178,7 +178,7 @@ def _within_time(checked: Checked, cache: Path | None, *, keep_model: bool, trie
     fits = fits.refined(option.level, option.slices, fits.plan.nodes, fits.mesh.reason)
     needs = f"{wished.mesh.option.name} is predicted to take {engineering(seconds, 2)} CPU s of {budget:.3g}"
     error = f"expected error {fits.mesh.option.error.text}"
-    mesh = MeshChoice(fits.mesh.option, False, f"{needs}; {fits.mesh.reason}, {error}")
+    mesh = MeshChoice(fits.mesh.option, met=False, reason=f"{needs}; {fits.mesh.reason}, {error}")
     return replace(fits, mesh=mesh, wished=wished)
 
 

@@ -55,5 +55,5 @@ def known_full_contact(pair: ParallelAxes) -> tuple[FullContactLevel, ...]:
     measured = MEASURED_GEAR.macro_geometry()
     gears = [gear.macro_geometry() for gear in (pair.pinion, pair.wheel)]
     plain = all(gear.modification.neutral for gear in (pair.pinion, pair.wheel))
-    same = gears == [measured, measured] and abs(pair.center_distance - 0.08) < 1e-9
-    return FULL_CONTACT if plain and same else ()
+    is_measured = gears == [measured, measured] and abs(pair.center_distance - 0.08) < 1e-9
+    return FULL_CONTACT if plain and is_measured else ()

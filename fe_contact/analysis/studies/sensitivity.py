@@ -43,10 +43,10 @@ class RippleCurve:
     @property
     def change_error(self) -> FloatArray:
         """Error of the relative change (N,): both errors as independent ones; 0 without deviation."""
-        none = self.deviation == 0.0
-        nominal, error = float(self.peak_to_peak[none][0]), float(self.error[none][0])
+        undeviated = self.deviation == 0.0
+        nominal, error = float(self.peak_to_peak[undeviated][0]), float(self.error[undeviated][0])
         both = np.hypot(self.error, error * (1.0 + self.relative_change)) / nominal
-        return np.where(none, 0.0, both)
+        return np.where(undeviated, 0.0, both)
 
 
 @brief
@@ -60,7 +60,7 @@ class Sensitivity:
 
     @staticmethod
     def request(pair: ParallelAxes | Checked, axes: TableAxes | None, options: AnalysisOptions) -> Checked:
-        """Check the request over both deviations. No effect is neglected: each table decides that itself."""
+        """Check the request over both deviations. The effects to neglect are chosen later, for each table."""
         model = "3d" if options.model == "auto" else options.model
         return as_checked(pair, axes, replace(options, model=model), neglect=False)
 
@@ -114,7 +114,7 @@ def _sensitivity(checked: Checked, run: Run, *, corner_contact: bool) -> Sensiti
 
 
 def _with_one_nominal(*curves: RippleCurve) -> Iterator[RippleCurve]:
-    """Yield curves whose undeviated pair, which is one, has one error: the least of its estimates.
+    """Yield the curves with the same error at deviation 0, which is the same pair in all: the least estimate.
 
     Estimates that a table makes for all its deviations together are larger than those of its nominal point.
     """

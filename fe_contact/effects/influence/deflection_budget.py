@@ -11,11 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fe_contact.contact import (
-    Candidates,
-    solve_contact,
-    with_compliances,
-)
+from fe_contact.contact import Candidates, solve_contact, with_compliances
 from fe_contact.effects.composer import compose
 from fe_contact.effects.effect import ContactScene
 from fe_contact.effects.influence.estimated_curve import Both, Springs

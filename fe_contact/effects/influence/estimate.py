@@ -113,7 +113,7 @@ def _curves(scene: ContactScene, choices: Mapping[str, str], springs: Springs) -
     models = []
     for growth in ends:
         tilted = replace(scene, misalignment=np.array([growth]))
-        model = compose(tilted, choices)[0]
+        model, _ = compose(tilted, choices)
         models.append(repr(model))
         if models[-1] not in curves:  # without misalignment both ends are one
             curves[models[-1]] = springs.curve(model, load)

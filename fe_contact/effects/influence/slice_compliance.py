@@ -24,13 +24,7 @@ import numpy as np
 from fe_contact.contact import ContactModel, LoadedSlices
 from fe_contact.effects.influence.axial_compliance import antiplane_shear, plate_bending
 from fe_contact.effects.influence.tooth_bending import half_plane, tooth_bending
-from fe_contact.geometry import (
-    ParallelAxes,
-    Toothing,
-    blank_factor,
-    seat_compliance,
-    web_compliance,
-)
+from fe_contact.geometry import ParallelAxes, Toothing, blank_factor, seat_compliance, web_compliance
 from fe_contact.geometry.finite_width import finite_width_excess
 from fe_contact.geometry.web_compliance import shear_modulus, shift_compliance, torsion_compliance
 from fe_contact.types import FloatArray

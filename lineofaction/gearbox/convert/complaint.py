@@ -226,9 +226,9 @@ def _complaint(
     """
     order, hertz = _order_and_frequency(fields, speed)
     tolerance = TOLERANCE if fields.tolerance_percent is None else fields.tolerance_percent / 100.0
-    every = passing(excitations, order)
-    reach = max(tolerance, *(abs(line.distance) + SAME for line in every[:NEAREST]))
-    near = tuple(line for line in every if line.within(reach))
+    passing_lines = passing(excitations, order)
+    reach = max(tolerance, *(abs(line.distance) + SAME for line in passing_lines[:NEAREST]))
+    near = tuple(line for line in passing_lines if line.within(reach))
     complaint = Complaint(shaft, order, speed, hertz, tolerance, near, bearing=fields.bearing, **known)
     if not complaint.within:
         raise _nothing_passes(complaint, fields)

@@ -44,8 +44,8 @@ def influence_point(ledger: Iterable[Entry]) -> str:
 
 def ledger_table(ledger: Iterable[Entry]) -> tuple[list[str], list[list[str]]]:
     """Return columns and a row for each effect that is no trifle: decision, influence, price, reason."""
-    columns = ["effect", "on", "mean", "p-p", "CPU s", "why"]
-    return columns, [_row(entry) for entry in by_size(ledger)[0]]
+    large, _ = by_size(ledger)
+    return ["effect", "on", "mean", "p-p", "CPU s", "why"], [_row(entry) for entry in large]
 
 
 def _row(entry: Entry) -> list[str]:

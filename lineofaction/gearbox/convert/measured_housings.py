@@ -191,10 +191,10 @@ def _lines(channel: Channel, field: str) -> FloatArray:
 
 def _mobility(channel: Channel, sense: float, lines: FloatArray, field: str) -> ComplexArray:
     """Return the mobility at the lines, m/(N s), with the sign `sense`; 0 at 0 Hz."""
-    same = channel.abscissa.shape == lines.shape and np.allclose(
+    fits = channel.abscissa.shape == lines.shape and np.allclose(
         channel.abscissa, lines, rtol=SAME_LINES, atol=SAME_LINES * float(lines[1] - lines[0])
     )
-    if not same:
+    if not fits:
         bound = f"a function over the same {lines.size} lines as the first one"
         raise BadInput.of(field, channel.name, bound, "Export all with one frequency axis.")
     if not np.iscomplexobj(channel.values):

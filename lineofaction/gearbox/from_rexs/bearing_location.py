@@ -10,9 +10,7 @@ from typing import Any
 
 from dynamics.bearings import BallBearing, CatalogLine, RollerBearing
 from dynamics.bearings.rolling_bearing import AXIAL_PRELOAD, BOTH, DYNAMIC_CAPACITY, NEGATIVE, NONE, POSITIVE
-from lineofaction.gearbox.from_rexs.bearings import (
-    BearingGeometry,
-)
+from lineofaction.gearbox.from_rexs.bearings import BearingGeometry
 from lineofaction.gearbox.from_rexs.gear_unit import Part, rounded
 from lineofaction.gearbox.schemas.declared import figures
 

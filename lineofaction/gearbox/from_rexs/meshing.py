@@ -102,8 +102,8 @@ def _senses(unit: GearUnit) -> dict[int, _Sense]:
     links = [(shaft, gear, _aligned(shaft, gear)) for gear in gears if (shaft := gear.shaft) is not None]
     for stage in unit.of_type(*STAGES):
         if (pair := _stage_gears(stage)) is not None:
-            same = "ring_gear" in (pair[0].type, pair[1].type)
-            links.append((*pair, _aligned(*pair) * (1.0 if same else -1.0)))
+            has_ring = "ring_gear" in (pair[0].type, pair[1].type)
+            links.append((*pair, _aligned(*pair) * (1.0 if has_ring else -1.0)))
     while True:
         count = len(known)
         for first, second, ratio in links:

@@ -79,13 +79,13 @@ def _at_both_ends(helicoid: PlainFlank, modifications: Sequence[Modification]) -
     if not alike or not plain[0] or plain[0]["end_relief_length_mm"] > half_face_mm:
         return list(modifications)
     first, second = ends
-    both = replace(
+    joined = replace(
         first,
         removed=lambda roll, face: first.removed(roll, face) + second.removed(roll, face),
         fields=plain[0],
         faces=(*first.faces, *second.faces),
     )
-    return [both, *(entry for entry in modifications if entry not in ends)]
+    return [joined, *(entry for entry in modifications if entry not in ends)]
 
 
 def _both(name: str) -> str:

@@ -1,4 +1,4 @@
-"""An opened gear unit as files: a case a stage, the scene, its load cases, and the account."""
+"""An opened gear unit as files: one case per stage, the scene, its load cases, and the account."""
 
 from __future__ import annotations
 

@@ -116,7 +116,7 @@ def _options(placement: Placement) -> str:
 
 def _rival(other: Seated, first: Seated) -> bool:
     """Whether another placement is as good as the first, and not the same."""
-    same = np.allclose(other.placement.axes, first.placement.axes, atol=1e-3)
-    near = np.allclose(other.placement.origin, first.placement.origin, atol=_ALIKE)
+    same_axes = np.allclose(other.placement.axes, first.placement.axes, atol=1e-3)
+    same_origin = np.allclose(other.placement.origin, first.placement.origin, atol=_ALIKE)
     good = len(other.bores) == len(first.bores) and other.order[1] < first.order[1] + _ALIKE
-    return other is not first and good and not (same and near)
+    return other is not first and good and not (same_axes and same_origin)

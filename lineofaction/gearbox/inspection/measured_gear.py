@@ -1,7 +1,7 @@
 """Deviations of a gear in a case from the sheet of an inspection, and a sheet from deviations.
 
 A sheet has traces of tooth flanks, each a list of points: "profile" along the roll length, "helix" along the
-face, "topography" over both, and pitch deviations of one point a tooth.
+face, "topography" over both, and pitch deviations of one point per tooth.
 """
 
 from __future__ import annotations

@@ -63,7 +63,8 @@ def _component(
     location: str, component: Component, step: _Step, version: str, changes: list[Change]
 ) -> Component:
     if component.type in step["components"]["removed"]:
-        changes.append(Change(version, location, component.type, True, "components of this type are gone"))
+        reason = "components of this type are gone"
+        changes.append(Change(version, location, component.type, unchanged=True, text=reason))
         return component
     names = {attribute.id for attribute in component.attributes}
     attributes = []

@@ -118,9 +118,9 @@ class ComplaintInput(ComplaintFields):
         if self.frequency_hz is None and self.order is None:
             refuse("frequency_hz", None, "given, or order instead", "For example 1400.0, with a speed.")
         for names in (WHATS, SPEEDS):
-            one, other = (getattr(self, name) for name in names)
-            if one is not None and other is not None:
-                refuse(names[1], other, f"left out beside {names[0]}", "Give one of them.")
+            first, second = (getattr(self, name) for name in names)
+            if first is not None and second is not None:
+                refuse(names[1], second, f"left out beside {names[0]}", "Give one of them.")
         if self.frequency_hz is not None and self.road_speed_km_h is None and self.speed_rpm is None:
             bound = "given with a frequency, or road_speed_km_h instead"
             refuse("speed_rpm", None, bound, "For example 3360.0; or give the order.")

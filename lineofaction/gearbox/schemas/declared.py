@@ -102,7 +102,7 @@ class Figure:
             examples=[self.boundary_value(self.what.example)],
             json_schema_extra=extra if self.marked else None,
             # a field of a later version is left out at its default, so that older cases keep their hash
-            exclude_if=self._is_default if self.what.later else None,
+            exclude_if=self._is_default if self.what.omit_default else None,
         )
         return self.accepted, field
 
@@ -155,7 +155,7 @@ def _part_field(fact: Declared, part: type) -> tuple[Any, Any]:
         max_length=fact.maximum if several else None,
         description=fact.description,
         examples=[[example] if several else example],
-        exclude_if=operator.not_ if fact.later else None,
+        exclude_if=operator.not_ if fact.omit_default else None,
     )
     model = _MODELS.get(part) or _model_of(part)
     return (cast("Any", Listed)[model] if several else model | None), field

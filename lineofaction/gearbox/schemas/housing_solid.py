@@ -31,15 +31,15 @@ def material_by_name(value: object) -> object:
     Figures that were added after results had been stored are left out, so that a scene without them keeps
     the address of its result.
     """
-    return _figures_of(value, later=False)
+    return _figures_of(value, complete=False)
 
 
-def _figures_of(value: object, *, later: bool) -> object:
-    """Return the figures of a material by name, `later`: with those added after results had been stored."""
+def _figures_of(value: object, *, complete: bool) -> object:
+    """Return the figures of a material by name; without `complete` only those always written."""
     if not isinstance(value, str) or value not in MATERIALS:
         return value
     material = MATERIALS[value]
-    declared = [figure for figure in figures(Material) if later or not figure.what.later]
+    declared = [figure for figure in figures(Material) if complete or not figure.what.omit_default]
     return {figure.field: figure.boundary_value(getattr(material, figure.name)) for figure in declared}
 
 
@@ -52,7 +52,7 @@ class TemperaturesInput(BoundaryModel):
     """Steady temperature of the housing; shafts, gears and rings of rolling bearings then state theirs."""
 
     housing_material: Annotated[
-        HousingMaterialInput, BeforeValidator(lambda value: _figures_of(value, later=True), MATERIAL)
+        HousingMaterialInput, BeforeValidator(lambda value: _figures_of(value, complete=True), MATERIAL)
     ] = Field(
         description="Material of the housing with thermal_expansion_per_k, or the name of a material",
         examples=["cast_aluminum"],

@@ -242,8 +242,8 @@ class HousingInput(_MatrixHousing):
     @model_validator(mode="after")
     def _one_source(self) -> Self:
         """Refuse missing fields of one kind of housing, and fields that belong to another."""
-        every = ("stiffness_matrix", *SOURCES, RESPONSES)
-        sources = [name for name in every if getattr(self, name) is not None]
+        all_sources = ("stiffness_matrix", *SOURCES, RESPONSES)
+        sources = [name for name in all_sources if getattr(self, name) is not None]
         if len(sources) != 1:
             others = "step_file, mesh_file, stiffness_file, modes_file or frf_file"
             bound = f"given, or {others} instead, one of them"

@@ -69,9 +69,9 @@ class StudyCost:
     def _by_name(self) -> Iterator[Work]:
         """The parts; those of one name are one part, with the mean cost of a piece."""
         for name in dict.fromkeys(part.name for part in self.parts):
-            same = [part for part in self.parts if part.name == name]
-            count = sum(part.pieces for part in same)
-            yield Work(name, sum(part.seconds for part in same) / max(count, 1.0), count)
+            parts = [part for part in self.parts if part.name == name]
+            count = sum(part.pieces for part in parts)
+            yield Work(name, sum(part.seconds for part in parts) / max(count, 1.0), count)
 
     def __add__(self, later: StudyCost) -> StudyCost:
         """Return the cost of this work and another after it."""

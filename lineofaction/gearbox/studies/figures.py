@@ -78,7 +78,7 @@ class _Declared:
 
     def lookup(self, members: Json, sources: tuple[Any, ...]) -> tuple[Any, Callable[[Any], Any]]:
         """Return the value of the figure, and the conversion to its unit."""
-        convert = _unit(self.name)[1]
+        _, convert = _unit(self.name)
         if self.name in members:
             return members[self.name], _same
         if self.bare in members:

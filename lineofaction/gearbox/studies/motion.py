@@ -35,8 +35,8 @@ class UnitMotion:
     @staticmethod
     def of_surface(surface: SurfaceShape, *, is_velocity: bool) -> UnitMotion:
         """Return the motion of a surface alone."""
-        none = np.empty(0, dtype=np.int64), np.empty(0), np.empty((0, 6), dtype=complex)
-        return UnitMotion((), *none, oscillates=True, surface=surface, is_velocity=is_velocity)
+        no_shafts = np.empty(0, dtype=np.int64), np.empty(0), np.empty((0, 6), dtype=complex)
+        return UnitMotion((), *no_shafts, oscillates=True, surface=surface, is_velocity=is_velocity)
 
     def at_stations(self, count: int) -> dict[str, tuple[FloatArray, ComplexArray]]:
         """Return stations evenly spaced along each shaft, m, and the motion there, (count, 6)."""

@@ -79,8 +79,8 @@ def surface_motion(subject: TabledScene, freedom: Sequence[str]) -> NDArray[np.f
             columns = [number[f"{hull.name}.{kind}"] for kind in modal.kinds]
             motion[..., columns] = body.surface.motion[nodes] @ (scene_axes(body) @ modal.rows)
         motions.append(motion)
-    every = np.concatenate(motions)
-    return every if np.any(every) else np.empty((0, 3, 0), dtype=np.float32)
+    all_motions = np.concatenate(motions)
+    return all_motions if np.any(all_motions) else np.empty((0, 3, 0), dtype=np.float32)
 
 
 def _body(kind: str, name: str, shaft: Shaft, *rings: Ring) -> Body:

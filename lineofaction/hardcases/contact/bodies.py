@@ -15,7 +15,7 @@ from lineofaction.hardcases.contact.contact_case import (
     ContactCase,
     contact_case,
     even_positions,
-    mean_off,
+    mean_relative,
     nominal_gear,
     nominal_pair,
 )
@@ -56,7 +56,7 @@ def _plastic_on_steel() -> Sequence[Measured]:
         ),
         Measured(
             "soft gear driving, position turned: mean STE, relative difference",
-            mean_off(reversed_ste[:, 1], solution.deflection[:, 1]),
+            mean_relative(reversed_ste[:, 1], solution.deflection[:, 1]),
             maximum=5e-3,
         ),
     )

@@ -104,12 +104,12 @@ def even_positions(count: int) -> FloatArray:
     return np.arange(count) / count
 
 
-def off(values: FloatArray, expected: FloatArray) -> float:
+def max_relative(values: FloatArray, expected: FloatArray) -> float:
     """Return the largest relative difference."""
     return float(np.abs(values / expected - 1.0).max())
 
 
-def mean_off(values: FloatArray, expected: FloatArray) -> float:
+def mean_relative(values: FloatArray, expected: FloatArray) -> float:
     """Return the relative difference of the means."""
     return abs(float(values.mean() / expected.mean()) - 1.0)
 

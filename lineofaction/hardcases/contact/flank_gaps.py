@@ -94,8 +94,8 @@ def _pitch_error_beyond_deflection() -> Sequence[Measured]:
     pitch = np.repeat(np.arange(_TEETH), _POSITIONS)
     problem, solution = case.solve(position, case.plan.load, pitch)
     shift = _STEP * np.cos(plain.pair.pinion.transverse_pressure_angle)
-    every = contact_case(_with_pitch((_STEP,) * _TEETH), bodies=plain.contact)
-    shifted = every.ste(position) - equal.deflection + shift
+    all_shifted = contact_case(_with_pitch((_STEP,) * _TEETH), bodies=plain.contact)
+    shifted = all_shifted.ste(position) - equal.deflection + shift
     # the tooth of each candidate (positions, candidates): pairs count back from the pitch
     tooth = pitch[:, None] - problem.candidates.pair
     carried = np.tile(equal.force[:, 0] > 0.0, (_TEETH, 1))

@@ -16,7 +16,7 @@ from lineofaction.hardcases.contact.contact_case import (
     ContactCase,
     contact_case,
     even_positions,
-    off,
+    max_relative,
 )
 from lineofaction.hardcases.contact.laws import soundness
 from lineofaction.hardcases.scene import Measured, Scenes, largest
@@ -55,7 +55,7 @@ def _handover_at_ratio(ratio: float) -> Sequence[Measured]:
             abs(_mean_pairs(case) - ratio),
             maximum=2.0 / _COUNTED,
         ),
-        Measured("STE one pitch further, relative change", off(ends[1], ends[0]), maximum=CYCLIC),
+        Measured("STE one pitch further, relative change", max_relative(ends[1], ends[0]), maximum=CYCLIC),
         Measured("load shares off one", largest(shares - 1.0), maximum=1e-12),
         Measured("smallest share", loaded.min(), minimum=0.0),
     )

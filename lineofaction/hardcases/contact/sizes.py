@@ -15,10 +15,10 @@ from lineofaction.hardcases.contact.contact_case import (
     ContactCase,
     contact_case,
     even_positions,
-    mean_off,
+    max_relative,
+    mean_relative,
     nominal_gear,
     nominal_pair,
-    off,
 )
 from lineofaction.hardcases.contact.laws import soundness
 from lineofaction.hardcases.scene import Measured, Scenes, largest
@@ -43,7 +43,9 @@ def _module_of(module: float) -> Sequence[Measured]:
         figures += [
             *(replace(figure, name=f"{figure.name}, {model}") for figure in soundness(problem, solution)),
             Measured(
-                f"STE over the scaled one, off by, {model}", off(solution.deflection, expected), maximum=1e-7
+                f"STE over the scaled one, off by, {model}",
+                max_relative(solution.deflection, expected),
+                maximum=1e-7,
             ),
         ]
     return figures
@@ -76,9 +78,9 @@ def _slight_helix() -> Sequence[Measured]:
     curve = solution.deflection[:, 0]
     return (
         *soundness(problem, solution, compared=8),
-        Measured("mean STE against the spur pair's", mean_off(curve, plain), maximum=2e-3),
+        Measured("mean STE against the spur pair's", mean_relative(curve, plain), maximum=2e-3),
         Measured("least slip below the spur pair's curve, m", np.max(plain.min() - curve), maximum=5e-8),
-        Measured("left hand against right hand", off(mirrored, curve), maximum=1e-9),
+        Measured("left hand against right hand", max_relative(mirrored, curve), maximum=1e-9),
     )
 
 
@@ -99,8 +101,8 @@ def _steep_helix() -> Sequence[Measured]:
     return (
         *soundness(problem, solution, compared=8),
         Measured("total contact ratio", right.pair.total_contact_ratio, minimum=2.0),
-        Measured("left hand against right hand", off(mirrored, curve), maximum=1e-9),
-        Measured("STE one pitch further", off(next_pitch.deflection, curve), maximum=1e-9),
+        Measured("left hand against right hand", max_relative(mirrored, curve), maximum=1e-9),
+        Measured("STE one pitch further", max_relative(next_pitch.deflection, curve), maximum=1e-9),
         Measured("load shares off one", largest(shares - 1.0), maximum=1e-12),
     )
 

@@ -89,7 +89,7 @@ def _mesher_killed() -> Sequence[Measured]:
     outcome, killed = _killing(MESHER_COMMAND, 1)
     is_explained = "gmsh worker: killed by SIGKILL" in outcome.job.message
     return (
-        Measured("meshers killed", killed, 1.0, 1.0),
+        Measured("meshers killed", killed, maximum=1.0, minimum=1.0),
         Measured("failed at the first attempt", outcome.ended_as("failed", 1), minimum=1.0),
         Measured("says that the mesh failed, and how", is_explained, minimum=1.0),
         *outcome.figures,
@@ -107,7 +107,7 @@ def _worker_killed_once() -> Sequence[Measured]:
     outcome, killed = _killing(WORKER_COMMAND, 1, overtaken=True)
     off = np.inf if outcome.errors is None else largest_difference(outcome.errors, python_ste())
     return (
-        Measured("workers killed", killed, 1.0, 1.0),
+        Measured("workers killed", killed, maximum=1.0, minimum=1.0),
         Measured("done at the first attempt", outcome.ended_as("successful", 1), minimum=1.0),
         Measured("result off that of Python, m", off, maximum=0.0),
         *outcome.figures,
@@ -125,7 +125,7 @@ def _worker_killed_always() -> Sequence[Measured]:
     message = outcome.job.message
     is_explained = "ended by SIGSEGV" in message and message.endswith("That was attempt 2 of 2.")
     return (
-        Measured("workers that crashed", killed, 2.0, 2.0),
+        Measured("workers that crashed", killed, maximum=2.0, minimum=2.0),
         Measured("failed at the last attempt", outcome.ended_as("failed", 2), minimum=1.0),
         Measured("says what ended it, and how often it was tried", is_explained, minimum=1.0),
         *outcome.figures,

@@ -51,7 +51,7 @@ def _disk_full() -> Sequence[Measured]:
     is_explained = "no space left" in outcome.job.message and "Make room" in outcome.job.message
     off = np.inf if outcome.errors is None else largest_difference(outcome.errors, python_ste())
     return (
-        Measured("workers without room", len(limited), 1.0, 1.0),
+        Measured("workers without room", len(limited), maximum=1.0, minimum=1.0),
         Measured("failed at the first attempt", outcome.ended_as("failed", 1), minimum=1.0),
         Measured("names the cause and what to try", is_explained, minimum=1.0),
         Measured("submitted again with room, off that of Python, m", off, maximum=0.0),

@@ -161,7 +161,7 @@ def _causes_panel(name: str, cases: tuple[CaseDeflection, ...]) -> Panel:
         if not np.any(part):
             continue
         base = np.where(part > 0.0, above, below)
-        bars.append(Bars(cause, x, base + part, base, 0.5, color))
+        bars.append(Bars(cause, x, base + part, base, width=0.5, color=color))
         above = above + np.maximum(part, 0.0)
         below = below + np.minimum(part, 0.0)
     total = Line("sum", x, parts.sum(axis=1), palette.INK, width=0.0, markers=True)

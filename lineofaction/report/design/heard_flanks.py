@@ -46,7 +46,7 @@ def _panel(result: HeardOptimization, load: int) -> Panel:
     for side, (name, design, color) in zip((-0.5, 0.5), designs, strict=True):
         x = line + side * _WIDTH
         level, error = design.level[load], design.level_error[load]
-        bars.append(Bars(name, x, level, floor, _WIDTH, color))
+        bars.append(Bars(name, x, level, base=floor, width=_WIDTH, color=color))
         bars.append(Bars("error", x, level + error, level - error, 0.4 * _WIDTH, palette.INK, veiled=True))
     names = [line if line == "all" else f"order {line}" for line in result.lines]
     return Panel(Axis.of_names(names), Axis(result.unit), bars=tuple(bars), title=_loads(result)[load])

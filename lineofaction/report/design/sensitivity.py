@@ -111,8 +111,18 @@ def _change(curve: RippleCurve, index: int) -> str:
 
 
 def _reasons(studies: Sequence[PairStudy]) -> list[str]:
-    """Return for every curve why the center distance changes the ripple where it changes most."""
-    return [_reason(study, curves) for study in studies for curves in study.curves]
+    """Return why the center distance changes the ripple where it changes most; equal reasons stand once."""
+    lines = []
+    for study in studies:
+        models: dict[str, list[str]] = {}
+        for curves in study.curves:
+            preposition = "with" if curves.corner_contact else "without"
+            models.setdefault(_reason(study, curves), []).append(preposition)
+        for reason, prepositions in models.items():
+            model = f"{' and '.join(prepositions)} corner contact"
+            name = f"{study.name} {model}" if len(studies) > 1 else f"{model[0].upper()}{model[1:]}"
+            lines.append(f"{name}: {reason}")
+    return lines
 
 
 def _reason(study: PairStudy, curves: Sensitivity) -> str:
@@ -120,14 +130,12 @@ def _reason(study: PairStudy, curves: Sensitivity) -> str:
     maximum = int(abs(curve.relative_change).argmax())
     change = float(curve.relative_change[maximum])
     before, after = float(curve.carrying[curve.deviation == 0.0][0]), float(curve.carrying[maximum])
-    preposition = "with" if curves.corner_contact else "without"
     deviation = f"{round(float(at[maximum]), 9):+g} % of center distance"
-    name = f"{study.name} {preposition} corner contact"
     size = _change(curve, maximum)
     if size == NO_CHANGE:
-        return f"{name}: {deviation} changes the ripple by less than the errors of both."
+        return f"{deviation} changes the ripple by less than the errors of both."
     verb = "lowers" if change < 0.0 else "raises"
-    return f"{name}: {deviation} {verb} the ripple by {size[1:]}, {_by_pairs(before, after, change)}."
+    return f"{deviation} {verb} the ripple by {size[1:]}, {_by_pairs(before, after, change)}."
 
 
 def _by_pairs(before: float, after: float, change: float) -> str:
@@ -161,13 +169,14 @@ def _page(studies: Sequence[PairStudy]) -> Page:
 def _largest(
     over: str, unit: str, studies: Sequence[PairStudy], curve_of: Callable[[PairStudy, Sensitivity], Curve]
 ) -> Headline:
-    named = [(study.name, *curve_of(study, curves)) for study in studies for curves in study.curves]
-    name, at, curve = max(named, key=lambda entry: float(entry[2].peak_to_peak.max()))
+    curves = [(study, *curve_of(study, curves)) for study in studies for curves in study.curves]
+    study, at, curve = max(curves, key=lambda entry: float(entry[2].peak_to_peak.max()))
     k = int(curve.peak_to_peak.argmax())
     ripple, error = 1e6 * float(curve.peak_to_peak[k]), 1e6 * float(curve.error[k])
     change = _change(curve, k)
     against = f"{change} {'from' if change == NO_CHANGE else 'of'} the undeviated pair's"
-    where = f"{round(float(at[k]), 9):g} {unit}, {name}: {against}"
+    name = f", {study.name}" if len(studies) > 1 else ""
+    where = f"{round(float(at[k]), 9):g} {unit}, {_load(study)}{name}: {against}"
     band = f"± {error_text(ripple, error)} µm at {where}"
     return Headline(f"largest peak-to-peak STE over {over}", f"{to_error(ripple, error)} µm", band)
 

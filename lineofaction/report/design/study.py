@@ -30,7 +30,7 @@ def _label(study: Study, response: int) -> str:
 
 def _unit(study: Study, response: int) -> str:
     """Return the unit of a response as plots have it."""
-    symbol = in_boundary_units(study, response)[0]
+    symbol, _ = in_boundary_units(study, response)
     return {"um": "µm", "": "ratio"}.get(symbol, symbol)
 
 
@@ -56,7 +56,7 @@ def _over(study: Study, axes: list[int]) -> str:
 
 def _map(study: Study, across: int, up: int, response: int) -> Panel:
     x, y = (np.unique(study.value[:, axis]) for axis in (across, up))
-    scale = in_boundary_units(study, response)[1]
+    _, scale = in_boundary_units(study, response)
     z = np.full((y.size, x.size), np.nan)
     for row, column in np.ndindex(z.shape):
         cell_runs = (study.value[:, across] == x[column]) & (study.value[:, up] == y[row])
@@ -81,7 +81,7 @@ def _curves(study: Study, axis: int, responses: range) -> Figure:
 
 
 def _lines(study: Study, axis: int, response: int) -> tuple[Line, ...]:
-    scale = in_boundary_units(study, response)[1]
+    _, scale = in_boundary_units(study, response)
     levels, mean = study.level_means(axis, response)
     lines = [Line("mean", levels, mean / scale, palette.BLUE, markers=True)]
     if study.samples > 1:
@@ -107,7 +107,7 @@ def _distribution_figure(study: Study) -> Figure:
 
 def _cumulative(study: Study, response: int) -> list[Line]:
     """Draw step curves of a few combinations; without samples one curve of all points."""
-    scale = in_boundary_units(study, response)[1]
+    _, scale = in_boundary_units(study, response)
     rows = study.column(response) if study.samples > 1 else study.figure[:, response][None]
     chosen = np.unique(np.linspace(0, len(rows) - 1, min(len(rows), MAX_CURVES)).round().astype(int))
     lines = []
@@ -155,7 +155,7 @@ def _tornado_figure(study: Study) -> Figure:
 
 def _by_levels(study: Study) -> list[Panel]:
     """Draw a bar between the means of the levels of each factor; none where none is known."""
-    scale = in_boundary_units(study, 0)[1]
+    _, scale = in_boundary_units(study, 0)
     bars = []
     for factor in _varied(study):
         if study.kind[factor] in ("grid", "list") and np.isfinite(study.swing(factor, 0)):
@@ -191,7 +191,7 @@ def _extreme(study: Study) -> str:
     if not np.isfinite(first).any():
         return "No run has figures."
     point = int(np.nanargmax(first))
-    scale = in_boundary_units(study, 0)[1]
+    _, scale = in_boundary_units(study, 0)
     values = zip(study.factor, study.value[point], strict=True)
     levels = ", ".join(f"{name} = {value:.6g}" for name, value in values)
     largest = f"{number(float(first[point]) / scale, 4)} {_unit(study, 0)}"
@@ -208,7 +208,7 @@ def _study_figures(study: Study) -> tuple[Figure, ...]:
 def _summary_table(study: Study) -> Table:
     rows = []
     for k in range(len(study.response)):
-        scale = in_boundary_units(study, k)[1]
+        _, scale = in_boundary_units(study, k)
         values = study.figure[:, k][np.isfinite(study.figure[:, k])] / scale
         errors = study.error[:, k][np.isfinite(study.error[:, k])] / scale
         texts = ["none"] * 3
@@ -225,7 +225,7 @@ def _extreme_table(study: Study) -> Table:
     points = usable[np.argsort(-first[usable], kind="stable")][:MAX_ROWS]
     varied, responses = _varied(study), range(len(study.response))
     head = (*(_short(study, k) for k in varied), *(_label(study, k) for k in responses))
-    units = [in_boundary_units(study, k)[1] for k in responses]
+    units = [scale for _, scale in (in_boundary_units(study, k) for k in responses)]
     rows = []
     for point in points:
         levels = (f"{study.value[point, k]:.6g}" for k in varied)

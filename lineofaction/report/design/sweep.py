@@ -12,15 +12,7 @@ from fe_contact.microgeometry.sweep import SweptQuantity
 from fe_contact.microgeometry.sweep_request import TORQUE
 from lineofaction.gearbox.studies.sweep.run import QUANTITIES, SweepResult
 from lineofaction.report.drawing import palette
-from lineofaction.report.drawing.figure import (
-    Axis,
-    Figure,
-    HeatMap,
-    Line,
-    Panel,
-    Table,
-    ordered_lines,
-)
+from lineofaction.report.drawing.figure import Axis, Figure, HeatMap, Line, Panel, Table, ordered_lines
 from lineofaction.report.drawing.page import Headline, Page, Section
 from lineofaction.report.presentation import Presentation
 
@@ -106,9 +98,11 @@ def figure(result: SweepResult) -> Figure:
 
 def _figures(result: SweepResult) -> tuple[Figure, ...]:
     """Return the figures: of two axes the maps and the curves of the first quantity, of one the curves."""
-    text = " ".join(f"{h.name[0].upper()}{h.name[1:]}: {h.value} {h.remark}." for h in _headlines(result))
-    drawn = (_maps(result), _curves(result)) if len(result.axes) == 2 else (_curves(result),)
-    return tuple(replace(figure, alternative=text) for figure in drawn)
+    texts = [f"{h.name[0].upper()}{h.name[1:]}: {h.value} {h.remark}." for h in _headlines(result)]
+    if len(result.axes) == 1:
+        return (replace(_curves(result), alternative=" ".join(texts)),)
+    least, largest = texts or ("", "")
+    return replace(_maps(result), alternative=least), replace(_curves(result), alternative=largest)
 
 
 def _table(result: SweepResult, quantity: SweptQuantity) -> Table:

@@ -23,6 +23,7 @@ DRAWING_WIDTH, TALLEST = 3.3, 2.0
 """Width of a panel over its usual height, and the height of the tallest drawing over that."""
 _SLIM = 1.5  # height of a drawing over the usual one from which on half the width does
 _SHORT = 12  # most characters of a line's label in a panel of half the width
+_FEW_MARKS = 4  # most references and notes of a figure of half the width
 _MAX_INTEGER = 30  # an axis of whole numbers up to here has no ticks between them
 _FEW_ORDERS = 4.0  # an axis of fewer orders, with fractions of them, has ticks between
 
@@ -361,6 +362,38 @@ def legend_names(panels: Sequence[Panel]) -> list[str]:
 
 def _few_marks(shade: HeatMap | Strokes | None) -> bool:
     return shade is None or (isinstance(shade, HeatMap) and not shade.isolines)
+
+
+def half_figures(figures: Sequence[Figure]) -> set[str]:
+    """Return the keys of the figures of a section that are printed on half the width.
+
+    These are figures of one plain panel, and one of two panels, which are then stacked, beside such a figure.
+    """
+    keys: set[str] = set()
+    index = 0
+    while index < len(figures):
+        pair = figures[index : index + 2]
+        panels = [len(figure.content) for figure in pair]
+        if len(pair) == 2 and 1 in panels and all(map(_fits_half, pair)):
+            keys |= {figure.key for figure in pair}
+            index += 1
+        elif panels[0] == 1 and _fits_half(pair[0]):
+            keys.add(pair[0].key)
+        index += 1
+    return keys
+
+
+def _fits_half(figure: Figure) -> bool:
+    """Whether a figure is legible at half the width of a page: at most two plain panels, few labels."""
+    if figure.picture is not None or not 1 <= len(figure.content) <= 2:
+        return False
+    for panel in figure.content:
+        labels = max((len(row) for line in panel.lines for row in line.label.split("\n")), default=0)
+        if panel.equal or not _few_marks(panel.shade) or labels > _SHORT:
+            return False
+        if len(panel.references) + len(panel.notes) > _FEW_MARKS:
+            return False
+    return True
 
 
 def panel_rows(panels: Sequence[Panel], across: int) -> list[list[int]]:

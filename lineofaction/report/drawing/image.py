@@ -55,21 +55,26 @@ from lineofaction.report.drawing.placing import line_labels, rewritten, vertical
 THIN, THICK = 0.7, 4.0  # points, width of strokes at zero and at the largest value
 _WIDTH = 9.0  # width of the sheet, inches
 _DPI = 150
-_PANEL_HEIGHT = 2.0  # height of a wide panel, inches
-_NARROW_HEIGHT = 1.64  # height of a narrow panel, inches
+_PANEL_HEIGHT = 1.7  # height of a wide panel, inches
+_NOTED_HEIGHT, _MANY_NOTES = 2.0, 5  # height of a wide panel with as many notes, inches
+_NARROW_HEIGHT = 1.45  # height of a narrow panel, inches
 _DRAWING_HEIGHT = 2.6  # height of a panel with equal units in both directions, inches
-_LEGEND_HEIGHT = 0.9  # height of title and legend together, inches
+_LEGEND_HEIGHT = 0.9  # height of title and legend of one row each together, inches
+_ROW_HEIGHT = 0.2  # height of a further row of the title or the legend, inches
 _SHADED_WIDTH = 0.82  # width of a panel beside its color bar, over the width without one
 _LEGEND_CHARACTERS = 120  # characters of the legend's type across the sheet
 _HANDLE_CHARACTERS = 9  # the same, for the sample of the curve and the gap beside a name
 _LEGEND_COLUMNS = 6  # most columns of the legend
 _NOTE_ROW = 10  # points, height of a row of notes at one position
+_HALF_TITLE = 40  # characters in a row of the title of a figure of half the width
 _HALF_LABEL = 46  # characters in a row of a label below a narrow panel, and of its title
 _HIGH_LABEL = 26  # characters in a row of a label beside a wide panel
 _NARROW_LABEL = 20  # characters in a row of a label beside a narrow panel
+_NARROW_TICKS = 6  # most intervals between ticks below a narrow panel
+_NARROW_NAMES = 9  # most named ticks of a narrow panel of which all have their name
 _NARROW_TYPE = 9  # points, type of the labels of a narrow panel
 _LONGEST_WORD = 26  # characters; a longer word would leave no width for panels
-_LABEL_ROW = 0.1  # height of a row of a label at the end of a line, over the height of the panel
+_LABEL_ROW = 0.09  # height of a row of a label at the end of a line, over the height of the panel
 _LEADER = 0.02  # distance from the end of a line to its label, over the width of the panel
 _NARROW = 100.0  # a logarithmic axis whose ends have at most this ratio shows plain numbers
 _DECADE = (1.0, 10.0)  # limits of a logarithmic axis without a positive value
@@ -79,14 +84,16 @@ _TINT = 0.13  # opacity of the inside of an outline
 _DASH = {"solid": "-", "dash": "--", "dot": ":"}
 
 
-def png(figure: Figure, across: int = 1) -> bytes:
+def png(figure: Figure, across: int = 1, *, half: bool = False) -> bytes:
     """Draw `figure` with at most `across` panels in a row, and return the bytes of the PNG file.
 
-    Of a figure that has a picture, the picture is returned.
+    `half`: a figure of narrow panels is drawn on half the width. Of a figure that has a picture, the picture
+    is returned.
     """
     if figure.picture is not None:
         return figure.picture()
-    return _image(figure, "png", {"Title": figure.title, "Description": figure.alternative}, across)
+    metadata: dict[str, str | None] = {"Title": figure.title, "Description": figure.alternative}
+    return _image(figure, "png", metadata, across, half=half)
 
 
 def still(image: bytes) -> bytes:
@@ -102,10 +109,12 @@ def svg(figure: Figure) -> bytes:
     return _image(figure, "svg", {"Title": figure.title, "Description": figure.alternative, "Date": None})
 
 
-def _image(figure: Figure, form: str, metadata: dict[str, str | None], across: int = 1) -> bytes:
+def _image(
+    figure: Figure, form: str, metadata: dict[str, str | None], across: int = 1, *, half: bool = False
+) -> bytes:
     """Return the bytes of a file of the `form` "png" or "svg"; a metadata entry of None is left out."""
     sheet = Sheet(layout="constrained")
-    draw_figure(sheet, figure, across)
+    draw_figure(sheet, figure, across, half=half)
     FigureCanvasAgg(sheet)
     if any(panel.equal for panel in figure.content):
         # Equal units change the height of a panel when it is drawn: a first pass gives the layout that
@@ -134,10 +143,12 @@ def _glyphs() -> frozenset[int]:
     return frozenset(get_font(findfont(FontProperties())).get_charmap())
 
 
-def draw_figure(sheet: Sheet, figure: Figure, across: int = 1) -> list[Axes]:
+def draw_figure(sheet: Sheet, figure: Figure, across: int = 1, *, half: bool = False) -> list[Axes]:
     """Draw a figure with its title on an empty sheet; return the axes of its panels."""
-    axes = panel_axes(sheet, rewritten(figure.content, drawable), across)
-    sheet.suptitle(drawable(figure.title), x=0.01, ha="left", size=12, weight="bold", color=palette.INK)
+    axes = panel_axes(sheet, rewritten(figure.content, drawable), across, half=half)
+    title = fill(drawable(figure.title), _HALF_TITLE) if half else drawable(figure.title)
+    sheet.set_figheight(sheet.get_figheight() + _ROW_HEIGHT * title.count("\n"))
+    sheet.suptitle(title, x=0.01, ha="left", size=12, weight="bold", color=palette.INK)
     return axes
 
 
@@ -148,23 +159,28 @@ def panel_sheet(panels: tuple[Panel, ...], across: int = 1) -> Sheet:
     return sheet
 
 
-def panel_axes(sheet: Sheet, panels: tuple[Panel, ...], across: int = 1) -> list[Axes]:
+def panel_axes(sheet: Sheet, panels: tuple[Panel, ...], across: int = 1, *, half: bool = False) -> list[Axes]:
     """Draw panels in rows of at most `across` on an empty sheet; return the axes of each.
 
     Curves of one name share one entry in the legend below the panels. A single entry needs no legend.
+    `half`: the sheet has half the usual width, and a panel of a row is as narrow as one of two.
     """
     rows = panel_rows(panels, across)  # indices of the panels of every row
-    heights = [max(_height(panels[index], len(row)) for index in row) for row in rows]
-    sheet.set_size_inches(_WIDTH, sum(heights) + _LEGEND_HEIGHT)
+    shares = 2 if half else 1  # of the usual width
+    heights = [max(_height(panels[index], shares * len(row)) for index in row) for row in rows]
+    sheet.set_size_inches(_WIDTH / shares, sum(heights) + _LEGEND_HEIGHT)
     grid = sheet.add_gridspec(len(rows), max(map(len, rows)), height_ratios=heights)
     axes: list[Axes] = []
     for row, columns in enumerate(rows):
         cells = [grid[row, :]] if len(columns) == 1 else [grid[row, k] for k in range(len(columns))]
         axes += [sheet.add_subplot(cell) for cell in cells]
-    handles = draw_panels(panels, axes, {row[0] for row in rows if len(row) == 1})
+    handles = draw_panels(panels, axes, {row[0] for row in rows if len(row) == 1 and not half})
     if len(handles) > 1:
         look: dict[str, Any] = {"loc": "outside lower left", "frameon": False, "fontsize": 9}
-        sheet.legend(handles.values(), handles.keys(), ncols=_legend_columns(list(handles)), **look)
+        columns = _legend_columns(list(handles), _LEGEND_CHARACTERS // shares)
+        sheet.legend(handles.values(), handles.keys(), ncols=columns, **look)
+        further = math.ceil(len(handles) / columns) - 1
+        sheet.set_figheight(sheet.get_figheight() + _ROW_HEIGHT * further)
     return axes
 
 
@@ -174,7 +190,7 @@ def draw_panels(panels: Sequence[Panel], axes: Sequence[Axes], wide: Container[i
     names = legend_names(panels)
     for index, (panel, ax) in enumerate(zip(panels, axes, strict=True)):
         if panel.shade is not None:
-            _draw_shade(ax, panel.shade)
+            _draw_shade(ax, panel, _HIGH_LABEL if index in wide else _NARROW_LABEL)
         drawn = [(line.name, _draw(ax, line)) for line in panel.lines]
         drawn += [(bars.name, _draw_bars(ax, bars)) for bars in panel.bars]
         for name, handle in drawn:
@@ -188,6 +204,11 @@ def draw_panels(panels: Sequence[Panel], axes: Sequence[Axes], wide: Container[i
             ax.set_ylabel(fill(panel.y.label, _NARROW_LABEL), fontsize=_NARROW_TYPE)
             title = fill(panel.title, _HALF_LABEL)
             ax.set_title(title, loc="left", fontsize=_NARROW_TYPE, fontweight="bold")
+            if panel.x.scale == "linear" and not panel.x.names:
+                ax.locator_params(axis="x", nbins=_NARROW_TICKS)
+            if len(panel.x.names) > _NARROW_NAMES:  # every second name, or they would overlap
+                texts = [text if k % 2 == 0 else "" for k, (_, text) in enumerate(panel.x.names)]
+                ax.set_xticks([value for value, _ in panel.x.names], labels=texts)
         # the panel below, of the same width, has the same label
         if repeats_below(panels, index) and index in wide and index + 1 in wide:
             ax.set_xlabel("")
@@ -196,14 +217,15 @@ def draw_panels(panels: Sequence[Panel], axes: Sequence[Axes], wide: Container[i
 
 def _height(panel: Panel, columns: int) -> float:
     """Return the height in inches of a panel in a row of some columns."""
-    usual = _PANEL_HEIGHT if columns == 1 else _NARROW_HEIGHT
+    wide = _PANEL_HEIGHT if len(panel.notes) < _MANY_NOTES else _NOTED_HEIGHT
+    usual = wide if columns == 1 else _NARROW_HEIGHT
     drawing = _DRAWING_HEIGHT if panel.shade is None else _SHADED_WIDTH * _DRAWING_HEIGHT
     return panel_height(panel, columns) * (drawing if panel.equal else usual)
 
 
-def _legend_columns(names: list[str]) -> int:
-    """Return the number of columns of a legend: at most as many as fit, with rows of about equal length."""
-    fitting = max(_LEGEND_CHARACTERS // (max(map(len, names)) + _HANDLE_CHARACTERS), 1)
+def _legend_columns(names: list[str], characters: int) -> int:
+    """Return the number of columns of a legend of a width in `characters`, with rows about equally long."""
+    fitting = max(characters // (max(map(len, names)) + _HANDLE_CHARACTERS), 1)
     rows = math.ceil(len(names) / min(fitting, _LEGEND_COLUMNS))
     return math.ceil(len(names) / rows)
 
@@ -212,11 +234,16 @@ def _color_map(colors: Sequence[str] = palette.CIVIDIS) -> LinearSegmentedColorm
     return LinearSegmentedColormap.from_list("palette", colors)  # a name is required
 
 
-def _draw_shade(ax: Axes, shade: HeatMap | Strokes) -> None:
-    """Draw colors with their color bar; its pad and fraction are parts of the panel's width."""
+def _draw_shade(ax: Axes, panel: Panel, width: int) -> None:
+    """Draw the colors of a panel with their color bar, whose label leaves out what the title says.
+
+    `width`: characters in a row of the label. Pad and fraction of the bar are parts of the panel's width.
+    """
+    shade: Any = panel.shade
     drawn = _cells(ax, shade) if isinstance(shade, HeatMap) else _strokes(ax, shade)
+    label = shade.label.removeprefix(panel.title).removeprefix(", ")
     figure: Any = ax.get_figure()
-    figure.colorbar(drawn, ax=ax, label=fill(shade.label, _HIGH_LABEL), pad=0.015, fraction=0.06, aspect=14)
+    figure.colorbar(drawn, ax=ax, label=fill(label, width), pad=0.015, fraction=0.06, aspect=14)
 
 
 def _cells(ax: Axes, shade: HeatMap) -> Any:

@@ -14,7 +14,7 @@ from html import escape
 from importlib.resources import files
 from typing import Any
 
-from lineofaction.report.drawing.figure import Figure, Sound, Table, numbers
+from lineofaction.report.drawing.figure import Figure, Sound, Table, half_figures, numbers
 from lineofaction.report.drawing.interactive import plotly_figure
 
 Json = dict[str, Any]
@@ -22,8 +22,9 @@ SCRIPT, STYLE_SHEET = "player.js", "player.css"
 """Names of the player's files, which the page of the service shares."""
 _ROWS_OF_A_PAGE = 40
 """Most rows of a table that is not divided between printed pages."""
-_HALF_OF_A_PAGE, _ACROSS_A_PAGE = 56, 110
-"""Widths of tables in characters: largest width beside which another table fits, and largest on a page."""
+_HALF_OF_A_PAGE, _BROKEN_TO_HALF, _ACROSS_A_PAGE = 64, 96, 110
+"""Widths of tables in characters: the largest beside which another table fits, whole or with broken cells,
+and the largest on a page."""
 _SHORT = 24
 """Most characters of a cell that stays on one line where the table fits."""
 # In this page players stand in the document: the script joins them to their plot once that is drawn.
@@ -176,7 +177,7 @@ def _library() -> str:
 
 
 def _margins(page: Page) -> str:
-    """Return the margin texts of every printed page, apart from its number."""
+    """Return the margin texts of every printed page, without its number."""
     corner = page.block.corner if page.block else ""
     texts = {"top-left": page.title, "top-right": corner, "bottom-left": "lineofaction"}
     plain = {corner_name: re.sub(r"[^\w .,:;()/+-]", " ", text) for corner_name, text in texts.items()}
@@ -213,7 +214,11 @@ def _header(page: Page) -> str:
 
 def _section(section: Section, index: int, images: dict[str, bytes], *, still: bool) -> str:
     text = f"<p>{escape(section.text)}</p>" if section.text else ""
-    figures = "\n".join(_figure(figure, images[figure.key], still=still) for figure in section.figures)
+    half = half_figures(section.figures)
+    figures = "\n".join(
+        _figure(figure, images[figure.key], still=still, half=figure.key in half)
+        for figure in section.figures
+    )
     open_tables = (_table(table, below=section.title) for table in section.tables)
     tables = "\n".join([*open_tables, *map(_folded, section.folded)])
     title = escape(section.title)
@@ -223,7 +228,7 @@ def _section(section: Section, index: int, images: dict[str, bytes], *, still: b
     return f"{head}\n{text}{figures}{tables}</section>"
 
 
-def _figure(figure: Figure, image: bytes, *, still: bool) -> str:
+def _figure(figure: Figure, image: bytes, *, still: bool, half: bool) -> str:
     """One plot with its caption, its still image and its numbers; a picture has no plot."""
     still, image_class = still or figure.picture is not None, "picture" if figure.picture else "still"
     alternative = escape(f"{figure.title}. {figure.alternative}", quote=True)
@@ -233,9 +238,10 @@ def _figure(figure: Figure, image: bytes, *, still: bool) -> str:
     if not still:
         data = f'<script type="application/json" id="{figure.key}-data">{_embedded(figure)}</script>\n'
     encoded = base64.b64encode(image).decode("ascii")
+    width = " data-half" * half
     return (
         f'<figure id="{figure.key}">\n<h3>{escape(figure.title)}</h3>\n{"" if still else plot}'
-        f'<img class="{image_class}" alt="{alternative}" src="data:image/png;base64,{encoded}">\n'
+        f'<img class="{image_class}"{width} alt="{alternative}" src="data:image/png;base64,{encoded}">\n'
         f"<figcaption><strong>{escape(figure.alternative)}</strong> {escape(figure.caption)}</figcaption>\n"
         f"{_player(figure)}{numbers}{data}</figure>"
     )
@@ -271,7 +277,10 @@ def _table(table: Table, below: str = "") -> str:
     width = sum(max(map(len, column)) for column in zip(heads, *table.rows, strict=True))
     fits = width <= _ACROSS_A_PAGE
     rows = "".join(_row(row, marks, unbroken=fits) for row in table.rows)
-    short += " narrow" if short and width <= _HALF_OF_A_PAGE else ""
+    if short and width <= _HALF_OF_A_PAGE:
+        short += " narrow"
+    elif short and len(table.head) == 2 and width <= _BROKEN_TO_HALF:
+        short += " paired"  # names and values
     caption = "" if table.caption == below else f"<caption>{escape(table.caption)}</caption>"
     return (
         f'<div class="scroll{short}" tabindex="0" role="region" aria-label="{name}">'

@@ -104,8 +104,8 @@ def effects_section(text: str, rows: Iterable[EffectRow], folded: tuple[Table, .
 def one_effects_section(sections: Sequence[Section]) -> tuple[Section, ...]:
     """Return sections with all effect sections as one: rows in one table, in the order of the sections.
 
-    A decision that several sections state has one row, with the size of the last section that estimates it
-    by a run or a study, not as a displacement at rest.
+    A decision that several sections state has one row, that of the last section that estimates its size by a
+    run or a study, not as a displacement at rest: results over other ranges give other sizes.
     """
     effects = [section for section in sections if section.part is Part.EFFECTS]
     others = tuple(section for section in sections if section.part is not Part.EFFECTS)
@@ -114,10 +114,9 @@ def one_effects_section(sections: Sequence[Section]) -> tuple[Section, ...]:
     rows: dict[tuple[str, ...], tuple[str, ...]] = {}
     tables = [table for section in effects for table in section.tables]
     for row in (row for table in tables for row in table.rows):
-        *decision, size, reason = row
-        known = rows.get((*decision, reason))
-        if known is None or not (size == "nothing" or size.endswith("at rest")):
-            rows[*decision, reason] = row
+        *decision, size, _ = row
+        if tuple(decision) not in rows or not (size == "nothing" or size.endswith("at rest")):
+            rows[tuple(decision)] = row
     text = " ".join(section.text for section in effects if section.text)
     table = replace(effects[0].tables[0], rows=tuple(rows.values()))
     folded = tuple(dict.fromkeys(table for section in effects for table in section.folded))

@@ -15,7 +15,7 @@ from fe_contact.analysis.flanks.pressure_map import pressure_map
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate, IntArray
 from lineofaction.gearbox.convert.effects import assumption_lines
-from lineofaction.gearbox.convert.operating_point import pair_point
+from lineofaction.gearbox.convert.operating_point import pair_point, typed
 from lineofaction.gearbox.units import MPA, boundary_ledger
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (
@@ -374,18 +374,18 @@ def _page(flanks: LoadDistribution, database: SteDatabase | None = None) -> Page
 
 def _headlines(flanks: LoadDistribution) -> Iterator[Headline]:
     """Yield the largest pressure, the largest line load and K_Hbeta, with errors or why there are none."""
-    reason = flanks.errors.reason
+    reason, at = flanks.errors.reason, f"at {typed(flanks.scene.torque)} N m"
     pressure, load = flanks.largest_pressure, flanks.largest_line_load
     band = error_or_reason(pressure, "MPa", MPA, reason)
     remark = f"{band}{_kink_text(flanks)}{edge_text(flanks.edge_pressure)}"
-    yield Headline("largest flank pressure", f"{_to_error(pressure, MPA)} MPa", remark)
+    yield Headline(f"largest flank pressure {at}", f"{_to_error(pressure, MPA)} MPa", remark)
     band = error_or_reason(load, "N/mm", N_PER_MM, reason)
     remark = f"{band}{_length_text(flanks)}{_edge_load(flanks)}"
-    yield Headline("largest line load", f"{_to_error(load, N_PER_MM)} N/mm", remark)
+    yield Headline(f"largest line load {at}", f"{_to_error(load, N_PER_MM)} N/mm", remark)
     if flanks.face_position.size > 1:
         factor = flanks.cycle_face_load_factor
         remark = f"{error_or_reason(factor, '', 1.0, reason)}{_length_text(flanks)}"
-        yield Headline("K_Hbeta over the cycle", _to_error(factor), remark)
+        yield Headline(f"K_Hbeta over the cycle {at}", _to_error(factor), remark)
 
 
 def _kink_text(flanks: LoadDistribution) -> str:
@@ -449,11 +449,11 @@ def _alarms(flanks: LoadDistribution, database: SteDatabase | None) -> tuple[str
     if database is None:
         return ()
     computed, stored = flanks.scene.geometry, database.geometry
-    same = computed.teeth == stored.teeth
+    same_pair = computed.teeth == stored.teeth
     for name in ("base_pitch", "face_width"):
         size = getattr(stored, name)
-        same &= abs(getattr(computed, name) - size) <= 1e-9 * size
-    return () if same else ("The flank results and the STE database are of different gear pairs.",)
+        same_pair &= abs(getattr(computed, name) - size) <= 1e-9 * size
+    return () if same_pair else ("The flank results and the STE database are of different gear pairs.",)
 
 
 def _point(flanks: LoadDistribution) -> str:
@@ -462,11 +462,7 @@ def _point(flanks: LoadDistribution) -> str:
 
 
 def _text(flanks: LoadDistribution) -> Iterator[str]:
-    receipt = flanks.metadata.receipt
-    load, reason = flanks.largest_line_load, flanks.errors.reason
-    band = error_or_reason(load, "N/mm", N_PER_MM, reason)
-    remark = f"{band}{_length_text(flanks)}{_edge_load(flanks)}"
-    yield f"largest line load {_to_error(load, N_PER_MM)} N/mm, {remark}"
+    receipt, reason = flanks.metadata.receipt, flanks.errors.reason
     if flanks.face_position.size > 1:
         ends = (engineering(1e3 * end, 3) for end in (flanks.load_centroid.min(), flanks.load_centroid.max()))
         largest = flanks.largest_face_load_factor

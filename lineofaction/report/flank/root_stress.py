@@ -10,7 +10,7 @@ import numpy as np
 from bounds.error_digits import error_text, to_error, with_error
 from bounds.types import Json
 from lineofaction.gearbox.convert.effects import assumption_lines
-from lineofaction.gearbox.convert.operating_point import pair_point
+from lineofaction.gearbox.convert.operating_point import pair_point, typed
 from lineofaction.gearbox.studies.root_stress.run import GEARS, RUN, Roots
 from lineofaction.gearbox.units import UM
 from lineofaction.report.drawing import palette
@@ -53,7 +53,7 @@ def _passage(gear: str, history: Json) -> Panel:
         Line("compression", position, series["compression_mpa"], palette.BLUE),
         Line("at its peak", position, series["at_compression_peak_mpa"], palette.SKY, "dash"),
     )
-    references = [Reference(_said(peak), peak["position"])]
+    references = [Reference("", peak["position"])]  # its label would lie on the peak: the caption has it
     nominal = history["iso_6336_3_mpa"]
     if nominal is not None:
         references.append(Reference(f"ISO 6336-3: {number(nominal)} MPa", nominal, "horizontal", at=_LABEL))
@@ -93,7 +93,7 @@ def _passage_table(stresses: Json) -> Table:
 
 
 def _page(stresses: Json) -> Page:
-    heads = tuple(_headline(gear, stresses[gear]["tension"]) for gear in GEARS)
+    heads = tuple(_headline(stresses, gear) for gear in GEARS)
     cost = {name: value for name, value in stresses["receipt"].items() if name != "plan"}
     sections = (
         Section("Tooth roots", "", (_root_stress_figure(stresses),), (_peak_table(stresses),)),
@@ -102,9 +102,10 @@ def _page(stresses: Json) -> Page:
     return Page("Tooth-root stress", "", heads, sections)
 
 
-def _headline(gear: str, peak: Json) -> Headline:
+def _headline(stresses: Json, gear: str) -> Headline:
+    peak = stresses[gear]["tension"]
     value, error = peak["stress_mpa"], peak["error_mpa"]
-    name = f"largest root stress, {gear}"
+    name = f"largest root stress, {gear} at {typed(stresses['torque_n_m'])} N m"
     return Headline(name, f"{to_error(value, error)} MPa", f"± {error_text(value, error)} MPa")
 
 

@@ -36,7 +36,8 @@ def share_panel(shares: Shares, part: FloatArray) -> Panel:
     if len(drawn) < part.size:
         names.append("others")
         values.append(100.0 - sum(values))
-    bars = Bars("contribution", np.arange(float(len(names))), np.array(values), 0.0, 0.6, palette.BLUE)
+    x, width = np.arange(float(len(names))), 0.6
+    bars = Bars("contribution", x, np.array(values), base=0.0, width=width, color=palette.BLUE)
     return Panel(Axis.of_names(names), Axis("contribution, %"), bars=(bars,))
 
 

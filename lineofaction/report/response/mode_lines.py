@@ -158,11 +158,11 @@ def mode_bars(modes: Sequence[str], shares: Sequence[Mapping[str, float]], energ
     bars = []
     for index, part in enumerate(_largest_parts(shares)):
         top = base + [100.0 * mode_shares.get(part, 0.0) for mode_shares in shares]
-        bars.append(Bars(part, position, top, base, _WIDTH, palette.CATEGORIES[index]))
+        bars.append(Bars(part, position, top, base, width=_WIDTH, color=palette.CATEGORIES[index]))
         base = top
     rest = np.where(base > 0.0, 100.0, 0.0)
     if np.any(rest > base + 0.5):  # half a per cent is not drawn
-        bars.append(Bars(OTHERS, position, rest, base, _WIDTH, palette.GRID))
+        bars.append(Bars(OTHERS, position, rest, base, width=_WIDTH, color=palette.GRID))
     share = Axis(f"share of the {energy}, %", limits=(0.0, 100.0))
     return Panel(Axis.of_names(modes, "mode"), share, bars=tuple(bars))
 

@@ -209,9 +209,9 @@ def _critical_table(modes: ModalAnalysis) -> Table:
 
 def _together(modes: ModalAnalysis, first: int, other: int, speed: float) -> bool:
     """Whether an order of a mesh meets two modes at speeds that share a line of the table."""
-    same = modes.critical_order[first] == modes.critical_order[other]
-    same = same and modes.critical_mesh[first] == modes.critical_mesh[other]
-    return bool(same and abs(modes.critical_speed[first] - speed) <= ALIKE * speed)
+    same_line = modes.critical_order[first] == modes.critical_order[other]
+    same_line = same_line and modes.critical_mesh[first] == modes.critical_mesh[other]
+    return bool(same_line and abs(modes.critical_speed[first] - speed) <= ALIKE * speed)
 
 
 def _critical_kind(modes: ModalAnalysis, index: int) -> tuple[str, str]:

@@ -15,16 +15,7 @@ from dynamics.periodic.steady_states import BRANCH, DOWN, UP
 from lineofaction.gearbox.studies.steady.run import KINDS, RUN, status_name
 from lineofaction.gearbox.units import RPM
 from lineofaction.report.drawing import palette
-from lineofaction.report.drawing.figure import (
-    Axis,
-    Figure,
-    FloatArray,
-    Line,
-    Panel,
-    Reference,
-    Table,
-    number,
-)
+from lineofaction.report.drawing.figure import Axis, Figure, FloatArray, Line, Panel, Reference, Table, number
 from lineofaction.report.drawing.page import Headline
 from lineofaction.report.presentation import dynamics_presentation
 
@@ -53,7 +44,7 @@ def _steady_figure(states: SteadyStates) -> Figure:
         key="steady",
         title="Periodic steady states over speed",
         caption="Motions at constant speed by shooting. Line: the branch, solid where stable, dashed where "
-        "not. Points: steady states at slowly rising and falling speeds. Error: alternating part.",
+        "not. Points: steady states at slowly rising and falling speeds. Errors are less their mean.",
         alternative=_alternative(states),
         content=tuple(panels),
         table=_steady_table(states),
@@ -152,7 +143,7 @@ def _mesh_cells(states: SteadyStates, index: int, mesh: int) -> tuple[str, ...]:
 
 def _contact_name(parted: float, coasting: float) -> str:
     if coasting > 0.0:
-        return f"both flanks, apart from the driving one {100.0 * parted:.0f} %"
+        return f"both flanks, driving flank lifted off {100.0 * parted:.0f} %"
     return f"lift-off, {100.0 * parted:.0f} %" if parted > 0.0 else "driving flank"
 
 

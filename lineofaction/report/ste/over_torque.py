@@ -6,6 +6,7 @@ Axes of arrays: P positions, F loads, M misalignments, n points of a plot, H har
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -32,42 +33,62 @@ from lineofaction.report.ste.curves import (
     aligned_index,
     drawn_loads,
     drawn_rows,
+    headline_load,
     load_curve,
     load_labels,
     load_lines,
-    middle_load,
     position_axis,
     um_of,
 )
 
 HARMONICS = 8
 _DEPTH = 1e-4  # lowest level drawn over the largest harmonic, -80 dB
+_STEPS = 8
+"""Steps of a curve between two requested loads of a table of one base pitch; more pitches cost more."""
 _ROOM = 0.02  # margin at both ends of the axis over the range of torques
 
 
 def ripple_over_torque(database: SteDatabase) -> Figure:
     """Draw over torque: peak-to-peak with its error, and the mesh harmonics in um and in dB."""
-    curves = {load: load_curve(database, load) for load in drawn_loads(database)}
-    torque = np.array([curve.torque for curve in curves.values()])
+    requested = {load: load_curve(database, load) for load in drawn_loads(database)}
+    curves, mark = _with_curves_between(database, requested)
+    torque = np.array([curve.torque for curve in curves])
     across = _torque_axis(torque)
-    value, error = np.stack([um_of(curve.harmonics[:HARMONICS]) for curve in curves.values()], axis=1)
+    value, error = np.stack([um_of(curve.harmonics[:HARMONICS]) for curve in curves], axis=1)
     known = ~(error >= value)  # true also for an error of NaN, which was not estimated
     level = 20.0 * np.log10(np.maximum(value, _DEPTH * value.max()))
-    ripple, band = um_of([curve.peak_to_peak for curve in curves.values()])
-    line = Line("peak to peak", torque, ripple, palette.BLUE, markers=True, band=band)
+    ripple, band = um_of([curve.peak_to_peak for curve in curves])
+    lines = (
+        Line("peak to peak", torque, ripple, palette.BLUE, band=band),
+        Line("peak to peak", torque[mark], ripple[mark], palette.BLUE, width=0.0, markers=True),
+    )
+    text = _ripple_text({f"at {load_labels(database)[k]}": curve for k, curve in requested.items()})
     return Figure(
         key="ripple",
         title="Ripple over torque",
         caption="Peak-to-peak STE with the band of its error, and its mesh harmonics; dotted: below their "
-        "errors.",
-        alternative=_ripple_text({f"at {load_labels(database)[k]}": c for k, c in curves.items()}),
+        "errors. Points: requested torques, between which the table interpolates.",
+        alternative=f"Of the requested torques: {text[0].lower()}{text[1:]}",
         content=(
-            ripple_panel(across, (line,), title="Peak to peak"),
-            _harmonics(across, torque, value, known, "amplitude, µm"),
-            _harmonics(across, torque, level, known, "amplitude, dB re 1 µm"),
+            ripple_panel(across, lines, title="Peak to peak"),
+            _harmonics(across, torque, value, known, mark, "amplitude, µm"),
+            _harmonics(across, torque, level, known, mark, "amplitude, dB re 1 µm"),
         ),
-        table=_table(database, curves),
+        table=_table(database, requested),
     )
+
+
+def _with_curves_between(database: SteDatabase, requested: dict[int, Curve]) -> tuple[list[Curve], BoolArray]:
+    """Return curves of rising load, some between the requested ones, and which of them were requested."""
+    steps = max(_STEPS // database.period, 1)
+    misalignment, change = aligned(database)
+    point = {"misalignment": misalignment, "center_distance_change": change}
+    curves = [*requested.values()][:1]
+    for below, above in pairwise(requested):
+        between = np.linspace(database.force[below], database.force[above], steps + 1)[1:-1]
+        curves += [database.curve(force=float(force), **point, allow_failed=True) for force in between]
+        curves.append(requested[above])
+    return curves, np.arange(len(curves)) % steps == 0
 
 
 def _torque_axis(torque: FloatArray) -> Axis:
@@ -75,15 +96,19 @@ def _torque_axis(torque: FloatArray) -> Axis:
     return Axis("torque on the driving gear, N m", limits=(torque[0] - room, torque[-1] + room))
 
 
-def _harmonics(across: Axis, torque: FloatArray, values: FloatArray, known: BoolArray, label: str) -> Panel:
-    """Draw the harmonics (n, H), each labeled by its number; solid lines where they are known."""
+def _harmonics(
+    across: Axis, torque: FloatArray, values: FloatArray, known: BoolArray, mark: BoolArray, label: str
+) -> Panel:
+    """Draw the harmonics (n, H), each labeled by its number; solid, marked lines where they are known."""
     lines: list[Line] = []
     for order in range(values.shape[1]):
         name, color = f"{order + 1}", palette.harmonic(order + 1)
         lines.append(Line(name, torque, values[:, order], color, "dot", 1.2, label=name))
         sure = np.where(known[:, order], values[:, order], np.nan)
         if known[:, order].any():
-            lines.append(Line(name, torque, sure, color, markers=True))
+            lines.append(Line(name, torque, sure, color))
+        if known[mark, order].any():
+            lines.append(Line(name, torque[mark], sure[mark], color, width=0.0, markers=True))
     return Panel(across, Axis(label), tuple(lines), title=f"Mesh harmonics 1 to {HARMONICS}")
 
 
@@ -196,9 +221,9 @@ def has_face_load(database: SteDatabase) -> bool:
     return bool(moves > 1e-6 * database.geometry.face_width)
 
 
-def face_load(database: SteDatabase) -> Figure:
-    """Draw load centroid and peak pressure at the middle load, one line per misalignment."""
-    load = middle_load(database)
+def face_load(database: SteDatabase, force: float | None = None) -> Figure:
+    """Draw load centroid and peak pressure at the load nearest to `force`, one line per misalignment."""
+    load = headline_load(database, force)
     _, d = aligned_index(database)
     misalignments = database.requested_rows(MISALIGNMENT)
     centroid = 1e3 * database.face_centroid[:, load, misalignments, d]

@@ -58,17 +58,17 @@ def static_alarms(database: SteDatabase) -> tuple[str, ...]:
 
 
 def static_results(database: SteDatabase, force: float | None = None) -> tuple[Section, ...]:
-    """Return the sections of results; the deflection is split at the load nearest to `force`, N."""
+    """Return the sections of results; what has one load is drawn at the load nearest to `force`, N."""
     pair = pair_of(database)
     sheet = () if pair is None else (data_sheet_section(pair, tolerance_class_of(database)),)
     sharing = Section("Load sharing", figures=(load_sharing(database),))
     teeth = tooth_sections(database, headline_load(database, force))
-    rest = *_stiffness(database, force), *_flanks(database)
-    return (*sheet, _transmission_error(database), sharing, *teeth, *rest)
+    rest = *_stiffness(database, force), *_flanks(database, force)
+    return (*sheet, _transmission_error(database, force), sharing, *teeth, *rest)
 
 
-def _transmission_error(database: SteDatabase) -> Section:
-    figures = [ste_curves(database), ste_spectrum(database)]
+def _transmission_error(database: SteDatabase, force: float | None) -> Section:
+    figures = [ste_curves(database), ste_spectrum(database, force)]
     if len(drawn_loads(database)) > 1:
         figures.insert(1, ripple_over_torque(database))
         figures.append(ste_waterfall(database))
@@ -94,12 +94,12 @@ def _stiffness(database: SteDatabase, force: float | None) -> tuple[Section, ...
     return (Section("Mesh stiffness and deflection", text, figures=tuple(figures)),)
 
 
-def _flanks(database: SteDatabase) -> tuple[Section, ...]:
+def _flanks(database: SteDatabase, force: float | None) -> tuple[Section, ...]:
     figures: list[Figure] = []
     if len(drawn_loads(database)) > 1:
         figures.append(flanks_over_torque(database))
     if has_face_load(database):
-        figures.append(face_load(database))
+        figures.append(face_load(database, force))
     return (Section("Flank pressure and load along the face", figures=tuple(figures)),) if figures else ()
 
 

@@ -24,7 +24,7 @@ from lineofaction.report.drawing.figure import (
     um,
 )
 from lineofaction.report.drawing.marks import TORQUE
-from lineofaction.report.ste.curves import drawn_loads, load_curve, load_labels, middle_load
+from lineofaction.report.ste.curves import drawn_loads, headline_load, load_curve, load_labels
 
 ORDERS = 20
 LONG_ORDERS = 4  # highest mesh order over a period of N pitches, where N lines belong to each
@@ -36,9 +36,9 @@ _RANGE = 60.0  # range of levels between the ends of the colors, dB
 _COLUMNS = 8  # most columns of the table
 
 
-def ste_spectrum(database: SteDatabase) -> Figure:
+def ste_spectrum(database: SteDatabase, force: float | None = None) -> Figure:
     """Draw the amplitude of every order at the middle load, veiled below its error."""
-    load = middle_load(database)
+    load = headline_load(database, force)
     curve, label = load_curve(database, load), load_labels(database)[load]
     order, amplitude, error = _spectrum_of(curve)
     names = _order_names(curve, order)

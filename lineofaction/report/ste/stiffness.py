@@ -287,7 +287,7 @@ def _budget_panel(parts: dict[str, tuple[float, ...]], mean: float) -> Panel:
         text = f"{number(size, 3)} µm, {number(100.0 * float(size) / mean, 2)} %"
         notes.append(Note(float(x) - 0.2, max(float(size), 0.0), text))
     ends = (min(0.0, _BUDGET_MARGIN * float(sizes.min())), _BUDGET_MARGIN * float(sizes.max()))
-    bars = Bars("part of the mean STE", position, sizes, 0.0, 0.6, palette.BLUE)
+    bars = Bars("part of the mean STE", position, sizes, base=0.0, width=0.6, color=palette.BLUE)
     axes = Axis.of_names(tuple(parts), beyond=_NOTE), Axis("part of the mean STE, µm", limits=ends)
     return Panel(*axes, notes=tuple(notes), bars=(bars,))
 

@@ -26,6 +26,7 @@ from lineofaction.report.ste.curves import aligned, load_labels
 UNBOUNDED = "no error is stated for it"
 """Remark on the largest pressure: its place changes with mesh and slices, so that no error is known."""
 _WAY = "way of the pair through mesh, base pitches (0 = at the pitch point in mid-face)"
+_DERIVED = " Some base pitches were not solved but found by derivatives, to within"
 _WIDTH = 0.8  # width of a bar over the distance of teeth
 _ABOVE = 1.15  # top of the axis over the largest bar, with room for the number of its tooth
 _RANKED = 5  # teeth of a gear in the table
@@ -98,26 +99,24 @@ def _finding(loads: ToothLoads) -> str:
 
 
 def _derived(database: SteDatabase, load: int) -> str:
-    """Return a sentence on the error of forces if base pitches of the table follow from derivatives."""
+    """Return a sentence on the error of forces, if some base pitches were not solved."""
     share_error = database.metadata.receipt.get("cycle", {}).get("share_error")
     if share_error is None:
         return ""
     force = number(float(share_error) * float(database.force[load]), 2)
-    return f" Base pitches by derivatives: within {force} N at 99 % of the drawn points."
+    return f"{_DERIVED} {force} N at 99 % of the drawn points."
 
 
 def _bars(loads: ToothLoads) -> Panel:
     force, name = loads.force, GEARS[loads.gear]
-    maximum, mean = float(force.max()), float(force.mean())
+    maximum, mean, tooth = float(force.max()), float(force.mean()), np.arange(1.0, force.size + 1.0)
     return Panel(
         _tooth_axis(loads),
         Axis("largest normal force, N", limits=(0.0, _ABOVE * maximum)),
         references=(Reference("", mean, "horizontal"),),
         title=f"{name.capitalize()}; dashed: mean {number(mean, 4)} N",
         notes=_notes(loads.most_loaded, maximum, force.size),
-        bars=(
-            Bars("force", np.arange(1.0, force.size + 1.0), force, 0.0, _WIDTH, palette.GEARS[loads.gear]),
-        ),
+        bars=(Bars("force", tooth, force, base=0.0, width=_WIDTH, color=palette.GEARS[loads.gear]),),
     )
 
 
@@ -159,11 +158,7 @@ def _table(teeth: tuple[ToothLoads, ...]) -> Table:
 def _pressures(database: SteDatabase, load: int, loads: ToothLoads) -> Figure:
     error = database.metadata.receipt.get("cycle", {}).get("pressure_error_relative")
     peak, least = float(loads.pressure.max()), int(np.argmin(loads.pressure))
-    derived = (
-        ""
-        if error is None
-        else f" Base pitches by derivatives: within {_megapascal(error * peak)} at 99 % of the drawn points."
-    )
+    derived = "" if error is None else f"{_DERIVED} {_megapascal(error * peak)} at 99 % of the drawn points."
     name = GEARS[loads.gear]
     return Figure(
         key=f"tooth_pressures_{name}",

@@ -1,5 +1,5 @@
 // @ts-check
-/** Case files: opened into the form, saved from it. */
+/** Case files: opened into the form, saved from it. Files of units and scenes are told by name and content. */
 
 import { Problem, ask, guarded, post } from "./api.js";
 import { offerAsMade } from "./as_made.js";
@@ -11,13 +11,15 @@ const OFFERS = [
   offerAsMade,
 ];
 
+const OF_SCENE = /^\s*\[\[shafts\]\]/m; // a table that scenes have and cases do not
+
 export class CaseFiles {
   /**
    * @param {import("./design.js").Design} design
-   * @param {ConstructorParameters<typeof OpenedUnit>[1]} page of a gear unit
+   * @param {ConstructorParameters<typeof OpenedUnit>[1] & {openScene: (chosen: any) => Promise<void>}} page of a gear unit
    */
   constructor(design, page) {
-    this.design = design;
+    Object.assign(this, { design, openScene: page.openScene });
     this.unit = new OpenedUnit(design, page);
     byId("export-toml").addEventListener("click", () => this.careful(async () => {
       const { toml } = await ask("to-toml", { inputs: { case: design.case } });
@@ -39,6 +41,10 @@ export class CaseFiles {
       return;
     }
     const text = await file.text();
+    if (OF_SCENE.test(text)) {
+      await this.openScene(chosen);
+      return;
+    }
     chosen.value = "";
     const content = file.name.endsWith(".json") ? parsed(text) : (await post("/v1/cases/from-toml", { toml: text })).case;
     this.design.goTo(content, file.name, { name: file.name.replace(/\.\w+$/, "") });

@@ -187,7 +187,7 @@ export class Design {
       this.drawnPair = body.inputs.case.pair;
       this.view.show(outline);
       drawn = true;
-      if (this.expected === undefined) noPlan("The plan is on its way.");
+      if (this.expected === undefined) noPlan("Time and memory are being predicted.");
       const plan = await ask("plan", { inputs: { ...body.inputs, study: "optimize" }, caller: this.caller }, signal);
       if (!signal.aborted) this.expected = showPlan(plan);
     }, (problem) => {

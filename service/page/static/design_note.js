@@ -41,6 +41,6 @@ export class DesignNote {
 function sentence({ pair }, changes) {
   const shown = changes.map(({ text }) => text).filter(Boolean).slice(0, MOST);
   const more = changes.length > shown.length ? `, and ${changes.length - shown.length} more` : "";
-  return `Of the design ${pair.pinion.teeth}/${pair.wheel.teeth}, module ${pair.normal_module_mm} mm, as it was computed. `
+  return `Result of the design ${pair.pinion.teeth}/${pair.wheel.teeth}, module ${pair.normal_module_mm} mm, as computed. `
     + `Edited since: ${shown.join(", ")}${more}.`;
 }

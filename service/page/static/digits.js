@@ -2,7 +2,8 @@
 
 import { number } from "./elements.js";
 
-const SMALLEST_CHANGE = 0.05; // %: smaller ones are rounding of answers without a stated error
+/** @type {Record<string, number>} */
+const SMALLEST_CHANGE = { "%": 0.05, dB: 0.004 }; // smaller ones are rounding of answers without a stated error
 const DIGITS = 4; // of a number without a stated error
 const FEW = 3; // of one whose error is computed, or that is indicative
 const MAX_DIGITS = 7; // of a number whose error is very small
@@ -54,13 +55,15 @@ export function estimate(given) {
   return printed({ ...given, error: stated }, `${toError(value, stated, coming || rough ? FEW : DIGITS)} ${unit}`.trim(), plusMinus(stated, value, coming), below);
 }
 
-/** A change as it is printed; below its error there is none. @param {Estimate} given of the change @returns {Printed | ""} nothing where nothing changed */
+/** A change as it is printed; below its error there is none. @param {Estimate} given of the change @returns {Printed | ""} nothing where nothing changed, or no more than rounding while the error is computed */
 export function changeOf(given) {
   const { value, unit = "", coming = false } = given;
   if (!value || !Number.isFinite(value)) return "";
   const error = Number.isFinite(given.error) ? given.error : null;
   const size = Math.abs(value);
-  const none = error === null ? !coming && unit === "%" && size < SMALLEST_CHANGE : size <= error;
+  const rounding = error === null && size < (SMALLEST_CHANGE[unit] ?? 0);
+  if (rounding && coming) return "";
+  const none = rounding || (error !== null && size <= error);
   if (none) return printed({ ...given, error }, `no change${error === null ? "" : ` (± ${toError(error, error)} ${unit})`}`, "", true);
   const digits = error === null ? number(size, size < 1 ? 1 : 2) : toError(size, error);
   const text = `${value < 0 ? "−" : "+"}${digits} ${plusMinus(error, size, coming)}`.trim();

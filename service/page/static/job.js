@@ -63,10 +63,16 @@ async function watched(target, id, expected, signal) {
   }
 }
 
-export const WORDS = { accepted: "waits for its turn", running: "runs", successful: "done", failed: "failed", dismissed: "cancelled" };
+const WORDS = { accepted: "waits for its turn", running: "runs", successful: "done", failed: "failed", dismissed: "cancelled" };
+
+/** The state of a job in words, behind how many others it waits, and how far it is. */
+export function stateOf(job, atOnce = "") {
+  const behind = job.ahead ? ` behind ${job.ahead} job${job.ahead === 1 ? "" : "s"}` : "";
+  return `${WORDS[job.status]}${behind}${job.status === "running" ? `, ${Math.round(job.progress ?? 0)} %` : spent(job, atOnce)}`;
+}
 
 /** How long a job took that has ended. */
-export function spent({ started, finished }, atOnce = "") {
+function spent({ started, finished }, atOnce = "") {
   const seconds = (new Date(finished) - new Date(started)) / 1000;
   return !started || !finished ? "" : seconds < 0.5 ? atOnce : ` after ${duration(seconds)}`;
 }
@@ -89,7 +95,7 @@ class JobCard {
     this.bar.value = now.status === "successful" ? 100 : now.progress ?? 0;
     this.cancel.hidden = ended;
     this.bar.hidden = ended;
-    this.line.textContent = `${this.process} ${WORDS[now.status]}${ended ? spent(now, " (from the store)") : `, ${Math.round(now.progress ?? 0)} %`}`;
+    this.line.textContent = `${this.process} ${stateOf(now, " (from the store)")}`;
     const remaining = this.remaining(now);
     const text = ended ? "" : [now.stage ? `stage: ${now.stage}` : "", remaining].filter(Boolean).join("; ");
     if (text !== this.said) this.spoken.textContent = text; // a screen reader hears changes only

@@ -2,7 +2,7 @@
 
 import { Problem, get, pause, saidIn } from "./api.js";
 import { button, byId, make } from "./elements.js";
-import { ENDED, WORDS, cancelled, spent } from "./job.js";
+import { ENDED, cancelled, stateOf } from "./job.js";
 import { headline } from "./job_headline.js";
 import { called, label, renamed, search } from "./job_label.js";
 
@@ -94,7 +94,7 @@ export class Jobs {
       offered("Rename", () => this.done(renamed(job, this.line))),
     ].filter(Boolean);
     const what = job.children ? `${job.processID}, ${job.children} jobs` : job.processID;
-    const facts = [what, state(job), when].join(", ");
+    const facts = [what, stateOf(job), when].join(", ");
     return make(
       "li", { class: job.parentID ? "inner" : "" },
       ...label(job), ...headline(job.headline, job.jobID), make("p", { class: "hint" }, facts), make("div", { class: "buttons" }, ...buttons),
@@ -116,5 +116,3 @@ export class Jobs {
     await this.refresh();
   }
 }
-
-const state = (job) => (job.status === "running" ? `runs, ${Math.round(job.progress ?? 0)} %` : WORDS[job.status] + spent(job));

@@ -282,7 +282,7 @@ export class Live {
 
   plots() {
     this.blocks = {
-      ste: liveBlock("live_ste", "Transmission error", `Gray${this.known ? "" : ", once it is analyzed here"}: as analyzed, at the same torque and aligned.`),
+      ste: liveBlock("live_ste", "Transmission error", `Gray${this.known ? "" : ", after Analyze"}: the pair as analyzed, at the same torque and aligned.`),
       harmonics: liveBlock("live_harmonics", "Mesh harmonics", "Amplitudes of the mesh frequency and its multiples."),
       sharing: liveBlock("live_load_share", "Load sharing", "Part of the load on each pair of teeth."),
     };

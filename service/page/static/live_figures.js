@@ -51,7 +51,7 @@ export function steFigure(shown, bands) {
     line: { color, width, dash },
   }));
   const data = [...bands, ...curves];
-  const made = layout("position, base pitches", "error less its mean, µm");
+  const made = layout("position, base pitches", "STE less mean, µm");
   made.yaxis.range = endsOf(data.map(({ y }) => y));
   return { data, layout: made };
 }

@@ -60,7 +60,8 @@ class Page {
     const complaint = new Complaint(this.design);
     const scene = (name, unit) => this.scenes.take(name, unit);
     const slide = (part, position) => this.scenes.slide(part, position);
-    this.files = new CaseFiles(this.design, { scene, slide, go: (views) => this.go(views) });
+    const openScene = (chosen) => this.scenes.open(chosen);
+    this.files = new CaseFiles(this.design, { scene, slide, openScene, go: (views) => this.go(views) });
     new UnitHeard(this.design, this.files.unit, complaint);
     /** @type {Map<string, Slot>} */
     this.slots = new Map();

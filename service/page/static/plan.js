@@ -32,7 +32,7 @@ export function showPlan(found) {
   byId("plan").replaceChildren(
     ...found.warnings.map(({ message }) => make("p", { class: "alarm", role: "alert" }, `Warning: ${message}`)),
     head,
-    make("p", { class: choice.met && !found.conflict ? "hint" : "alarm" }, `Mesh ${choice.level}: ${said}.`),
+    make("p", { class: choice.met && !found.conflict ? "hint" : "alarm" }, `Mesh: ${choice.level}, ${said}.`),
   );
   byId("plan-tables").replaceChildren(
     folded("All meshes: what each is predicted to take", dataTable(levels, (row) => taken(found.levels[row]))),
@@ -46,10 +46,10 @@ function expectation({ mean_um: mean, peak_to_peak_um: ripple, numerical, plane,
   const of = (what, value, unit) => ({ text: `${number(value, 2)} ${unit}`, data: { "data-subject": `expected error of ${what}; most over all loads`, "data-value": value, "data-unit": unit } });
   if (ripple === null) {
     const worse = of("mean or peak to peak", 100 * Math.hypot(numerical, bias ? 0 : plane), "%");
-    return ["error to expect", worse.text, ["of mean or peak to peak, whichever is worse, over all loads"], worse.data];
+    return ["expected error", worse.text, ["of mean or peak to peak, whichever is worse, over all loads"], worse.data];
   }
   const [first, second] = [of("peak to peak", ripple, "µm"), of("mean", mean, "µm")];
-  return ["error to expect, peak to peak", `± ${first.text}`, [{ ...second, text: `mean ± ${second.text}` }, "the most over all loads"], first.data];
+  return ["expected error, peak to peak", `± ${first.text}`, [{ ...second, text: `of the mean ± ${second.text}` }, "largest over all loads"], first.data];
 }
 
 function ledger(entries) {

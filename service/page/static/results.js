@@ -139,7 +139,7 @@ export class Results {
   /** Show what the first example gave when the program was made: nothing is computed. @param {{title: string, curve: any, case: object, outline: any}} came */
   async still({ title, curve, case: content, outline }) {
     byId("results-none").hidden = true;
-    byId("dock-words").textContent = `${title}. It came with the program; Analyze computes it here and frees the sliders.`;
+    byId("dock-words").textContent = `${title}. These results came with the program. Once you press Analyze, they are computed here and the sliders answer.`;
     this.key = ""; // it has none
     this.note.of(content);
     await this.live.still(curve, outline, content);

@@ -341,6 +341,12 @@ export class SceneEditor {
     await this.settle(() => this.read());
   }
 
+  /** Open a scene that was chosen outside this block, and show the block. @param {any} chosen the control that its file was chosen with */
+  async open(chosen) {
+    await this.opened(chosen);
+    reveal(this.tables);
+  }
+
   job({ from, to, count, microphone_mm: microphone }) {
     const process = this.process.value;
     return {

@@ -1,4 +1,4 @@
-/** The parts of a scene as tables, one row a part: cells by the schema of the scene, references as lists of the names there are. */
+/** The parts of a scene as tables, one row per part: cells by the schema of the scene, references as lists of the names there are. */
 
 import { button, byId, make } from "./elements.js";
 import { Field, wordsOf } from "./field.js";

@@ -96,7 +96,7 @@ export class UnitStudies {
     this.planned = scene;
     const cases = (scene.meshes ?? []).filter((mesh) => mesh.case);
     const say = (text) => this.costs.forEach((cost) => { cost.textContent = text; });
-    say("The cost is being planned.");
+    say("Time and memory are being predicted.");
     await guarded(async () => {
       const plans = [];
       for (const mesh of cases) plans.push(await patiently(() => ask("plan", { inputs: { case: mesh.case }, caller: "unit-plan" })));
@@ -104,7 +104,7 @@ export class UnitStudies {
       const passes = plans.flatMap((plan) => plan.passes);
       const seconds = passes.reduce((sum, { cost }) => sum + cost.cpu_seconds, 0);
       const memory = Math.max(0, ...passes.map(({ cost }) => cost.memory_bytes));
-      say(`Takes about ${duration(seconds)} of one processor and ${Math.round(memory / 2 ** 20)} MiB for the tables of ${cases.length} meshes, less where they are stored, and seconds beyond.`);
+      say(`Takes about ${duration(seconds)} of one processor and ${Math.round(memory / 2 ** 20)} MiB for the tables of ${cases.length} meshes, less where they are stored; then a few seconds.`);
     }, (problem) => say(`No plan: ${problem.message}`));
   }
 

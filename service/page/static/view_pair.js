@@ -262,6 +262,6 @@ export class RollingPair {
     const turn = place - Math.floor(place);
     const row = position.reduce((best, value, k) => (Math.abs(value - turn) < Math.abs(position[best] - turn) ? k : best), 0);
     const share = shares[row][pair.indexOf(Math.floor(place))] ?? 0;
-    return share > 1e-4 ? `Its pair carries ${number(100 * share, 2)} % now, ${number(share * force, 3)} N.` : "Its pair carries nothing now.";
+    return share > 1e-4 ? `This tooth pair carries ${number(100 * share, 2)} % of the load at this position, ${number(share * force, 3)} N.` : "This tooth pair carries no load at this position.";
   }
 }

@@ -5,10 +5,6 @@ is offered: asynchronous execution of processes with one output. The marker `req
 identifiers that it states.
 """
 
-from __future__ import annotations
-
-from collections.abc import Iterator
-
 import pytest
 from fastapi.testclient import TestClient
 from service_fakes import REGISTRY
@@ -18,7 +14,7 @@ from service.settings import Settings
 
 
 @pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+def client(tmp_path_factory):
     settings = Settings(data_directory=tmp_path_factory.mktemp("ogc"))
     with TestClient(create_app(settings, REGISTRY)) as found:
         yield found

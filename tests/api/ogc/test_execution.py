@@ -1,11 +1,6 @@
 """Executions and their inputs; what is not offered is refused by name."""
 
-from __future__ import annotations
-
-from typing import Any
-
 import pytest
-from fastapi.testclient import TestClient
 from ogc_jobs import REL, ended, link
 from service_fakes import EXECUTION
 
@@ -20,7 +15,7 @@ from service_fakes import EXECUTION
     "/rec/core/process-execute-honor-prefer",
     "/rec/core/process-execute-preference-applied",
 )
-def test_an_execution_is_asynchronous_whatever_is_preferred(client: TestClient) -> None:
+def test_an_execution_is_asynchronous_whatever_is_preferred(client):
     body = {"inputs": {"wish": {"text": "ogc"}}, "outputs": {}, "response": "document"}
     options = client.get("/v1/processes/fake").json()["jobControlOptions"]
     assert "sync-execute" not in options and "async-execute" in options
@@ -39,7 +34,7 @@ def test_an_execution_is_asynchronous_whatever_is_preferred(client: TestClient) 
 
 
 @pytest.mark.requirement("/req/core/process-execute-input-inline-object")
-def test_an_input_may_be_qualified(client: TestClient) -> None:
+def test_an_input_may_be_qualified(client):
     plain, value = {"text": "qualified"}, {"value": {"text": "qualified"}}
     hashes = set()
     for given in (plain, value, {**value, "mediaType": "application/json"}):
@@ -53,7 +48,7 @@ def test_an_input_may_be_qualified(client: TestClient) -> None:
 @pytest.mark.requirement(
     "/req/core/process-execute-input-validation", "/req/core/process-execute-default-outputs"
 )
-def test_inputs_are_validated(client: TestClient) -> None:
+def test_inputs_are_validated(client):
     assert client.post(EXECUTION, json={"inputs": {"wish": {"number": 11}}}).status_code == 422
     assert client.post(EXECUTION, json={"inputs": {"wish": {}}}).status_code == 201
 
@@ -76,7 +71,7 @@ REFUSED = [
 
 
 @pytest.mark.parametrize(("part", "field"), REFUSED)
-def test_what_is_not_offered_is_refused_by_name(client: TestClient, part: dict[str, Any], field: str) -> None:
+def test_what_is_not_offered_is_refused_by_name(client, part, field):
     jobs = len(client.get("/v1/jobs", params={"limit": 1000}).json()["jobs"])
     answer = client.post(EXECUTION, json={"inputs": {"wish": {"text": "refused"}}, **part})
     assert answer.status_code == 422
@@ -85,6 +80,6 @@ def test_what_is_not_offered_is_refused_by_name(client: TestClient, part: dict[s
     assert len(client.get("/v1/jobs", params={"limit": 1000}).json()["jobs"]) == jobs
 
 
-def test_a_callback_is_refused_with_its_reason(client: TestClient) -> None:
+def test_a_callback_is_refused_with_its_reason(client):
     body = {"inputs": {"wish": {}}, "subscriber": {"successUri": "http://caller.example/done"}}
     assert "sends no requests to addresses" in client.post(EXECUTION, json=body).json()["detail"]

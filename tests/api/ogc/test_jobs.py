@@ -1,16 +1,13 @@
 """Jobs: their status, the list and its filters, dismissal."""
 
-from __future__ import annotations
-
 import pytest
-from fastapi.testclient import TestClient
 from ogc_jobs import EXCEPTIONS, executed, link
 from service_fakes import EXECUTION
 
 
 @pytest.mark.law
 @pytest.mark.requirement("/req/core/job", "/req/core/job-success")
-def test_a_job_tells_its_status(client: TestClient) -> None:
+def test_a_job_tells_its_status(client):
     status = executed(client, text="job")
     assert {"jobID", "status", "type", "processID", "created", "started", "finished", "updated"} <= set(
         status
@@ -21,14 +18,14 @@ def test_a_job_tells_its_status(client: TestClient) -> None:
 
 
 @pytest.mark.requirement("/req/core/job-exception-no-such-job", "/req/core/job-results-exception/no-such-job")
-def test_an_unknown_job_is_no_such_job(client: TestClient) -> None:
+def test_an_unknown_job_is_no_such_job(client):
     for path in ("/v1/jobs/no", "/v1/jobs/no/results"):
         answer = client.get(path)
         assert (answer.status_code, answer.json()["type"]) == (404, f"{EXCEPTIONS}no-such-job")
 
 
 @pytest.mark.requirement("/req/job-list/job-list-op", "/req/job-list/job-list-success", "/req/job-list/links")
-def test_every_job_is_listed_with_its_link(client: TestClient) -> None:
+def test_every_job_is_listed_with_its_link(client):
     executed(client, text="list")
     document = client.get("/v1/jobs").json()
     for status in document["jobs"]:
@@ -41,7 +38,7 @@ def test_every_job_is_listed_with_its_link(client: TestClient) -> None:
     "/req/job-list/limit-response",
     "/rec/job-list/next-1",
 )
-def test_the_list_of_jobs_is_limited_and_goes_on(client: TestClient) -> None:
+def test_the_list_of_jobs_is_limited_and_goes_on(client):
     for number in (1, 2):
         executed(client, text=f"limit {number}")
     document = client.get("/v1/jobs", params={"limit": 1}).json()
@@ -62,7 +59,7 @@ def test_the_list_of_jobs_is_limited_and_goes_on(client: TestClient) -> None:
     "/req/job-list/duration-definition",
     "/req/job-list/duration-response",
 )
-def test_jobs_are_found_by_every_filter(client: TestClient) -> None:
+def test_jobs_are_found_by_every_filter(client):
     status = executed(client, text="filters")
     definition = client.get("/openapi.json").json()["paths"]["/v1/jobs"]["get"]["parameters"]
     offered = {entry["name"] for entry in definition if entry["in"] == "query"}
@@ -87,7 +84,7 @@ def test_jobs_are_found_by_every_filter(client: TestClient) -> None:
 
 
 @pytest.mark.requirement("/req/dismiss/job-dismiss-op", "/req/dismiss/job-dismiss-success")
-def test_a_job_is_dismissed(client: TestClient) -> None:
+def test_a_job_is_dismissed(client):
     location = client.post(EXECUTION, json={"inputs": {"wish": {"mode": "hang"}}}).headers["location"]
     answer = client.delete(location)
     assert (answer.status_code, answer.json()["status"]) == (200, "dismissed")

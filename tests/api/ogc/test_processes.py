@@ -1,15 +1,12 @@
 """The list of processes and their descriptions, the landing page and the definition of the API."""
 
-from __future__ import annotations
-
 import pytest
-from fastapi.testclient import TestClient
 from ogc_jobs import EXCEPTIONS, REL, link
 from service_fakes import EXECUTION
 
 
 @pytest.mark.requirement("/req/core/process-list", "/req/core/process-list-success", "/req/core/pl-links")
-def test_every_process_is_listed_with_its_link(client: TestClient) -> None:
+def test_every_process_is_listed_with_its_link(client):
     document = client.get("/v1/processes").json()
     for summary in document["processes"]:
         assert {"id", "version", "jobControlOptions", "outputTransmission", "links"} <= set(summary)
@@ -18,7 +15,7 @@ def test_every_process_is_listed_with_its_link(client: TestClient) -> None:
 
 
 @pytest.mark.requirement("/req/core/pl-limit-definition", "/req/core/pl-limit-response")
-def test_the_list_of_processes_is_limited(client: TestClient) -> None:
+def test_the_list_of_processes_is_limited(client):
     assert len(client.get("/v1/processes", params={"limit": 1}).json()["processes"]) == 1
     assert client.get("/v1/processes", params={"limit": 0}).status_code == 422
 
@@ -26,7 +23,7 @@ def test_the_list_of_processes_is_limited(client: TestClient) -> None:
 @pytest.mark.requirement(
     "/req/core/process", "/req/core/process-success", "/req/ogc-process-description/json-encoding"
 )
-def test_a_process_is_described(client: TestClient) -> None:
+def test_a_process_is_described(client):
     description = client.get("/v1/processes/fake").json()
     assert description["jobControlOptions"] == ["async-execute", "dismiss"]
     assert set(description["outputTransmission"]) <= {"value", "reference"}
@@ -39,7 +36,7 @@ def test_a_process_is_described(client: TestClient) -> None:
     "/req/ogc-process-description/outputs-def",
     "/req/ogc-process-description/output-def",
 )
-def test_inputs_and_outputs_have_titles_and_schemas(client: TestClient) -> None:
+def test_inputs_and_outputs_have_titles_and_schemas(client):
     description = client.get("/v1/processes/fake").json()
     for part in ("inputs", "outputs"):
         assert description[part]
@@ -48,7 +45,7 @@ def test_inputs_and_outputs_have_titles_and_schemas(client: TestClient) -> None:
 
 
 @pytest.mark.requirement("/req/core/process-exception/no-such-process")
-def test_an_unknown_process_is_no_such_process(client: TestClient) -> None:
+def test_an_unknown_process_is_no_such_process(client):
     for answer in (client.get("/v1/processes/no"), client.post("/v1/processes/no/execution", json={})):
         assert (answer.status_code, answer.json()["type"]) == (404, f"{EXCEPTIONS}no-such-process")
 
@@ -62,7 +59,7 @@ BASE = "http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/"
 @pytest.mark.requirement(
     "/req/core/landingpage-op", "/req/core/landingpage-success", "/rec/job-list/job-list-landing-page"
 )
-def test_the_landing_page_leads_everywhere(client: TestClient) -> None:
+def test_the_landing_page_leads_everywhere(client):
     answer = client.get("/v1/")
     assert answer.status_code == 200
     for relation in ("service-desc", f"{REL}conformance", f"{REL}processes", f"{REL}job-list"):
@@ -71,7 +68,7 @@ def test_the_landing_page_leads_everywhere(client: TestClient) -> None:
 
 @pytest.mark.law
 @pytest.mark.requirement("/rec/core/api-definition-oas")
-def test_types_of_the_definition(client: TestClient) -> None:
+def test_types_of_the_definition(client):
     """What the links say they lead to is answered to those who accept it."""
     links = [entry for entry in client.get("/v1/").json()["links"] if entry["rel"].startswith("service-")]
     assert [entry["type"] for entry in links if entry["rel"] == "service-desc"] == [
@@ -85,7 +82,7 @@ def test_types_of_the_definition(client: TestClient) -> None:
 
 
 @pytest.mark.requirement("/req/core/api-definition-op", "/req/core/api-definition-success")
-def test_the_definition_has_every_path(client: TestClient) -> None:
+def test_the_definition_has_every_path(client):
     definition = client.get(link(client.get("/v1/").json(), "service-desc")).json()
     assert definition["openapi"].startswith("3.")
     for path in ("/v1", "/v1/conformance", "/v1/processes", "/v1/processes/{process_id}", EXECUTION):
@@ -95,20 +92,20 @@ def test_the_definition_has_every_path(client: TestClient) -> None:
 
 
 @pytest.mark.requirement("/req/core/conformance-op", "/req/core/conformance-success")
-def test_the_classes_are_declared(client: TestClient) -> None:
+def test_the_classes_are_declared(client):
     classes = client.get("/v1/conformance").json()["conformsTo"]
     wanted = ("core", "ogc-process-description", "json", "job-list", "dismiss")
     assert set(classes) == {BASE + name for name in wanted}
 
 
 @pytest.mark.requirement("/req/core/http")
-def test_methods_and_paths_are_refused_as_http_says(client: TestClient) -> None:
+def test_methods_and_paths_are_refused_as_http_says(client):
     assert client.get("/v1/nothing").status_code == 404
     answer = client.post("/v1/jobs")
     assert answer.status_code == 405 and "GET" in answer.headers["allow"]
 
 
 @pytest.mark.requirement("/req/json/definition")
-def test_answers_are_json(client: TestClient) -> None:
+def test_answers_are_json(client):
     for path in ("/v1", "/v1/conformance", "/v1/processes", "/v1/processes/fake", "/v1/jobs"):
         assert client.get(path).headers["content-type"] == "application/json"

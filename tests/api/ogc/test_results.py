@@ -1,7 +1,5 @@
 """Results of jobs, in the form that the execution or the request asks for."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest
@@ -18,7 +16,7 @@ def delivered(client: TestClient, process: str, text: str, **form: Any) -> Respo
 
 
 @pytest.mark.requirement("/req/core/job-results", "/req/core/job-results-async-raw-value-one")
-def test_a_result_is_its_raw_value(client: TestClient) -> None:
+def test_a_result_is_its_raw_value(client):
     """Also of an execution that leaves everything out: raw and value are the defaults of the standard."""
     wanted = {"response": "raw", "outputs": {"database": {"transmissionMode": "value"}}}
     for form in ({}, wanted, {"outputs": {}}):
@@ -31,7 +29,7 @@ def test_a_result_is_its_raw_value(client: TestClient) -> None:
 
 
 @pytest.mark.requirement("/req/core/job-results-async-raw-ref")
-def test_a_result_may_be_a_reference(client: TestClient) -> None:
+def test_a_result_may_be_a_reference(client):
     outputs = {"database": {"transmissionMode": "reference"}}
     answer = delivered(client, "fake", "raw", outputs=outputs)
     assert (answer.status_code, answer.content) == (204, b"")
@@ -42,7 +40,7 @@ def test_a_result_may_be_a_reference(client: TestClient) -> None:
 
 
 @pytest.mark.requirement("/req/core/job-results-async-document")
-def test_a_document_holds_references(client: TestClient) -> None:
+def test_a_document_holds_references(client):
     """A link: JSON does not hold netCDF."""
     for outputs in ({}, {"database": {"transmissionMode": "reference"}}):
         answer = delivered(client, "fake", "document", response="document", outputs=outputs)
@@ -53,7 +51,7 @@ def test_a_document_holds_references(client: TestClient) -> None:
 
 
 @pytest.mark.requirement("/req/core/job-results-exception/results-not-ready")
-def test_a_result_that_is_not_ready_is_said_to_be(client: TestClient) -> None:
+def test_a_result_that_is_not_ready_is_said_to_be(client):
     location = client.post(EXECUTION, json={"inputs": {"wish": {"mode": "hang"}}}).headers["location"]
     answer = client.get(f"{location}/results")
     assert (answer.status_code, answer.json()["type"]) == (404, f"{EXCEPTIONS}result-not-ready")
@@ -69,9 +67,7 @@ def test_a_result_that_is_not_ready_is_said_to_be(client: TestClient) -> None:
         ("defect", None, []),
     ],
 )
-def test_a_failed_job_answers_a_problem(
-    client: TestClient, mode: str, detail: str | None, faults: list[tuple[str, float]]
-) -> None:
+def test_a_failed_job_answers_a_problem(client, mode, detail, faults):
     """With the fields at fault; the text of a defect never leaves."""
     location = f"/v1/jobs/{executed(client, mode=mode)['jobID']}"
     answer = client.get(f"{location}/results")
@@ -83,7 +79,7 @@ def test_a_failed_job_answers_a_problem(
     assert SECRET not in answer.text + client.get(location).text
 
 
-def test_a_request_for_results_may_ask_for_another_form(client: TestClient) -> None:
+def test_a_request_for_results_may_ask_for_another_form(client):
     status = ended(client, "fake", {"inputs": {"wish": {"text": "other form"}}})
     path = link(status, f"{REL}results")
     assert client.get(path, params={"response": "document"}).json()["database"]["href"]
@@ -95,7 +91,7 @@ def test_a_request_for_results_may_ask_for_another_form(client: TestClient) -> N
 
 
 @pytest.mark.parametrize("response", ["raw", "document"])
-def test_a_request_for_results_gets_the_type_that_it_prefers(client: TestClient, response: str) -> None:
+def test_a_request_for_results_gets_the_type_that_it_prefers(client, response):
     text = f"accepted {response}"
     status = ended(client, "fake", {"inputs": {"wish": {"text": text}}, "response": response})
     path = link(status, f"{REL}results")

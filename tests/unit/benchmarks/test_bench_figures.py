@@ -1,7 +1,5 @@
 """The benchmark's table says what was measured and whether it meets its target."""
 
-from __future__ import annotations
-
 import ast
 import re
 from pathlib import Path
@@ -23,7 +21,7 @@ FIGURES = (
 ORDER = ("static_table", "run_up")
 
 
-def test_met_missed_and_without_target() -> None:
+def test_met_missed_and_without_target():
     assert [figure.met for figure in FIGURES] == [True, False, None]
     rows = markdown(FIGURES).splitlines()[2:]
     assert rows == [
@@ -33,19 +31,19 @@ def test_met_missed_and_without_target() -> None:
     ]
 
 
-def test_the_machine_is_named() -> None:
+def test_the_machine_is_named():
     machine = describe()
     assert {"processor", "cores", "memory", "python", "numpy", "lineofaction"} <= set(machine)
     assert all(machine.values())
 
 
-def test_a_fresh_process_tells_its_results_and_its_time() -> None:
+def test_a_fresh_process_tells_its_results_and_its_time():
     result = measure("measured = {'answer': sum(range(10))}\n")
     assert result["answer"] == 45
     assert result["process_cpu_seconds"] > 0.0
 
 
-def test_what_fresh_processes_import_is_there() -> None:
+def test_what_fresh_processes_import_is_there():
     folder = Path(bench.__file__).parent
     pieces = [
         node.value
@@ -61,7 +59,7 @@ def test_what_fresh_processes_import_is_there() -> None:
     measure(code)
 
 
-def test_code_that_fails_is_an_error() -> None:
+def test_code_that_fails_is_an_error():
     with pytest.raises(RuntimeError, match="no such thing"):
         measure("raise SystemExit('no such thing')\n")
 
@@ -71,9 +69,7 @@ def _measured(day: str, *figures: Figure) -> Measured:
     return Measured(day, {"processor": "P", "python": "3"}, figures)
 
 
-def test_publishing_replaces_the_figures_and_nothing_else(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_publishing_replaces_the_figures_and_nothing_else(tmp_path, monkeypatch):
     (tmp_path / "docs" / "lab").mkdir(parents=True)
     readme = tmp_path / "README.md"
     before, after = f"# Title\n\n{MARKS[0]}\n", f"{MARKS[1]}\n\nRest.\n"
@@ -91,7 +87,7 @@ def test_publishing_replaces_the_figures_and_nothing_else(
     assert "| table | memory |" in (tmp_path / "out" / "benchmarks.md").read_text()
 
 
-def test_publishing_one_subject_keeps_the_others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_publishing_one_subject_keeps_the_others(tmp_path, monkeypatch):
     (tmp_path / "docs" / "lab").mkdir(parents=True)
     (tmp_path / "README.md").write_text(f"{MARKS[0]}\n{MARKS[1]}\n")
     monkeypatch.setattr(bench, "ROOT", tmp_path)
@@ -114,9 +110,7 @@ def test_publishing_one_subject_keeps_the_others(tmp_path: Path, monkeypatch: py
     assert "| run | run-up | 0.5 CPU s |" in (tmp_path / "README.md").read_text()
 
 
-def test_only_named_subjects_are_measured(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_only_named_subjects_are_measured(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(bench, "ROOT", tmp_path)
     monkeypatch.setattr(bench, "MEASURED", tmp_path / "out")
     monkeypatch.setattr("benchmarks.finite_width.figures", lambda: [FIGURES[0]])

@@ -1,10 +1,7 @@
 """The cluster that a benchmark starts: small, with the same results, and gone after a failure."""
 
-from __future__ import annotations
-
 import subprocess
 from types import SimpleNamespace
-from typing import Any
 
 import pytest
 
@@ -14,11 +11,11 @@ pytest.importorskip("distributed", reason="the extra dask is not installed")
 
 
 @pytest.fixture
-def processes(monkeypatch: pytest.MonkeyPatch) -> list[subprocess.Popen[bytes]]:
+def processes(monkeypatch):
     """Collect the processes that are started."""
     processes: list[subprocess.Popen[bytes]] = []
 
-    def noted(*words: Any, **options: Any) -> subprocess.Popen[bytes]:
+    def noted(*words, **options):
         processes.append(subprocess.Popen(*words, **options))
         return processes[-1]
 
@@ -26,9 +23,7 @@ def processes(monkeypatch: pytest.MonkeyPatch) -> list[subprocess.Popen[bytes]]:
     return processes
 
 
-def test_a_rate_has_the_time_of_all_and_nothing_stays(
-    processes: list[subprocess.Popen[bytes]], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_rate_has_the_time_of_all_and_nothing_stays(processes, monkeypatch):
     monkeypatch.setattr(cluster_rate, "_TASKS", 20)
     monkeypatch.setattr(cluster_rate, "_TASK_S", 0.01)
     rate = cluster_rate.measured(2)
@@ -36,9 +31,7 @@ def test_a_rate_has_the_time_of_all_and_nothing_stays(
     assert len(processes) == 2 and None not in [process.poll() for process in processes]
 
 
-def test_workers_that_do_not_come_are_not_waited_for(
-    processes: list[subprocess.Popen[bytes]], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_workers_that_do_not_come_are_not_waited_for(processes, monkeypatch):
     monkeypatch.setattr(cluster_rate, "_WORKERS", "raise SystemExit(1)")
     with pytest.raises(RuntimeError, match="did not start"):
         cluster_rate.measured(2)

@@ -1,7 +1,5 @@
 """The study of influence estimates of dynamic effects counts what it states."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path
@@ -20,7 +18,7 @@ from dynamics.meshes.standard_sliding import StandardTeeth
 from dynamics.meshes.stiffness_table import straight_table
 
 
-def test_counts_and_tables_are_those_of_the_ablations() -> None:
+def test_counts_and_tables_are_those_of_the_ablations():
     right = AssessedLevel("one", "tilt", (0.1, 0.2, 0.3), (0.11, 0.19, 0.5), (), "sound power", (3.0, 2.0))
     wrong = AssessedLevel(
         "two", "tilt", (0.1, 0.2, 0.3), (0.11, -0.19, 0.3), (), "bearing forces", (3.0, 1.0)
@@ -43,7 +41,7 @@ def test_counts_and_tables_are_those_of_the_ablations() -> None:
     assert "sound power in 1 scenes, all bearing forces in 1." in text
 
 
-def test_an_ablation_is_assessed_beside_its_estimate() -> None:
+def test_an_ablation_is_assessed_beside_its_estimate():
     made = ablate(gear_pair_scene(duration=0.06), only=["lateral"])
     one = assess("pair", made.effects[0])
     whole = made.nominal
@@ -53,7 +51,7 @@ def test_an_ablation_is_assessed_beside_its_estimate() -> None:
     assert one.measured[2] == pytest.approx(-1.0)
 
 
-def test_levels_are_compared_at_the_order_of_the_estimate() -> None:
+def test_levels_are_compared_at_the_order_of_the_estimate():
     """Amplitudes of orders 1 and 2 change by 9 and 8: the run names order 1, the estimate the other."""
     (entry,) = ablate(gear_pair_scene(duration=0.06), only=["lateral"]).effects
     order, estimate = np.array([1.0, 2.0]), entry.estimate
@@ -67,7 +65,7 @@ def test_levels_are_compared_at_the_order_of_the_estimate() -> None:
     assert assess("pair", told).decibels == (19.0, pytest.approx(20.0 * math.log10(9.0)))
 
 
-def test_every_effect_can_be_on_in_some_scene(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_every_effect_can_be_on_in_some_scene(monkeypatch):
     """On tables in closed form: what needs a table's axes or its ripple is left to the study itself.
 
     The study has no planetary set, its bearings have no elements that pass, and temperatures are sized on

@@ -1,7 +1,5 @@
 """The study of stated errors counts what it says it counts."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -18,14 +16,14 @@ MISSED = Assessed("steep", "helical, standard", VALUE, 0.5 * TRUE, TRUE)
 MARKS = [f"<!-- {word} finest: written by scripts/bench --publish -->" for word in ("begin", "end")]
 
 
-def test_what_is_not_covered_is_counted() -> None:
+def test_what_is_not_covered_is_counted():
     rows = {figure.what: figure for figure in coverage_figures([COVERED] * 3 + [MISSED], "errors", 90.0)}
     assert rows["mean: not covered"].value == pytest.approx(25.0)
     assert rows["mean: not covered"].met is False
     assert rows["harmonic 3: median stated over true"].value == pytest.approx(3.0)
 
 
-def test_the_error_of_the_reference_is_forgiven_and_no_ratio_is_taken_to_less() -> None:
+def test_the_error_of_the_reference_is_forgiven_and_no_ratio_is_taken_to_less():
     half = Assessed("steep", "", VALUE, 0.5 * TRUE, TRUE, own=0.6 * TRUE)
     assert half.covered.all()
     assert np.allclose(half.ratio, 0.5)
@@ -43,7 +41,7 @@ def page(tmp_path, monkeypatch):
     return page
 
 
-def test_the_page_shows_every_table_and_marks_what_is_missed(page) -> None:
+def test_the_page_shows_every_table_and_marks_what_is_missed(page):
     page.write_text(f"before\n{MARKS[0]}\nstale figures\n{MARKS[1]}\nafter\n")
     publish([COVERED, MISSED], {"lineofaction": "1", "numpy": "2", "scipy": "3"})
     text = page.read_text()
@@ -54,7 +52,7 @@ def test_the_page_shows_every_table_and_marks_what_is_missed(page) -> None:
     assert "| missed | 2 | 0 %, 0.5 |" in coverage_table({"missed": [MISSED], "none": []})
 
 
-def test_a_page_without_the_section_gets_one_and_keeps_its_text(page) -> None:
+def test_a_page_without_the_section_gets_one_and_keeps_its_text(page):
     page.write_text("nothing to replace\n")
     for _ in range(2):  # the second time there is one
         publish([COVERED], {"lineofaction": "1", "numpy": "2", "scipy": "3"})
@@ -63,7 +61,7 @@ def test_a_page_without_the_section_gets_one_and_keeps_its_text(page) -> None:
     assert text.count(MARKS[0]) == text.count(MARKS[1]) == text.count("| spur | draft |") == 1
 
 
-def test_a_table_is_assessed_from_end_to_end_and_stored(tmp_path, monkeypatch) -> None:
+def test_a_table_is_assessed_from_end_to_end_and_stored(tmp_path, monkeypatch):
     monkeypatch.setattr(stored_runs, "FILE", tmp_path / "runs.jsonl")
     plane = {"model": "plane_strain"}
     case = PairCase("spur", plane_cases()[0].pair, (1.0,), plane)

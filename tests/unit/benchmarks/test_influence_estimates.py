@@ -1,7 +1,5 @@
 """The study of influence estimates counts what it says it counts."""
 
-from __future__ import annotations
-
 import pytest
 from analysis_requests import table_request
 
@@ -16,12 +14,12 @@ from fe_contact.effects import EFFECTS
     ("estimated", "measured", "right"),
     [(0.1, 0.19, True), (0.1, 0.21, False), (0.1, -0.1, False), (0.004, -0.009, True), (0.004, 0.011, False)],
 )
-def test_a_factor_of_two_is_asked_of_what_can_be_seen(estimated: float, measured: float, right: bool) -> None:
+def test_a_factor_of_two_is_asked_of_what_can_be_seen(estimated, measured, right):
     assert within_factor(estimated, measured) is right
     assert LoadedInfluence("", "", (estimated, 0.0), (measured, 0.0)).right == (right, True)
 
 
-def test_every_effect_has_something_to_do_twice() -> None:
+def test_every_effect_has_something_to_do_twice():
     times = dict.fromkeys((effect.name for effect in EFFECTS), 0)
     for case in influence_cases():
         options = {name: value for name, value in case.options.items() if name != "positions"}
@@ -31,7 +29,7 @@ def test_every_effect_has_something_to_do_twice() -> None:
     assert sum(times.values()) >= 24
 
 
-def test_counts_and_tables_are_those_of_the_ablations() -> None:
+def test_counts_and_tables_are_those_of_the_ablations():
     right = LoadedInfluence("one", "misalignment", (0.1, 0.2), (0.11, 0.19))
     wrong = LoadedInfluence("two", "misalignment", (0.1, 0.2), (0.11, -0.19))
     off = LoadedInfluence("two", "corner_contact", (0.001, 0.0), (0.002, 0.03), (0.05,))

@@ -1,7 +1,5 @@
 """The study of live answers asks what it says it asks."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from benchmarks import live_coverage
@@ -13,7 +11,7 @@ COVERED = Assessed("spur: plain", "corrected plane, draft", VALUE, 0.03 * VALUE,
 MISSED = Assessed("spur: long tip relief", "corrected plane, draft", VALUE, 0.004 * VALUE, 0.01 * VALUE)
 
 
-def test_every_pair_is_asked_once_and_without_its_own_flanks() -> None:
+def test_every_pair_is_asked_once_and_without_its_own_flanks():
     found = all_bodies()
     assert len({repr((bodies.plain, bodies.options)) for bodies in found}) == len(found) >= 10
     for bodies in found:
@@ -22,14 +20,14 @@ def test_every_pair_is_asked_once_and_without_its_own_flanks() -> None:
         assert not any(gear.modification.varies_along_face for gear in gears)
 
 
-def test_in_the_plane_nothing_is_asked_that_acts_across_the_face() -> None:
+def test_in_the_plane_nothing_is_asked_that_acts_across_the_face():
     flat = [bodies for bodies in all_bodies() if not bodies.options]
     assert flat and all(set(bodies.questions) == set(PROFILES) for bodies in flat)
     assert all(question.misalignment == 0.0 for question in PROFILES.values())
     assert any(question.misalignment for question in ACROSS.values())
 
 
-def test_the_page_counts_what_is_covered(tmp_path, monkeypatch) -> None:
+def test_the_page_counts_what_is_covered(tmp_path, monkeypatch):
     page = tmp_path / "accuracy.md"
     marks = [f"<!-- {w} live answers: written by scripts/bench --publish -->" for w in ("begin", "end")]
     page.write_text(f"before\n{marks[0]}\nstale\n{marks[1]}\nafter\n")

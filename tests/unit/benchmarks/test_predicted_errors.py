@@ -1,7 +1,5 @@
 """The study of predictions compares what it says it compares."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -21,14 +19,14 @@ def run_with(total: float, mean: float | None) -> StoredRun:
     return StoredRun(value, sources, {"prediction": {"error": error}})
 
 
-def test_predictions_are_held_against_the_largest_stated_error() -> None:
+def test_predictions_are_held_against_the_largest_stated_error():
     found = compare(HELICAL, "draft", run_with(0.1, 0.4e-6)).ratios
     assert found == pytest.approx({"relative": 0.5, "mean": 4.0, "peak-to-peak": 2.0})
     # of the size by which the tolerance counts: 2 um
     assert compare(HELICAL, "tolerance", run_with(0.1, 0.4e-6)).ratios["relative"] == pytest.approx(1.0)
 
 
-def test_what_is_not_predicted_is_not_counted() -> None:
+def test_what_is_not_predicted_is_not_counted():
     found = [compare(HELICAL, "draft", run_with(0.1, mean)) for mean in (None, 0.4e-6)]
     assert set(found[0].ratios) == {"relative"}
     assert "| all | 2 | 2 of 2, 0.5 to 0.5 | 0 of 1, 4 to 4 | 1 of 1, 2 to 2 |" in markdown(found)

@@ -1,7 +1,5 @@
 """Programs that benchmarks keep as texts, for processes of their own, import what there is."""
 
-from __future__ import annotations
-
 import ast
 import re
 from collections.abc import Iterator
@@ -14,7 +12,6 @@ IMPORT = re.compile(rf"^from ((?:{OURS})(?:\.\w+)*) import ([\w, ]+)$", re.MULTI
 
 
 def imports() -> Iterator[tuple[str, str, str]]:
-    """Yield file, module and name of every import in a text."""
     for file in sorted(BENCHMARKS.glob("*.py")):
         for node in ast.walk(ast.parse(file.read_text("utf-8"))):
             text = node.value if isinstance(node, ast.Constant) and isinstance(node.value, str) else ""
@@ -22,7 +19,7 @@ def imports() -> Iterator[tuple[str, str, str]]:
                 yield from ((file.name, module, name) for name in names.split(", "))
 
 
-def test_programs_import_what_there_is() -> None:
+def test_programs_import_what_there_is():
     stated = list(imports())
     assert len(stated) > 20
     missing = [(file, module, name) for file, module, name in stated if not _there(module, name)]

@@ -1,7 +1,5 @@
 """The study of quiet helical pairs assesses in um what has no per cent."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest
@@ -23,14 +21,12 @@ RIPPLE = Influence(50.0, 0.0, -1e-6, 0.1e-6, 10e-6, 0.2e-6)
         (-0.03, 0.03, False),
     ],
 )
-def test_below_twenty_nm_a_change_of_the_ripple_is_nothing(
-    estimated: float, computed: float, right: bool
-) -> None:
+def test_below_twenty_nm_a_change_of_the_ripple_is_nothing(estimated, computed, right):
     one, other = (replace(RIPPLE, peak_to_peak=1e-6 * value) for value in (estimated, computed))
     assert AssessedInfluence(quiet_pairs()[0], "", one, other).right == (True, right)
 
 
-def test_pairs_that_assess_are_told_apart() -> None:
+def test_pairs_that_assess_are_told_apart():
     wrong = replace(RIPPLE, mean=1e-6)
     found = [
         AssessedInfluence(pair, "tooth_coupling", RIPPLE, wrong if pair.unseen else RIPPLE)

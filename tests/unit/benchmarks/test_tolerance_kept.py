@@ -1,7 +1,5 @@
 """The study of the tolerance counts what it says it counts."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -18,7 +16,7 @@ MISSED = ToleranceRun("steep", "fine, 31 slices", 2, False, 1.2, 3.0, 40.0, floa
 HELICAL = drawn_pairs(3, 2)[1]
 
 
-def test_misses_and_prices_are_counted() -> None:
+def test_misses_and_prices_are_counted():
     rows = {figure.what: figure.value for figure in counts([GOOD, DEAR, MISSED, GOOD])}
     assert rows["not met as measured"] == pytest.approx(25.0)
     assert rows["true error beyond the tolerance"] == pytest.approx(25.0)
@@ -28,19 +26,19 @@ def test_misses_and_prices_are_counted() -> None:
     assert next(f.value for f in wrong if f.what.startswith("said to be met")) == pytest.approx(25.0)
 
 
-def test_the_page_marks_what_is_missed_and_what_its_receipt_says() -> None:
+def test_the_page_marks_what_is_missed_and_what_its_receipt_says():
     text = markdown([GOOD, DEAR, MISSED])
     assert "| steep | fine, 31 slices (not met) | 2 | **1.2** | **3** | 40 | - | - |" in text
     assert "| met, says the receipt | 67 % |" in text
     assert "| price by true errors | median 5, at most 2.5 in 50 %, worst 9 |" in text
 
 
-def test_prices_are_those_over_the_quickest_run_whose_errors_are_within(monkeypatch) -> None:
+def test_prices_are_those_over_the_quickest_run_whose_errors_are_within(monkeypatch):
     """Draft errs by 0.8 % and states 2 %; standard states 0.5 %; the run refines and pays for both."""
     exact = np.array([[10e-6], [4e-6], [1e-6], [1e-6], [1e-6]])
     runs = {"draft": (1.008, 0.02, 1.0), "standard": (1.005, 0.005, 2.0)}
 
-    def made(_case, level: str = "", tolerance: float = 0.0) -> StoredRun:
+    def made(_case, level="", tolerance=0.0):
         part, stated, seconds = runs.get(level, (1.005, 0.005, 3.1))
         passes = [
             {"level": "draft", "slices": 15, "kept": False},
@@ -63,7 +61,7 @@ def test_prices_are_those_over_the_quickest_run_whose_errors_are_within(monkeypa
     assert (found.price, found.price_in_truth) == (3.1 / 2.0, 3.1)
 
 
-def test_the_floor_counts_where_it_is_larger_and_harmonics_do_not() -> None:
+def test_the_floor_counts_where_it_is_larger_and_harmonics_do_not():
     value = np.array([[10e-6, 10e-6], [4e-6, 0.1e-6], [1e-6, 1e-6]])
     error = np.array([[0.02e-6, 0.01e-6], [0.0, 10e-9], [1e-6, 1e-6]])
     assert used(error, value) == pytest.approx(0.5)  # 10 nm of 20; 0.2 % of 1 %

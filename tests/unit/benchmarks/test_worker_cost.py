@@ -1,9 +1,6 @@
 """The jobs whose cost is measured are such as the service takes, one of every process."""
 
-from __future__ import annotations
-
 from contextlib import closing
-from pathlib import Path
 
 from named_run import RUN, put_named_run
 
@@ -13,7 +10,7 @@ from service.settings import Settings
 from service.worker.process import default_registry
 
 
-def test_every_process_has_an_order_that_its_checks_pass(tmp_path: Path) -> None:
+def test_every_process_has_an_order_that_its_checks_pass(tmp_path):
     offered, ordered = default_registry(), [*orders()]
     with closing(job_machinery(Settings(data_directory=tmp_path), offered, works=False)) as parts:
         put_named_run(parts.store)

@@ -1,7 +1,5 @@
 """Bounds and quantities: written for their reader, and accepted when they are typed as they are written."""
 
-from __future__ import annotations
-
 import math
 import pickle
 import re
@@ -53,14 +51,14 @@ class InMillimeters(Reader):
 
 @pytest.mark.parametrize("unit", UNITS, ids=[unit.name for unit in UNITS])
 @pytest.mark.parametrize("limit", [0.087361258749, 1.0 / 3.0, -2.0 / 3.0, 123456.78, 2.116665e-3, 0.0])
-def test_limits_are_rounded_to_the_side_that_is_accepted_in_any_unit(limit: float, unit: Unit) -> None:
+def test_limits_are_rounded_to_the_side_that_is_accepted_in_any_unit(limit, unit):
     low, high = (float(text.split()[0]) * unit.factor for text in (unit.low(limit), unit.high(limit)))
     slack = 1e-12 * abs(limit)
     assert low + slack >= limit >= high - slack
     assert low - high <= 1.1e-6 * abs(limit)
 
 
-def test_a_limit_with_few_digits_is_written_with_few() -> None:
+def test_a_limit_with_few_digits_is_written_with_few():
     meter = Unit()
     written = (
         meter.low(0.07),
@@ -72,12 +70,12 @@ def test_a_limit_with_few_digits_is_written_with_few() -> None:
     assert written == ("0.07", "0.07", "0.3", "60", "0.5 mm")
 
 
-def test_integers_are_written_out() -> None:
+def test_integers_are_written_out():
     assert str(Bound.of(integers(0, 2**62), integer=True)) == f"an integer from 0 to {2**62}"
 
 
 @pytest.mark.parametrize("reader", [Reader("length"), InMillimeters("length")], ids=["si", "mm"])
-def test_both_ends_of_a_range_are_accepted_as_written(reader: Reader) -> None:
+def test_both_ends_of_a_range_are_accepted_as_written(reader):
     low, high = 1.0 / 3.0, 4.2333e-3 * 0.5 * 1e3
     with pytest.raises(RefusedValue) as caught:
         CHECKS.within("length", 5.0, low, high)
@@ -111,11 +109,11 @@ def test_both_ends_of_a_range_are_accepted_as_written(reader: Reader) -> None:
         (one_of(()), "absent", "absent"),
     ],
 )  # fmt: skip
-def test_a_bound_is_written_in_the_unit_of_its_field(bound: Bound, si: str, millimeters: str) -> None:
+def test_a_bound_is_written_in_the_unit_of_its_field(bound, si, millimeters):
     assert (str(bound), bound.worded(InMillimeters())) == (si, millimeters)
 
 
-def test_numbers_in_words_are_converted_and_remarks_on_si_left_out() -> None:
+def test_numbers_in_words_are_converted_and_remarks_on_si_left_out():
     text = Text.of(
         "A key of ", Quantity(8e-3, "m"), " has ", Quantity(2.0 / 3.0, digits=2), ". ", SiNote("In m.")
     )
@@ -123,7 +121,7 @@ def test_numbers_in_words_are_converted_and_remarks_on_si_left_out() -> None:
     assert text.worded(InMillimeters()) == "A key of 8 mm has 0.67. "
 
 
-def test_an_error_speaks_to_its_reader_also_inside_another() -> None:
+def test_an_error_speaks_to_its_reader_also_inside_another():
     inner = RefusedValue("width", Quantity(0.03, "m"), at_most(0.025, "m"), SiNote("In m."))
     outer = RefusedValue("case", "a file", Text.of("free of: ", inner))
     assert str(outer) == "case = 'a file': must be free of: width = '0.03 m': must be at most 0.025 m. In m."
@@ -131,7 +129,7 @@ def test_an_error_speaks_to_its_reader_also_inside_another() -> None:
     assert outer.worded(InMillimeters()) == said
 
 
-def test_an_error_crosses_process_boundaries_as_data() -> None:
+def test_an_error_crosses_process_boundaries_as_data():
     error = RefusedValue("width", 0.03, at_most(0.025, "m"), Text.of("Try ", Quantity(0.02, "m"), "."))
     copy = pickle.loads(pickle.dumps(error)).within("seat")
     assert (copy.field, copy.value, copy.bound, copy.suggestion) == (

@@ -1,7 +1,5 @@
 """Records in a dozen lines."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, make_dataclass
 from enum import Enum
 from typing import Any
@@ -29,7 +27,7 @@ class Ripple:
     secret: str = field(default="hidden", repr=False)
 
 
-def test_arrays_are_shape_and_range_numbers_stand_as_they_are() -> None:
+def test_arrays_are_shape_and_range_numbers_stand_as_they_are():
     lines = repr(Ripple(np.linspace(0.0, 0.984, 64), 1.25e-7, note="two\nlines")).split("\n")
     assert lines == [
         "Ripple",
@@ -57,7 +55,7 @@ def test_arrays_are_shape_and_range_numbers_stand_as_they_are() -> None:
         (float("nan"), "nan"),
     ],
 )
-def test_values_in_words(value: object, words: str) -> None:
+def test_values_in_words(value, words):
     assert described_value(value) == words
 
 
@@ -66,7 +64,7 @@ class Table:
         return "Table <3>", [(f"row {number}", "x" * 200) for number in range(30)]
 
 
-def test_a_record_that_states_its_lines_is_bounded_too() -> None:
+def test_a_record_that_states_its_lines_is_bounded_too():
     lines = text_of(Table()).split("\n")
     assert len(lines) == MAX_LINES
     assert max(map(len, lines)) == WIDTH
@@ -86,14 +84,14 @@ VALUES = st.one_of(
 
 
 @given(st.lists(VALUES, max_size=30))
-def test_no_record_takes_more_than_a_dozen_lines(values: list[Any]) -> None:
+def test_no_record_takes_more_than_a_dozen_lines(values):
     kind = brief(make_dataclass("Record", [f"field_{number}" for number in range(len(values))]))
     lines = repr(kind(*values)).split("\n")
     assert len(lines) <= MAX_LINES
     assert max(map(len, lines)) <= WIDTH
 
 
-def test_long_rows_are_wrapped_while_there_are_lines_and_cut_then() -> None:
+def test_long_rows_are_wrapped_while_there_are_lines_and_cut_then():
     @brief
     @dataclass(frozen=True)
     class Notes:
@@ -107,7 +105,7 @@ def test_long_rows_are_wrapped_while_there_are_lines_and_cut_then() -> None:
     assert max(map(len, lines)) <= WIDTH
 
 
-def test_a_call_leaves_out_what_has_its_default() -> None:
+def test_a_call_leaves_out_what_has_its_default():
     @concise
     @dataclass(frozen=True)
     class Wheel:

@@ -1,7 +1,5 @@
 """Checks that both libraries offer: names among others, findings by a list of limits."""
 
-from __future__ import annotations
-
 import pytest
 
 from bounds import Check, Checklist, Checks, RefusedValue
@@ -10,7 +8,7 @@ CHECKS = Checks(RefusedValue)
 LIMITS = Checklist({"size": Check("size", "size of the thing", 2.0, 10.0, "1", "a standard")})
 
 
-def test_chosen_names_keep_the_order_of_the_known_ones() -> None:
+def test_chosen_names_keep_the_order_of_the_known_ones():
     known = ["coarse", "usual", "fine"]
     assert CHECKS.chosen("names", ["fine", "coarse", "fine"], known) == ["coarse", "fine"]
     assert CHECKS.chosen("names", None, known) == known
@@ -32,9 +30,7 @@ def test_chosen_names_keep_the_order_of_the_known_ones() -> None:
         (0.0, 1.0, True, False),
     ],
 )
-def test_findings_are_what_is_out_of_the_limits(
-    value: float, scale: float, skip_zero: bool, is_found: bool
-) -> None:
+def test_findings_are_what_is_out_of_the_limits(value, scale, skip_zero, is_found):
     findings = list(LIMITS.assessed("size", "field", value, "1", scale=scale, skip_zero=skip_zero))
     assert len(findings) == is_found
     for finding in findings:

@@ -1,24 +1,21 @@
 """Numbers for people: as plain as can be, and exponents of engineers."""
 
-from __future__ import annotations
-
 import math
 import re
-from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from repository import ROOT
 
 from bounds import engineering, leftover
 
-ROOT = Path(__file__).parents[3]
 NUMBERS = st.floats(-1e308, 1e308).filter(lambda value: abs(value) > 1e-290)
 """What is rounded up beyond the largest float is none to read back."""
 
 
 @given(NUMBERS, st.integers(1, 4))
-def test_it_is_the_number_to_its_digits(value: float, digits: int) -> None:
+def test_it_is_the_number_to_its_digits(value, digits):
     text = engineering(value, digits)
     assert float(text) == pytest.approx(value, rel=0.5000001 * 10.0 ** (1 - digits))
     mantissa, _, exponent = text.partition("e")
@@ -45,11 +42,11 @@ def test_it_is_the_number_to_its_digits(value: float, digits: int) -> None:
         (math.inf, 2, "inf"),
     ],
 )
-def test_how_it_reads(value: float, digits: int, text: str) -> None:
+def test_how_it_reads(value, digits, text):
     assert engineering(value, digits) == text
 
 
-def test_a_sign_is_written_where_it_is_wanted() -> None:
+def test_a_sign_is_written_where_it_is_wanted():
     assert [engineering(value, 2, "+") for value in (140.0, -0.5, 3e9)] == ["+140", "-0.5", "+3e9"]
 
 
@@ -63,11 +60,11 @@ def test_a_sign_is_written_where_it_is_wanted() -> None:
         (0.3, "0.3"),
     ],
 )
-def test_what_rounding_leaves_has_no_digits(value: float, text: str) -> None:
+def test_what_rounding_leaves_has_no_digits(value, text):
     assert leftover(value) == text
 
 
-def test_no_other_way_of_writing_one_or_two_digits_is_left() -> None:
+def test_no_other_way_of_writing_one_or_two_digits_is_left():
     """One or two digits by ``%g`` would have an exponent from 10 or 100 on."""
     written = re.compile(r"\{[^{}]+:\+?\.[12]g\}")
     for package in (

@@ -1,7 +1,5 @@
 """A number ends with the second digit of its error, and reads back within half of its last place."""
 
-from __future__ import annotations
-
 import math
 
 import pytest
@@ -27,12 +25,12 @@ numbers = st.floats(1e-3, 1e6).flatmap(lambda size: st.sampled_from([size, -size
         (math.nan, 0.1, "none"),
     ],
 )
-def test_a_number_is_written_to_its_error(value: float, error: float, text: str) -> None:
+def test_a_number_is_written_to_its_error(value, error, text):
     assert with_error(value, error, "µm") == text
 
 
 @given(numbers, st.floats(1e-3, 1e3))
-def test_both_texts_end_at_one_place_and_read_back(value: float, share: float) -> None:
+def test_both_texts_end_at_one_place_and_read_back(value, share):
     error = abs(value) * share
     number, band = to_error(value, error), error_text(value, error)
     assert len(number.partition(".")[2]) == len(band.partition(".")[2])
@@ -41,7 +39,7 @@ def test_both_texts_end_at_one_place_and_read_back(value: float, share: float) -
 
 
 @given(numbers)
-def test_a_number_has_no_more_than_seven_digits(value: float) -> None:
+def test_a_number_has_no_more_than_seven_digits(value):
     digits = to_error(value, abs(value) * 1e-12).lstrip("-").replace(".", "").lstrip("0")
     assert len(digits.partition("e")[0]) <= 7
 
@@ -58,5 +56,5 @@ def test_a_number_has_no_more_than_seven_digits(value: float) -> None:
         (math.nan, 1.0, "none"),
     ],
 )
-def test_a_change_below_its_error_is_none(change: float, error: float, written: str) -> None:
+def test_a_change_below_its_error_is_none(change, error, written):
     assert change_text(change, error) == written

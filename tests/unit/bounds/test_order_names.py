@@ -1,7 +1,5 @@
 """Orders have the names of what makes them."""
 
-from __future__ import annotations
-
 import pytest
 
 from bounds import order_name, order_words
@@ -23,7 +21,7 @@ STAGES = {"first": 1.0, "second": 20 / 61}, {"input": 1 / 23, "middle": 1 / 61, 
         (3 / (23 * 67), ""),
     ],
 )
-def test_orders_of_a_pair(order: float, named: str) -> None:
+def test_orders_of_a_pair(order, named):
     assert order_name(order, *PAIR) == named
 
 
@@ -36,7 +34,7 @@ def test_orders_of_a_pair(order: float, named: str) -> None:
         (7 / 23, "input 7"),
     ],
 )
-def test_orders_of_two_stages(order: float, named: str) -> None:
+def test_orders_of_two_stages(order, named):
     assert order_name(order, *STAGES) == named
 
 
@@ -50,7 +48,5 @@ def test_orders_of_two_stages(order: float, named: str) -> None:
         (1234.0, "input", "", "order 1234.0 of input"),
     ],
 )
-def test_an_order_is_named_by_its_shaft_and_its_harmonic(
-    order: float, shaft: str, harmonic: str, words: str
-) -> None:
+def test_an_order_is_named_by_its_shaft_and_its_harmonic(order, shaft, harmonic, words):
     assert order_words(order, shaft, harmonic) == words

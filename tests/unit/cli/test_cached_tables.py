@@ -1,7 +1,5 @@
 """The table of a case is computed once: by this program, as long as its file is whole."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 
@@ -25,11 +23,10 @@ LOST = ("static_transmission_error", "tangent_compliance", "error_estimate", "ma
 
 
 @pytest.fixture
-def computed(monkeypatch: pytest.MonkeyPatch) -> list[SteDatabase]:
-    """The tables that are computed."""
+def computed(monkeypatch):
     made: list[SteDatabase] = []
 
-    def computed_table(*_: object) -> SteDatabase:
+    def computed_table(*_):
         table = small_table()
         made.append(replace(table, metadata=replace(table.metadata, receipt=RECEIPT)))
         return made[-1]
@@ -49,7 +46,7 @@ def files() -> list[Path]:
     return list((cache_home() / "tables").glob("*"))
 
 
-def test_a_table_is_computed_once_and_read_to_the_last_bit(computed: list[SteDatabase]) -> None:
+def test_a_table_is_computed_once_and_read_to_the_last_bit(computed):
     first, again = tabled(), tabled(damping_ratio=0.1)
     assert len(computed) == len(files()) == 1
     before, after = (scene.databases["mesh"] for scene in (first, again))
@@ -58,7 +55,7 @@ def test_a_table_is_computed_once_and_read_to_the_last_bit(computed: list[SteDat
     assert (before.geometry, before.metadata) == (after.geometry, after.metadata)
 
 
-def test_an_unchanged_case_is_analyzed_once(computed: list[SteDatabase], tmp_path: Path) -> None:
+def test_an_unchanged_case_is_analyzed_once(computed, tmp_path):
     case, first, second = (tmp_path / name for name in ("case.toml", "first.nc", "second.nc"))
     case.write_text(spur_case(torques=[1.0]))
     summary = printed("analyze", case, "-o", first)
@@ -70,9 +67,7 @@ def test_an_unchanged_case_is_analyzed_once(computed: list[SteDatabase], tmp_pat
     assert len(computed) == 2
 
 
-def test_a_case_with_a_cached_table_is_warned_of_all_the_same(
-    computed: list[SteDatabase], tmp_path: Path
-) -> None:
+def test_a_case_with_a_cached_table_is_warned_of_all_the_same(computed, tmp_path):
     """Results replace some of these warnings in the table, so they are not taken from it."""
     case = tmp_path / "case.toml"
     case.write_text(spur_case(torques=[8e3]))
@@ -81,7 +76,7 @@ def test_a_case_with_a_cached_table_is_warned_of_all_the_same(
     assert "warnings under --strict" in first.stderr and first.stderr == second.stderr
 
 
-def test_another_program_computes_its_own(computed: list[SteDatabase], monkeypatch) -> None:
+def test_another_program_computes_its_own(computed, monkeypatch):
     tabled()
     monkeypatch.setattr(cached_tables, "program_tag", lambda: "edited")
     tabled()
@@ -91,7 +86,7 @@ def test_another_program_computes_its_own(computed: list[SteDatabase], monkeypat
 
 
 @pytest.mark.parametrize("damage", [b"", b"not a table", None], ids=["empty", "foreign", "cut off"])
-def test_a_damaged_file_is_replaced(computed: list[SteDatabase], damage: bytes | None) -> None:
+def test_a_damaged_file_is_replaced(computed, damage):
     tabled()
     (file,) = files()
     whole = file.read_bytes()
@@ -102,7 +97,7 @@ def test_a_damaged_file_is_replaced(computed: list[SteDatabase], damage: bytes |
     assert SteDatabase.from_netcdf(file).n_failed == 0
 
 
-def test_a_table_with_failed_points_is_not_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_table_with_failed_points_is_not_kept(monkeypatch):
     table = small_table()
     failed = np.zeros(table.status.shape, dtype=bool)
     failed[0] = True
@@ -114,7 +109,7 @@ def test_a_table_with_failed_points_is_not_kept(monkeypatch: pytest.MonkeyPatch)
     assert not files()
 
 
-def test_what_one_verb_computes_another_finds(computed: list[SteDatabase], tmp_path: Path) -> None:
+def test_what_one_verb_computes_another_finds(computed, tmp_path):
     """`loa ste` of a unit asked for tables that a scene had made, a scene for those of `loa analyze`."""
     unit = tmp_path / "unit"
     unit.mkdir()

@@ -1,7 +1,5 @@
 """What the verbs of studies of cases find, beyond the contract of all studies: effects, roots, tolerances."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 
@@ -33,7 +31,7 @@ def told(folder: Path, case: str, verb: str, *arguments: object) -> Any:
 # ``loa ablate``.
 
 
-def test_effects_of_a_case_change_what_the_documentation_says(tmp_path: Path) -> None:
+def test_effects_of_a_case_change_what_the_documentation_says(tmp_path):
     only = "tooth_coupling,profile_modification,misalignment"
     found = told(tmp_path, RELIEVED, "ablate", "--only", only)
     assert found["of"] == "case"
@@ -52,7 +50,7 @@ def test_effects_of_a_case_change_what_the_documentation_says(tmp_path: Path) ->
     assert "not toggled: misalignment: the gears are aligned" in text.stdout
 
 
-def test_a_scene_is_drawn_with_and_without_an_effect() -> None:
+def test_a_scene_is_drawn_with_and_without_an_effect():
     made = ablate(gear_pair_scene(duration=0.03), only=["lateral", "friction"])
     found = RUN.figures(made)
     (lateral,) = found["effects"]
@@ -69,7 +67,7 @@ def test_a_scene_is_drawn_with_and_without_an_effect() -> None:
 # ``loa root-stress``.
 
 
-def test_roots_are_stressed_by_the_load_and_drawn_with_their_peaks(tmp_path: Path) -> None:
+def test_roots_are_stressed_by_the_load_and_drawn_with_their_peaks(tmp_path):
     file, picture = tmp_path / "root.nc", tmp_path / "root.png"
     found = told(tmp_path, PLAIN, "root-stress", "-o", file)
     assert found["torque_n_m"] == pytest.approx(100.0)  # the highest load of the case
@@ -94,7 +92,7 @@ def test_roots_are_stressed_by_the_load_and_drawn_with_their_peaks(tmp_path: Pat
 # ``loa scatter``.
 
 
-def test_pairs_are_drawn_within_the_tolerances_of_their_class(tmp_path: Path) -> None:
+def test_pairs_are_drawn_within_the_tolerances_of_their_class(tmp_path):
     plane = PLAIN.replace('"draft"', '"draft"\nmodel = "plane_strain"')
     page = tmp_path / "scatter.html"
     found = told(tmp_path, plane, "scatter", "--samples", "24", "--class", "8", "-o", page)

@@ -1,19 +1,15 @@
 """``loa compare BEFORE AFTER --scene``: the options reach the study of a change of flanks."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import numpy as np
 import pytest
 from command_line import loa
+from repository import EXAMPLES
 
 from lineofaction.cli import compare, run_study
 from lineofaction.gearbox.problems import EXIT_BAD_INPUT
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.studies.change.result import ALL, DesignLevels, FlankChange
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 SPUR, SCENE = EXAMPLES / "palermo_spur_20_20.toml", EXAMPLES / "palermo_scene.toml"
 
 
@@ -21,7 +17,7 @@ def called(*options: object) -> str:
     return loa("compare", SPUR, SPUR, "--scene", SCENE, *options).output
 
 
-def test_what_is_typed_reaches_the_study(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_what_is_typed_reaches_the_study(monkeypatch, tmp_path):
     seen = {}
     monkeypatch.setattr(compare, "run_study", lambda study, options: seen.update(options))
     tolerances = tmp_path / "tolerances.toml"
@@ -38,7 +34,7 @@ def test_what_is_typed_reaches_the_study(monkeypatch: pytest.MonkeyPatch, tmp_pa
     assert seen["study"].mesh is None
 
 
-def test_one_file_is_the_flanks_after_and_three_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_one_file_is_the_flanks_after_and_three_are_refused(monkeypatch):
     seen = {}
     monkeypatch.setattr(compare, "run_study", lambda study, options: seen.update(options))
     loa("compare", SPUR, "--scene", SCENE, "--speed-rpm", "500,600")
@@ -51,7 +47,7 @@ def test_one_file_is_the_flanks_after_and_three_are_refused(monkeypatch: pytest.
     assert "of those after alone" in three.output
 
 
-def test_speeds_are_required() -> None:
+def test_speeds_are_required():
     assert "--speed-rpm 500:6000:100" in called()
 
 
@@ -62,9 +58,7 @@ def levels(*nominal: float) -> DesignLevels:
 
 @pytest.mark.parametrize("requirement", [None, 70.0])
 @pytest.mark.parametrize("second", [45.0, 60.0])
-def test_the_terminal_says_once_what_gets_louder(
-    capsys: pytest.CaptureFixture[str], second: float, requirement: float | None
-) -> None:
+def test_the_terminal_says_once_what_gets_louder(capsys, second, requirement):
     about = ("gears", "sound power", "dB(A)", "largest", (ALL, "1", "2"), np.array([80.0]), np.array([100.0]))
     pairs = (("misalignment",), np.array([[-1e-6], [1e-6]]))
     both = levels(70.0, 70.0, 50.0), levels(65.0, 64.0, second)

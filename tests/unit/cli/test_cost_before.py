@@ -1,7 +1,5 @@
 """What a study costs is said before it begins, and by the status of a folder; it grows with the work."""
 
-from __future__ import annotations
-
 import json
 import re
 import tomllib
@@ -14,15 +12,14 @@ from typing import Any
 import pytest
 from command_line import loa
 from housing_solid import write_housed_scene
+from repository import EXAMPLES
 from spur_case import spur_case
 
 from bounds import engineering
 from dynamics.acoustics import BoundaryElements, ElementalRadiators
-from dynamics.assembly.assemble import System, assemble
+from dynamics.assembly.assemble import assemble
 from dynamics.influence import neglected_check
-from dynamics.scene import Scene
 from fe_contact.analysis.pairs.pair_contact import PairContact
-from fe_contact.analysis.run_plan import PredictedDesigns
 from fe_contact.microgeometry import evaluator
 from fe_contact.microgeometry.design_study import design_study
 from fe_contact.microgeometry.tolerance_study import curves_of_samples
@@ -50,7 +47,6 @@ from model_studies.stage_clock import StageClock
 
 sound_band_module = import_module("dynamics.noise.sound_band")
 steady_cost_module = import_module("dynamics.periodic.steady_cost")
-EXAMPLES = Path(__file__).parents[3] / "examples"
 SPEEDS = [100.0 * k for k in range(1, 61)]
 CHANGE: dict[str, Any] = {
     "after": tomllib.loads((EXAMPLES / "palermo_spur_20_20.toml").read_text()),
@@ -76,7 +72,7 @@ OF_SCENES = ("modes", "steady", "response")
 
 
 @pytest.fixture
-def case(tmp_path: Path) -> CheckedCase:
+def case(tmp_path):
     file = tmp_path / "case.toml"
     file.write_text(spur_case(torques=[100.0]))
     return CheckedCase(read_model(Case, file))
@@ -92,15 +88,13 @@ def predicted(verb: str, inputs: dict[str, Any], case: CheckedCase) -> StudyCost
 
 
 @pytest.mark.parametrize("verb", GROWING)
-def test_a_prediction_is_made_and_grows_with_the_work(verb: str, case: CheckedCase) -> None:
+def test_a_prediction_is_made_and_grows_with_the_work(verb, case):
     less, more = (predicted(verb, inputs, case) for inputs in GROWING[verb])
     assert 0.0 < less.seconds < more.seconds
     assert less.seconds == pytest.approx(sum(part.seconds for part in less.parts))
 
 
-def test_what_is_not_afforded_says_why_and_what_one_motion_takes(
-    case: CheckedCase, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_is_not_afforded_says_why_and_what_one_motion_takes(case, monkeypatch):
     """By the same count: as long a period and as many states, of the highest speed alone."""
     study, (scene, folder) = STUDIES["steady"], scene_of(EXAMPLES / "palermo_scene.toml")
     monkeypatch.setattr(steady_cost_module, "period_seconds", lambda *_: 1.0)
@@ -118,7 +112,7 @@ def test_what_is_not_afforded_says_why_and_what_one_motion_takes(
     assert (StudyCost(()) + many).text == many.text
 
 
-def test_of_a_usual_search_a_scatter_costs_by_its_nodes(case: CheckedCase) -> None:
+def test_of_a_usual_search_a_scatter_costs_by_its_nodes(case):
     alone = predicted("optimize", {"torque_n_m": [100.0]}, case)
     scatter = {"pinion": {"profile_slope_um": 2.0}, "points": 5}
     spread = predicted("optimize", {"torque_n_m": [100.0], "scatter": scatter}, case)
@@ -126,11 +120,11 @@ def test_of_a_usual_search_a_scatter_costs_by_its_nodes(case: CheckedCase) -> No
     assert designs[1].seconds == pytest.approx(5.0 * designs[0].seconds, rel=0.3)
 
 
-def test_drawn_teeth_cost_each_solved_pair_a_revolution_of_their_gear() -> None:
+def test_drawn_teeth_cost_each_solved_pair_a_revolution_of_their_gear():
     """As many base pitches as it has teeth, whatever the sample; none where no order is beside the mesh."""
     case = CheckedCase(read_model(Case, EXAMPLES / "industrial_spur_21_59.toml"))
 
-    def revolutions(limit: str, samples: int = 64) -> list[Work]:
+    def revolutions(limit, samples=64):
         inputs = {"samples": samples, "exact": 12, "finishing": "hobbing", "limit": limit}
         return [part for part in predicted("scatter", inputs, case).parts if part.name == "revolutions"]
 
@@ -141,20 +135,18 @@ def test_drawn_teeth_cost_each_solved_pair_a_revolution_of_their_gear() -> None:
     assert revolutions("1-pinion=60nm", 4096) == [by_gear["pinion"]]
 
 
-def test_pairs_of_scatter_are_solved_on_one_compliance(
-    case: CheckedCase, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_pairs_of_scatter_are_solved_on_one_compliance(case, monkeypatch):
     """Told are the positions that are assembled once, and the points of every pair, as they are counted."""
     inputs = validated(STUDIES["scatter"].inputs, {"samples": 5, "exact": 5})
     request, counts = case.request(scatter.scatter_request, inputs), Counter[str]()
     study = design_study(request.space, request.torques, [], StageClock(), Run(), request.checked)
     assembled, solved = PairContact._assembled, evaluator.solve_contact
 
-    def counted_positions(own: PairContact, candidates: Any, couple: bool) -> Any:
+    def counted_positions(own, candidates, couple):
         counts["compliance"] += candidates.position.size
         return assembled(own, candidates, couple)
 
-    def counted_points(problem: Any, load: Any) -> Any:
+    def counted_points(problem, load):
         counts["pairs"] += problem.candidates.position.size * load.size
         return solved(problem, load)
 
@@ -170,38 +162,35 @@ def test_pairs_of_scatter_are_solved_on_one_compliance(
 
 
 @pytest.mark.parametrize("misalignment", [0.0, 10.0])
-def test_a_pair_of_scatter_is_solved_once_however_it_is_misaligned(misalignment: float) -> None:
+def test_a_pair_of_scatter_is_solved_once_however_it_is_misaligned(misalignment):
     case = CheckedCase(read_model(Case, EXAMPLES / "helical_ev_23_67.toml"))
     inputs = {"samples": 40, "exact": 40, "misalignment_um": misalignment}
     (pairs,) = (part for part in predicted("scatter", inputs, case).parts if part.name == "pairs")
     assert pairs.pieces == pytest.approx(40 + 10 * scatter._TANGENT)
 
 
-def test_contacts_of_a_deflection_come_with_their_errors(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_contacts_of_a_deflection_come_with_their_errors(monkeypatch):
     own = deflect.predicted_designs
 
-    def priced(checked: Any, cache: Path | None) -> PredictedDesigns:
+    def priced(checked, cache):
         return own(checked, cache)._replace(design=1.0, errors=2.0, across_face=True)
 
     monkeypatch.setattr(deflect, "predicted_designs", priced)
     scene, folder = scene_of(EXAMPLES / "flexible_shafts_scene.toml")
     cost = study_cost(STUDIES["deflect"], scene, folder, STUDIES["deflect"].inputs())
-    assert cost is not None
     parts = {part.name: part for part in cost.parts}
     assert parts["contacts"].piece_seconds == 3.0
     assert parts["deflections"].pieces == 4  # of one load case: before, and in three passes
 
 
-def test_the_cost_is_said_as_parts_of_a_whole() -> None:
+def test_the_cost_is_said_as_parts_of_a_whole():
     gears, values = Work("gears", 1.6), Work("values", 1.6, 24)
     whole = StudyCost((gears,), 2.0**30) + StudyCost((values, Work("values", 0.8, 24), Work("beside", 0.01)))
     assert whole.text == "about 59 CPU s, 1 GiB: gears 1.6 s, 48 values at 1.2 s"
 
 
 @pytest.mark.parametrize("seconds", [1.0, 40.0])
-def test_the_verb_says_more_than_a_moment_on_standard_error(
-    seconds: float, case: CheckedCase, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_verb_says_more_than_a_moment_on_standard_error(seconds, case, monkeypatch, capsys):
     monkeypatch.setattr(run_study, "study_cost", lambda *_: StudyCost((Work("values", seconds / 8.0, 8),)))
     monkeypatch.setattr("lineofaction.cli.costs.host_slowness", lambda _: 2.0)
     targets = Path("sensitivity.nc"), Path("sensitivity.html")  # one is drawn
@@ -212,7 +201,7 @@ def test_the_verb_says_more_than_a_moment_on_standard_error(
     assert printed.err == (said if seconds == 40.0 else "")
 
 
-def test_a_run_says_its_cost_and_that_of_its_tables(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_a_run_says_its_cost_and_that_of_its_tables(monkeypatch, tmp_path):
     for name, work in (("simulation_cost", Work("run", 30.0)), ("tables_cost", Work("tables", 10.0))):
         monkeypatch.setattr(simulate, name, lambda *_, work=work: StudyCost((work,)))
     scene = tmp_path / "scene.toml"
@@ -221,7 +210,7 @@ def test_a_run_says_its_cost_and_that_of_its_tables(monkeypatch: pytest.MonkeyPa
     assert loa("simulate", scene, "-o", tmp_path / "run.nc", "--set", "run.duration_s=0.01").stderr == said
 
 
-def test_a_scene_that_a_study_refuses_is_left_out(tmp_path: Path) -> None:
+def test_a_scene_that_a_study_refuses_is_left_out(tmp_path):
     scene = tmp_path / "scene.toml"
     scene.write_text((EXAMPLES / "lin_parker_planetary_scene.toml").read_text())
     for study in (STUDIES["steady"], STUDIES["response"]):
@@ -234,7 +223,7 @@ def test_a_scene_that_a_study_refuses_is_left_out(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("bearing", ["output left", "none"])
-def test_a_search_by_sound_that_is_refused_leaves_the_status_whole(bearing: str, tmp_path: Path) -> None:
+def test_a_search_by_sound_that_is_refused_leaves_the_status_whole(bearing, tmp_path):
     for name in ("palermo_scene.toml", "palermo_spur_20_20.toml"):
         (tmp_path / name).write_text((EXAMPLES / name).read_text())
     heard = f'[heard]\nspeed_rpm = [500, 900]\norders = 2\nbearing = "{bearing}"\n'
@@ -245,7 +234,7 @@ def test_a_search_by_sound_that_is_refused_leaves_the_status_whole(bearing: str,
     assert seconds["modes"] > 0.0
 
 
-def test_the_cost_of_a_run_grows_with_its_duration() -> None:
+def test_the_cost_of_a_run_grows_with_its_duration():
     scene, _ = scene_of(EXAMPLES / "lin_parker_planetary_scene.toml")
     longer = scene.model_copy(
         update={"run": scene.run.model_copy(update={"duration_s": 100.0 * scene.run.duration_s})}
@@ -263,22 +252,19 @@ def study_inputs(levels: int, path: str, samples: int = 1) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("samples", [1, 5])
-def test_a_study_costs_its_runs_and_the_contact_of_other_flanks(
-    samples: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_study_costs_its_runs_and_the_contact_of_other_flanks(samples, monkeypatch):
     """Every point is a run; samples of what is no flank need no other table."""
     study, (scene, folder) = STUDIES["study"], scene_of(EXAMPLES / "palermo_scene.toml")
     monkeypatch.setattr(run, "run_cost", lambda _, runs, __: StudyCost((Work("runs", 2.0, runs),)))
     for path, contacts in (("loads.brake.torque_n_m", 0), ("meshes.mesh.case.pair.pinion.tip_relief_um", 4)):
         inputs = validated(study.inputs, study_inputs(4, path, samples))
         cost = study_cost(study, scene, folder, inputs)
-        assert cost is not None
         pieces = {part.name: part.pieces for part in cost.parts}
         assert pieces["runs"] == 4 * samples
         assert pieces.get("contacts", 0) == contacts
 
 
-def test_a_complaint_costs_its_lines_at_one_speed_and_of_a_case_next_to_nothing(case: CheckedCase) -> None:
+def test_a_complaint_costs_its_lines_at_one_speed_and_of_a_case_next_to_nothing(case):
     study, (scene, folder) = STUDIES["complaint"], scene_of(EXAMPLES / "palermo_scene.toml")
     costs = {}
     for hertz in (150.0, 1500.0):
@@ -295,7 +281,7 @@ def test_a_complaint_costs_its_lines_at_one_speed_and_of_a_case_next_to_nothing(
 
 
 @pytest.fixture
-def housed(tmp_path: Path) -> Path:
+def housed(tmp_path):
     """A folder with a scene in a housing with a surface, and its case."""
     scene = write_housed_scene(tmp_path) / "scene.json"
     table = json.loads(scene.read_text())
@@ -306,7 +292,7 @@ def housed(tmp_path: Path) -> Path:
     return scene
 
 
-def test_a_vibration_costs_the_response_where_something_vibrates_and_no_run_is_named(housed: Path) -> None:
+def test_a_vibration_costs_the_response_where_something_vibrates_and_no_run_is_named(housed):
     study, inputs = STUDIES["vibration"], {"speed_rpm": SPEEDS}
     costs = [
         study_cost(study, *scene_of(scene), validated(study.inputs, fields))
@@ -321,9 +307,7 @@ def test_a_vibration_costs_the_response_where_something_vibrates_and_no_run_is_n
     assert costs == [alike, None, None] and alike is not None
 
 
-def test_the_band_of_a_sound_costs_as_many_responses_as_it_has(
-    housed: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_band_of_a_sound_costs_as_many_responses_as_it_has(housed, monkeypatch):
     """And two more where it stands on mounts, whose stiffness is guessed too."""
     study, (scene, folder) = STUDIES["noise"], scene_of(housed)
     fields = {"speed_rpm": [300.0, 600.0], "orders": 2, "radiation": "equivalent_radiated_power"}
@@ -331,7 +315,7 @@ def test_the_band_of_a_sound_costs_as_many_responses_as_it_has(
     responses: list[float] = []
     forced = sound_band_module.forced_power
 
-    def counted(*values: Any) -> Any:
+    def counted(*values):
         responses.append(1.0)
         return forced(*values)
 
@@ -342,21 +326,18 @@ def test_the_band_of_a_sound_costs_as_many_responses_as_it_has(
     part = scene.housings[0].model_copy(update={"feet": (foot,)})
     mounted = scene.model_copy(update={"housings": (part,)})
     stands, hangs = (study_cost(study, own, folder, inputs) for own in (scene, mounted))
-    assert stands is not None and hangs is not None
     assert (stands.parts[-1].pieces, hangs.parts[-1].pieces) == (len(responses), len(responses) + 2)
     assert study_cost(study, scene, folder, alone) == StudyCost(stands.parts[:-1])
 
 
-def test_the_lines_of_a_sound_are_within_twice_those_that_boundary_elements_correct(
-    housed: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_lines_of_a_sound_are_within_twice_those_that_boundary_elements_correct(housed, monkeypatch):
     """At a microphone too; a line costs what its usual hull does."""
     study, (scene, folder) = STUDIES["noise"], scene_of(housed)
     fields = {"speed_rpm": [300.0, 600.0], "orders": 2, "band": False, "microphone_mm": [40.0, 60.0, 1000.0]}
     inputs = validated(study.inputs, fields)
     panels: list[int] = []
 
-    def by_monopoles(_model: Any, hull: Any, *of: Any) -> Any:
+    def by_monopoles(_model, hull, *of):
         panels.append(len(hull.triangles))
         return ElementalRadiators().resistance(hull, *of)
 
@@ -371,39 +352,37 @@ def test_the_lines_of_a_sound_are_within_twice_those_that_boundary_elements_corr
     assert all(0.5 < share < 2.0 for share in each)
 
 
-def test_more_points_have_more_lines_up_to_the_most(housed: Path) -> None:
+def test_more_points_have_more_lines_up_to_the_most(housed):
     study, (scene, folder) = STUDIES["noise"], scene_of(housed)
 
-    def pieces(**fields: Any) -> float:
+    def pieces(**fields):
         cost = study_cost(study, scene, folder, validated(study.inputs, {"speed_rpm": SPEEDS[:6], **fields}))
-        assert cost is not None
         return next((part.pieces for part in cost.parts if "boundary" in part.name), 0.0)
 
     assert [pieces(orders=6), pieces(speed_rpm=SPEEDS, orders=10)] == [3, 4]
     assert pieces(boundary_elements=False) == 0.0
 
 
-def test_a_sound_of_a_run_and_its_contacts_are_not_predicted(housed: Path) -> None:
+def test_a_sound_of_a_run_and_its_contacts_are_not_predicted(housed):
     study, (scene, folder) = STUDIES["noise"], scene_of(housed)
     for fields in ({"sensitivities": True, "speed_rpm": SPEEDS[:6]}, {"run": "0" * 64}):
         assert study_cost(study, scene, folder, validated(study.inputs, fields)) is None
 
 
-def test_a_change_costs_two_contacts_a_pair_and_two_of_the_designs() -> None:
+def test_a_change_costs_two_contacts_a_pair_and_two_of_the_designs():
     study, (scene, folder) = STUDIES["change"], scene_of(EXAMPLES / "palermo_scene.toml")
     for samples in (10, 40):
         inputs = validated(study.inputs, CHANGE | {"tolerances": {"samples": samples}})
         cost = study_cost(study, scene, folder, inputs)
-        assert cost is not None
         assert [part.pieces for part in cost.parts] == [1, 2 * samples + 2]
 
 
-def test_a_scene_is_assembled_once_for_all_verbs_that_ask_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_scene_is_assembled_once_for_all_verbs_that_ask_of_it(monkeypatch):
     scene, folder = scene_of(EXAMPLES / "palermo_scene.toml")
     scene = scene.model_copy(update={"run": scene.run.model_copy(update={"duration_s": 0.0123})})
     resolved: list[float | None] = []
 
-    def counted(own: Scene) -> System:
+    def counted(own):
         resolved.append(own.highest_frequency)
         return assemble(own)
 
@@ -414,7 +393,7 @@ def test_a_scene_is_assembled_once_for_all_verbs_that_ask_of_it(monkeypatch: pyt
     assert len(resolved) == len(set(resolved))
 
 
-def test_a_study_whose_runs_nobody_predicts_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_study_whose_runs_nobody_predicts_is_left_out(monkeypatch):
     study, (scene, folder) = STUDIES["study"], scene_of(EXAMPLES / "palermo_scene.toml")
     costs = iter((StudyCost((Work("runs", 2.0),)), None, None))  # of one point it is known
     monkeypatch.setattr(run, "run_cost", lambda *_: next(costs))
@@ -422,7 +401,7 @@ def test_a_study_whose_runs_nobody_predicts_is_left_out(monkeypatch: pytest.Monk
     assert study_cost(study, scene, folder, inputs) is None
 
 
-def test_the_status_sums_what_is_due(case: CheckedCase, tmp_path: Path) -> None:
+def test_the_status_sums_what_is_due(case, tmp_path):
     facts = json.loads(loa("status", tmp_path, "--json").stdout)
     due = [row["cpu_seconds"] for row in facts["results"] if row["state"] != "fresh"]
     known = [seconds for seconds in due if seconds is not None]
@@ -436,12 +415,7 @@ def test_the_status_sums_what_is_due(case: CheckedCase, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("subject", ["case", "scene"])
-def test_the_status_has_the_cost_of_each_of_these_verbs(
-    subject: str,
-    case: CheckedCase,
-    tmp_path: Path,
-    request: pytest.FixtureRequest,
-) -> None:
+def test_the_status_has_the_cost_of_each_of_these_verbs(subject, case, tmp_path, request):
     verbs = {"ablate", "frontier", "root-stress"}
     if subject == "scene":
         verbs |= {"listen", "vibration", "noise", "complaint", "change"}
@@ -454,16 +428,14 @@ def test_the_status_has_the_cost_of_each_of_these_verbs(
     assert verbs <= {row["verb"] for row in facts["results"] if (row["cpu_seconds"] or 0.0) > 0.0}
 
 
-def test_a_table_costs_what_its_plan_says(case: CheckedCase) -> None:
+def test_a_table_costs_what_its_plan_says(case):
     cost = table_cost(case.case)
     planned = plan_of(case, None, cache_home() / "compliance").chosen.cost
     assert cost.seconds == pytest.approx(planned.cpu_seconds)
     assert cost.bytes == planned.memory_bytes
 
 
-def test_a_table_costs_every_pass_that_is_expected(
-    case: CheckedCase, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_table_costs_every_pass_that_is_expected(case, monkeypatch):
     """A mesh that is expected to miss the tolerance is tried first: another is expected to follow."""
     decision, alone = plan._decision(case, None), table_cost(case.case)
     behind = replace(decision, plan=decision.checked.plan("fine"))
@@ -474,7 +446,7 @@ def test_a_table_costs_every_pass_that_is_expected(
     assert both.bytes == max(alone.bytes, finer.memory_bytes)
 
 
-def test_a_plan_prints_what_its_table_costs_in_both_passes(tmp_path: Path) -> None:
+def test_a_plan_prints_what_its_table_costs_in_both_passes(tmp_path):
     (tmp_path / "case.toml").write_text(
         "[pair]\nnormal_module_mm = 2.0\nhelix_angle_deg = 9.0\ncenter_distance_mm = 40.4986\n"
         "[pair.pinion]\nteeth = 20\nface_width_mm = 40.0\nbore_diameter_mm = 20.0\n"
@@ -489,17 +461,17 @@ def test_a_plan_prints_what_its_table_costs_in_both_passes(tmp_path: Path) -> No
     assert [row.split()[0] for row in re.findall("> (.*)", done.stdout)] == ["draft,", "fine,"]
 
 
-def test_the_status_checks_each_case_of_a_unit_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_status_checks_each_case_of_a_unit_once(tmp_path, monkeypatch):
     loa("open", EXAMPLES / "two_stage" / "two_stage.rexs", "-o", tmp_path / "unit")
     checks: Counter[tuple[str, str]] = Counter()
     decisions: list[str] = []
     checked, decision = CheckedCase._checked, plan._decision
 
-    def checked_and_counted(own: CheckedCase, **how: bool) -> Any:
+    def checked_and_counted(own, **how):
         checks[own.case.model_dump_json(), str(how)] += 1
         return checked(own, **how)
 
-    def decided_and_counted(own: CheckedCase, cache: Path | None) -> Any:
+    def decided_and_counted(own, cache):
         decisions.append(own.case.model_dump_json())
         return decision(own, cache)
 

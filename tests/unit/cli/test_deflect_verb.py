@@ -1,7 +1,5 @@
 """loa deflect: load cases, what it prints and writes, its record, the inputs of an optimization, a rotor."""
 
-from __future__ import annotations
-
 import json
 import tomllib
 from collections.abc import Callable
@@ -29,11 +27,7 @@ from lineofaction.gearbox.studies.deflect.figures import optimization_inputs, wr
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks, Outline
 from lineofaction.gearbox.studies.deflect.run import RUN
 from lineofaction.gearbox.studies.optimize import Inputs as OptimizeInputs
-from lineofaction.report.deflection.deflect import (
-    PAGE,
-    _force_table,
-    _meshes_worst_first,
-)
+from lineofaction.report.deflection.deflect import PAGE, _force_table, _meshes_worst_first
 from lineofaction.report.deflection.gearbox_drawing import _exaggeration
 from lineofaction.report.document import write_report
 from lineofaction.report.drawing.figure import Table, number
@@ -44,7 +38,7 @@ def tables(result: GearboxDeflection) -> list[Table]:
     return [part for part in PAGE.text(result) if isinstance(part, Table)]
 
 
-def test_load_cases_come_from_their_file_in_its_units(tmp_path: Path) -> None:
+def test_load_cases_come_from_their_file_in_its_units(tmp_path):
     file = tmp_path / "cases.toml"
     file.write_text('[[load_cases]]\nname = "a"\nspeed_rpm = 600.0\ntorque_n_m = 20.0\ndirection = "coast"\n')
     (case,) = load_cases(read_model(Inputs, file).load_cases)
@@ -68,7 +62,7 @@ def test_load_cases_come_from_their_file_in_its_units(tmp_path: Path) -> None:
         ('forces = [{name = "a", force_n = [1.0, 2.0]}]', "load_cases[0].forces[0].force_n"),
     ],
 )
-def test_a_case_that_cannot_be_is_refused_by_its_field(tmp_path: Path, line: str, field: str) -> None:
+def test_a_case_that_cannot_be_is_refused_by_its_field(tmp_path, line, field):
     file = tmp_path / "cases.toml"
     file.write_text(f'[[load_cases]]\nname = "a"\n{line}\n')
     done = loa("deflect", scene_file(tmp_path), file)
@@ -95,7 +89,7 @@ direction = "coast"
 """
 
 
-def test_a_case_states_forces_of_the_scene(tmp_path: Path) -> None:
+def test_a_case_states_forces_of_the_scene(tmp_path):
     scene, file = scene_file(tmp_path), tmp_path / "cases.toml"
     axial = "axial_stiffness_n_per_m = 1e8\nradial_stiffness"
     held = scene.read_text("utf-8").replace("radial_stiffness", axial, 1)
@@ -112,20 +106,20 @@ def test_a_case_states_forces_of_the_scene(tmp_path: Path) -> None:
     assert across[3] - across[4] == pytest.approx([0.0, 100.0], rel=1e-9, abs=1e-6)
 
 
-def test_forces_that_the_scene_has_not_are_refused_before_its_tables_are_computed(tmp_path: Path) -> None:
+def test_forces_that_the_scene_has_not_are_refused_before_its_tables_are_computed(tmp_path):
     scene = read_model(SceneInput, scene_file(tmp_path))
     cases = [{"name": "a", "forces": [{"name": "belt", "factor": 2.0}]}]
     with pytest.raises(BadInput, match=r"load_cases\[0\]\.forces\[0\]\.name"):
         RUN.check(scene, validated(Inputs, {"load_cases": cases}))
 
 
-def test_a_case_without_forces_keeps_the_address_of_its_result() -> None:
+def test_a_case_without_forces_keeps_the_address_of_its_result():
     """Results are stored by what is written of their inputs."""
     (case,) = validated(Inputs, {"load_cases": [{"name": "a"}]}).model_dump(mode="json")["load_cases"]
     assert set(case) == {"name", "share", "factor", "torque_n_m", "speed_rpm", "direction"}
 
 
-def test_a_force_of_a_scene_says_what_acts(tmp_path: Path) -> None:
+def test_a_force_of_a_scene_says_what_acts(tmp_path):
     scene = scene_file(tmp_path)
     scene.write_text(scene.read_text("utf-8") + BELT.rpartition("force_n")[0], encoding="utf-8")
     done = loa("deflect", scene)
@@ -165,7 +159,7 @@ def flanks_of(case: Any, mesh: Any) -> MeshFlanks:
 
 
 @pytest.fixture(scope="module")
-def result() -> GearboxDeflection:
+def result():
     """The two stages under four cases, with flanks as `flanks_of` makes them."""
     scene = two_stages()
     found = deflect(scene, CASES, 3)
@@ -173,7 +167,7 @@ def result() -> GearboxDeflection:
     return GearboxDeflection(found, flanks, 3, 1e-8, True, Outline.of(scene), {"first": {"pair": {}}}, 1.0)
 
 
-def test_a_scene_is_deflected_under_its_own_load(tmp_path: Path) -> None:
+def test_a_scene_is_deflected_under_its_own_load(tmp_path):
     (case,) = printed("deflect", scene_file(tmp_path))["load_cases"]
     assert (case["name"], case["status"], case["torque_n_m"]) == ("load", "converged", pytest.approx(100.0))
     (mesh,) = case["meshes"]
@@ -182,7 +176,7 @@ def test_a_scene_is_deflected_under_its_own_load(tmp_path: Path) -> None:
     assert left["elastic_um"][0] == pytest.approx(left["force_n"][0] / 2e8 * 1e6, rel=1e-6)
 
 
-def test_the_file_gives_back_the_result_bit_by_bit(result: GearboxDeflection, tmp_path: Path) -> None:
+def test_the_file_gives_back_the_result_bit_by_bit(result, tmp_path):
     file = tmp_path / "deflection.nc"
     RUN.file.write(result, file)
     back = RUN.file.read(file)
@@ -193,7 +187,7 @@ def test_the_file_gives_back_the_result_bit_by_bit(result: GearboxDeflection, tm
     assert "Misalignment of each mesh by cause" in (tmp_path / "page.html").read_text("utf-8")
 
 
-def test_forces_of_all_cases_are_kept_and_shown(result: GearboxDeflection, tmp_path: Path) -> None:
+def test_forces_of_all_cases_are_kept_and_shown(result, tmp_path):
     pull = ForceUnderCase("belt", "in", np.array([0.0, 800.0, -1.5]), np.array([0.0, 0.0, 20.0]))
     cases = tuple(replace(case, forces=(pull,)) for case in result.deflection.cases)
     pulled = replace(result, deflection=replace(result.deflection, cases=cases))
@@ -206,7 +200,7 @@ def test_forces_of_all_cases_are_kept_and_shown(result: GearboxDeflection, tmp_p
     assert np.array_equal(back.force, pull.force) and np.array_equal(back.moment, pull.moment)
 
 
-def test_the_worst_mesh_comes_first(result: GearboxDeflection) -> None:
+def test_the_worst_mesh_comes_first(result):
     largest = {
         name: max(abs(m.misalignment) for c in result.deflection.cases for m in c.meshes if m.name == name)
         for name in ("first", "second")
@@ -217,7 +211,7 @@ def test_the_worst_mesh_comes_first(result: GearboxDeflection) -> None:
     assert PAGE.page(result).headlines[0].remark.startswith(f"mesh {first}")
 
 
-def test_parts_of_the_table_sum_to_the_misalignment(result: GearboxDeflection) -> None:
+def test_parts_of_the_table_sum_to_the_misalignment(result):
     table = tables(result)[0]
     assert table.head[4:7] == ("of shafts", "bearings", "K_Hbeta")  # what acts
     for row in table.rows:
@@ -225,7 +219,7 @@ def test_parts_of_the_table_sum_to_the_misalignment(result: GearboxDeflection) -
         assert total == pytest.approx(sum(parts), abs=0.02 * max(map(abs, parts)))
 
 
-def test_a_mesh_that_nothing_loads_has_no_figures_of_its_flanks(result: GearboxDeflection) -> None:
+def test_a_mesh_that_nothing_loads_has_no_figures_of_its_flanks(result):
     name, case = result.flanks[0].mesh, result.deflection.cases[0]
     bare = tables(replace(result, flanks=result.flanks[1:]))[0].rows
     full = tables(result)[0].rows
@@ -235,7 +229,7 @@ def test_a_mesh_that_nothing_loads_has_no_figures_of_its_flanks(result: GearboxD
     assert new[-3:] == ("none", "none", "none") and new[:-3] == old[:-3]
 
 
-def test_the_spectrum_of_the_driving_side_is_what_is_optimized(result: GearboxDeflection) -> None:
+def test_the_spectrum_of_the_driving_side_is_what_is_optimized(result):
     inputs = optimization_inputs(result, "first")
     study = OptimizeInputs.model_validate_json(json.dumps(inputs))
     first = [case.meshes[0] for case in result.deflection.cases]
@@ -256,7 +250,7 @@ def tilted(result: GearboxDeflection, case: int, further_um: float) -> GearboxDe
     return replace(result, deflection=replace(result.deflection, cases=tuple(cases)))
 
 
-def test_equal_torques_at_different_misalignments_stay_two_loads(result: GearboxDeflection) -> None:
+def test_equal_torques_at_different_misalignments_stay_two_loads(result):
     before, after = (optimization_inputs(each, "first") for each in (result, tilted(result, 2, -2.0)))
     (torque, other), (skew, larger) = before["torque_n_m"], before["misalignment_um"]
     assert after["torque_n_m"] == [torque, torque, other]
@@ -266,16 +260,14 @@ def test_equal_torques_at_different_misalignments_stay_two_loads(result: Gearbox
     assert optimization_inputs(tilted(result, 2, 1e-5), "first") == before  # less than a file shows
 
 
-def test_a_plane_model_gets_no_misalignment_to_optimize_for(result: GearboxDeflection) -> None:
+def test_a_plane_model_gets_no_misalignment_to_optimize_for(result):
     plane = replace(result, flanks=tuple(replace(f, face_load_factor=np.nan) for f in result.flanks))
     inputs, across_face = optimization_inputs(plane, "first"), optimization_inputs(result, "first")
     assert across_face.keys() - inputs.keys() == {"misalignment_um"}
     assert optimization_inputs(tilted(plane, 2, 2.0), "first") == inputs
 
 
-def test_files_of_an_optimization_stand_beside_the_list_of_calls(
-    result: GearboxDeflection, tmp_path: Path
-) -> None:
+def test_files_of_an_optimization_stand_beside_the_list_of_calls(result, tmp_path):
     write_spectrum(result, None, tmp_path / "gearbox.toml")
     (entry,) = tomllib.loads((tmp_path / "gearbox.toml").read_text("utf-8"))["meshes"]
     study = tomllib.loads((tmp_path / entry["study_file"]).read_text("utf-8"))
@@ -283,7 +275,7 @@ def test_files_of_an_optimization_stand_beside_the_list_of_calls(
     assert "pair" in tomllib.loads((tmp_path / entry["case_file"]).read_text("utf-8"))
 
 
-def test_what_was_not_found_is_said(result: GearboxDeflection) -> None:
+def test_what_was_not_found_is_said(result):
     assert RUN.failure(result) == ""
     assert "after 3 passes" in RUN.failure(replace(result, agreed=False, change=0.1))
     lost = replace(result.deflection.cases[0], status="unbalanced")
@@ -291,7 +283,7 @@ def test_what_was_not_found_is_said(result: GearboxDeflection) -> None:
     assert '"climb" (unbalanced)' in RUN.failure(broken) and "climb" in PAGE.page(broken).alarms[0]
 
 
-def test_deflections_are_drawn_a_round_number_of_times_enlarged(result: GearboxDeflection) -> None:
+def test_deflections_are_drawn_a_round_number_of_times_enlarged(result):
     case = result.deflection.cases[0]
     factor = _exaggeration(result.outline, case)
     largest = float(np.max(np.abs(case.shafts.motion[:, :2])))
@@ -308,7 +300,7 @@ def with_bearings(result: GearboxDeflection, change: Callable[[BearingLoad], Bea
     return replace(result, deflection=replace(result.deflection, cases=cases))
 
 
-def test_lives_are_in_hours_and_damage_adds_over_the_cases(result: GearboxDeflection) -> None:
+def test_lives_are_in_hours_and_damage_adds_over_the_cases(result):
     known = with_bearings(result, lambda load: replace(load, rating_life=1e12 / load.radial**3))
     figures = RUN.figures(known)
     check_declared("deflection", figures)
@@ -324,7 +316,7 @@ def test_lives_are_in_hours_and_damage_adds_over_the_cases(result: GearboxDeflec
     assert tables(known)[-1].rows[0][2] == number(float(f"{1.0 / damage[0]:.3g}"), 3)
 
 
-def test_no_life_is_said_with_its_reason(result: GearboxDeflection) -> None:
+def test_no_life_is_said_with_its_reason(result):
     assert {row[2] for row in tables(result)[-1].rows} == {"none: no capacity"}
     idle = with_bearings(result, lambda load: replace(load, rating_life=float("inf")))
     assert {row[-1] for row in tables(idle)[-2].rows} == {"unlimited"}
@@ -332,9 +324,9 @@ def test_no_life_is_said_with_its_reason(result: GearboxDeflection) -> None:
     assert (part["rating_life_hours"], part["rating_life"]) == (None, "unlimited")
 
 
-def test_forces_within_rounding_are_zero(result: GearboxDeflection) -> None:
-    def axial(force: float) -> Callable[[BearingLoad], BearingLoad]:
-        def changed(load: BearingLoad) -> BearingLoad:
+def test_forces_within_rounding_are_zero(result):
+    def axial(force):
+        def changed(load):
             return replace(load, force=np.array([*load.force[:2], force, 0.0, 0.0]))
 
         return changed
@@ -345,8 +337,8 @@ def test_forces_within_rounding_are_zero(result: GearboxDeflection) -> None:
     assert {float(row[4]) for row in tables(small)[-2].rows} == {-1e-3}
 
 
-def test_displacements_within_rounding_are_zero(result: GearboxDeflection) -> None:
-    def clear(play: float) -> Callable[[BearingLoad], BearingLoad]:
+def test_displacements_within_rounding_are_zero(result):
+    def clear(play):
         return lambda load: replace(load, clearance=np.full(5, play))
 
     noisy, small = (with_bearings(result, clear(play)) for play in (1e-19, 1e-12))
@@ -354,18 +346,11 @@ def test_displacements_within_rounding_are_zero(result: GearboxDeflection) -> No
     assert {float(row[6]) for row in tables(small)[-2].rows} == {1.41e-6}
 
 
-def test_a_long_life_has_three_digits(result: GearboxDeflection) -> None:
-    long = with_bearings(result, lambda load: replace(load, rating_life=1.23456e10))
-    hours = RUN.figures(long)["bearings"][0]["rating_life_hours"]
-    assert hours > 1e5
-    assert len(tables(long)[-1].rows[0][2].rstrip("0")) == 3
-
-
 ROTOR = Path(__file__).parents[3] / "examples" / "jeffcott_scene.toml"
 WEIGHT = 10.0 * 9.81
 
 
-def test_a_rotor_under_its_weight_hangs_in_its_bearings(tmp_path: Path) -> None:
+def test_a_rotor_under_its_weight_hangs_in_its_bearings(tmp_path):
     files = [tmp_path / f"rotor.{ending}" for ending in ("json", "png", "html")]
     for file in files:
         options = ["--set", "gravity_m_per_s2=[0.0, -9.81, 0.0]", "-o", str(file)]
@@ -378,20 +363,20 @@ def test_a_rotor_under_its_weight_hangs_in_its_bearings(tmp_path: Path) -> None:
     assert '"y, mm"' in html and '"x, mm"' not in html  # seen as it bends
 
 
-def test_the_cost_of_a_verb_is_that_of_its_process_and_children(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_cost_of_a_verb_is_that_of_its_process_and_children(monkeypatch):
     monkeypatch.setattr("lineofaction.cli.run_study.cpu_seconds", lambda: 117.0)
     result = loa("deflect", ROTOR)
     assert [line for line in result.stdout.splitlines() if "CPU" in line] == ["cost 117 CPU s"]
 
 
-def test_what_was_made_for_a_deflection_is_in_its_cost(tmp_path: Path) -> None:
+def test_what_was_made_for_a_deflection_is_in_its_cost(tmp_path):
     scene = read_model(SceneInput, ROTOR)
     tabled = TabledScene(scene, {}, dynamic_scene(scene, {}), {}, seconds=57.5)
     inputs = Inputs.model_validate({"load_cases": [{"name": "own"}]})
     assert RUN.compute(tabled, inputs, Means(tmp_path, lambda *_: None)).seconds >= 57.5
 
 
-def test_a_torque_in_a_scene_without_loads_is_refused_by_its_field() -> None:
+def test_a_torque_in_a_scene_without_loads_is_refused_by_its_field():
     scene = read_model(SceneInput, ROTOR)
     inputs = Inputs.model_validate({"load_cases": [{"name": "own"}, {"name": "high", "torque_n_m": 5.0}]})
     with pytest.raises(BadInput) as refused:

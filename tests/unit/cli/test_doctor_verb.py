@@ -1,7 +1,5 @@
 """What `loa doctor` says of an installation, and which verbs it says work."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 from typing import Any
@@ -29,16 +27,14 @@ def answer(monkeypatch: pytest.MonkeyPatch, analysis: list[str], gmsh: int = 0) 
     return told | {"findings": {finding["name"]: finding for finding in told["findings"]}}
 
 
-def test_with_all_packages_all_verbs_work(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_with_all_packages_all_verbs_work(monkeypatch):
     told = answer(monkeypatch, ["numpy>=1", "scipy"])
     assert all(told["verbs"].values()) and {"analyze", "modes", "serve", "ste"} <= told["verbs"].keys()
     assert told["findings"]["extra analysis"]["state"] == "has"
     assert {"machine", "program", "cache", "base", "gmsh", "browser"} <= told["findings"].keys()
 
 
-def test_missing_packages_and_untested_versions_are_named_with_the_remedy(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_missing_packages_and_untested_versions_are_named_with_the_remedy(monkeypatch):
     told = answer(monkeypatch, ["numpy<1", "no-such-package", "scipy"])
     finding = told["findings"]["extra analysis"]
     assert finding["state"] == "lacks"
@@ -46,14 +42,14 @@ def test_missing_packages_and_untested_versions_are_named_with_the_remedy(
     assert {verb for verb, works in told["verbs"].items() if works} == set(doctor.BASE)
 
 
-def test_a_mesher_that_does_not_load_says_which_libraries_it_needs(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_mesher_that_does_not_load_says_which_libraries_it_needs(monkeypatch):
     told = answer(monkeypatch, ["numpy"], gmsh=1)
     finding = told["findings"]["gmsh"]
     assert finding["state"] == "lacks" and "libGL.so.1" in finding["text"] and "apt-get" in finding["text"]
     assert not told["verbs"]["analyze"] and told["verbs"]["ste"]
 
 
-def test_a_requirement_belongs_to_the_base_or_to_its_extras() -> None:
+def test_a_requirement_belongs_to_the_base_or_to_its_extras():
     plain, extra, other = map(
         Requirement,
         (
@@ -67,7 +63,7 @@ def test_a_requirement_belongs_to_the_base_or_to_its_extras() -> None:
     assert not doctor._belongs(extra, "service") and not doctor._belongs(other, "analysis")
 
 
-def test_the_shell_completes_verbs(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_shell_completes_verbs(monkeypatch):
     environment = {"_LOA_COMPLETE": "complete_bash", "COMP_WORDS": "loa resp", "COMP_CWORD": "1"}
     done = CliRunner().invoke(app, prog_name="loa", env=environment)
     assert done.stdout.split() == ["response"]

@@ -1,23 +1,15 @@
 """Every verb begins with its result, main figures with their errors, and ends with the files."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 
 import pytest
-from click import Context
 from command_line import loa
 from small_table import small_table
-from typer.main import get_command
 
-from lineofaction.cli.commands import app
 from lineofaction.client import LineOfActionClient
-from lineofaction.gearbox.registry import STUDIES
 
 SPUR = Path(__file__).parents[3] / "examples" / "palermo_spur_20_20.toml"
-LOA = get_command(app)
-VERBS = LOA.list_commands(Context(LOA))
 COARSE = ("--level", "draft", "--set", "accuracy.positions=16")
 
 
@@ -28,7 +20,7 @@ def ends(*arguments: object, first: int = 2) -> tuple[list[str], str]:
     return lines[:first], lines[-1]
 
 
-def test_a_table_begins_with_mean_and_ripple_and_ends_with_its_file(tmp_path: Path) -> None:
+def test_a_table_begins_with_mean_and_ripple_and_ends_with_its_file(tmp_path):
     file = tmp_path / "ste.nc"
     (mean, ripple), written = ends("analyze", SPUR, "-o", file, "--torque", 100, *COARSE)
     figure = r"([\d.]+) µm ± [\d.]+ µm"
@@ -40,7 +32,7 @@ def test_a_table_begins_with_mean_and_ripple_and_ends_with_its_file(tmp_path: Pa
     assert written == f"written to {file}"
 
 
-def test_a_plan_begins_with_what_it_chose() -> None:
+def test_a_plan_begins_with_what_it_chose():
     done = loa("plan", SPUR)
     size, chosen, *_ = done.stdout.splitlines()
     assert re.fullmatch(r"standard: [\d.]+ CPU s, [\d.]+ GiB; nothing is computed yet", size)
@@ -48,7 +40,7 @@ def test_a_plan_begins_with_what_it_chose() -> None:
     assert [line.split()[:2] for line in done.stdout.splitlines() if ">" in line] == [[">", "standard"]]
 
 
-def test_a_fetched_result_ends_with_its_figures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_fetched_result_ends_with_its_figures(tmp_path, monkeypatch):
     stored, file, key = tmp_path / "stored.nc", tmp_path / "fetched.nc", "ab" * 32
     small_table().to_netcdf(stored)
     monkeypatch.setattr(LineOfActionClient, "fetch_result", lambda *_: (stored, "database"))
@@ -56,11 +48,3 @@ def test_a_fetched_result_ends_with_its_figures(tmp_path: Path, monkeypatch: pyt
     assert results[0] == f"database {key}"
     assert [line.partition(" STE at ")[0] for line in results[1:]] == ["mean", "peak-to-peak"]
     assert written == f"written to {file}"
-
-
-def test_the_help_lists_every_verb_once_in_a_group_with_its_whole_sentence() -> None:
-    groups = loa("--help").stdout.partition("Start:\n")[2].partition("\n\n  Start with")[0]
-    listed = re.findall(r"^  ([a-z-]+)  +\S", groups, re.M)
-    assert sorted(listed) == sorted(VERBS)
-    assert "..." not in groups
-    assert " ".join(STUDIES["noise"].description.split()) in " ".join(groups.split())

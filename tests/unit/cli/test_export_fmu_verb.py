@@ -1,10 +1,7 @@
 """``loa export`` of an FMU: what it writes and prints, and how it refuses."""
 
-from __future__ import annotations
-
 import re
 import zipfile
-from pathlib import Path
 
 import pytest
 from command_line import loa, printed
@@ -12,13 +9,13 @@ from small_table import BASE_RADIUS, small_table
 
 
 @pytest.fixture
-def database(tmp_path: Path) -> Path:
+def database(tmp_path):
     file = tmp_path / "ste.nc"
     small_table().to_netcdf(file)
     return file
 
 
-def test_it_holds_the_whole_table_and_says_so(database: Path, tmp_path: Path) -> None:
+def test_it_holds_the_whole_table_and_says_so(database, tmp_path):
     options = ("--torque", 100, "--damping-n-s-per-m", 1500)
     answer = printed("export", database, "-o", tmp_path / "m.fmu", *options)
     table = small_table().force_table()
@@ -31,7 +28,7 @@ def test_it_holds_the_whole_table_and_says_so(database: Path, tmp_path: Path) ->
     assert "1 misalignments x 1 center distances" in again.stdout
 
 
-def test_backlash_gives_it_a_coast_flank(database: Path, tmp_path: Path) -> None:
+def test_backlash_gives_it_a_coast_flank(database, tmp_path):
     assert loa("export", database, "-o", tmp_path / "m.fmu", "--backlash-um", 80).exit_code == 0
     with zipfile.ZipFile(tmp_path / "m.fmu") as archive:
         text = archive.read("modelDescription.xml").decode()
@@ -50,14 +47,14 @@ def test_backlash_gives_it_a_coast_flank(database: Path, tmp_path: Path) -> None
         (["--torque", 1, "--force", 1], "not both"),
     ],
 )
-def test_arguments_it_cannot_use(database: Path, tmp_path: Path, arguments: list[object], text: str) -> None:
+def test_arguments_it_cannot_use(database, tmp_path, arguments, text):
     result = loa("export", database, "-o", tmp_path / "m.fmu", *arguments)
     assert result.exit_code == 2
     assert text in result.stderr
     assert not (tmp_path / "m.fmu").exists()
 
 
-def test_no_database_and_no_compiler(database: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_database_and_no_compiler(database, tmp_path, monkeypatch):
     assert "an STE database" in loa("export", tmp_path / "no.nc", "-o", tmp_path / "m.fmu").stderr
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.delenv("CC", raising=False)

@@ -1,7 +1,5 @@
 """``loa export --for``: mesh stiffness for rotor and torsion libraries, and the libraries that take it."""
 
-from __future__ import annotations
-
 import math
 import runpy
 from pathlib import Path
@@ -16,7 +14,7 @@ FORCE = 100.0 / BASE_RADIUS
 
 
 @pytest.fixture
-def table(tmp_path: Path) -> Path:
+def table(tmp_path):
     file = tmp_path / "ste.nc"
     small_table().to_netcdf(file)
     return file
@@ -30,7 +28,7 @@ def written(table: Path, library: str, *options: object) -> dict[str, Any]:
 
 
 @pytest.mark.law
-def test_stiffness_is_force_over_transmission_error_at_every_position(table: Path) -> None:
+def test_stiffness_is_force_over_transmission_error_at_every_position(table):
     answer = printed("export", table, "--for", "json", "-o", table.with_name("k.json"), "--torque", 100)
     at, stiffness = (np.array(answer[name]) for name in ("position_base_pitches", "stiffness_n_per_m"))
     ste = small_table().curve(torque=100.0, at=at).ste
@@ -44,7 +42,7 @@ def test_stiffness_is_force_over_transmission_error_at_every_position(table: Pat
     assert len(loads) == len(rows) == small_table().force.size
 
 
-def test_ross_gets_a_closed_pitch_of_the_driving_gear(table: Path) -> None:
+def test_ross_gets_a_closed_pitch_of_the_driving_gear(table):
     names = written(table, "ross", "--torque", 100)
     angle, stiffness = names["theta_range"], names["stiffness_range"]
     assert angle[-1] == pytest.approx(2.0 * math.pi / small_table().geometry.teeth[0], rel=1e-12)
@@ -53,7 +51,7 @@ def test_ross_gets_a_closed_pitch_of_the_driving_gear(table: Path) -> None:
     assert stiffness.min() < names["gear_mesh_stiffness"] < stiffness.max()
 
 
-def test_ross_turns_on_it(table: Path) -> None:
+def test_ross_turns_on_it(table):
     """Two rotors that the mesh couples take the stiffness over the angle from the file."""
     ross = pytest.importorskip("ross")
     names, steel = written(table, "ross", "--torque", 100), ross.materials.steel
@@ -71,7 +69,7 @@ def test_ross_turns_on_it(table: Path) -> None:
     assert pair.mesh.stiffness == names["gear_mesh_stiffness"]
 
 
-def test_opentorsion_couples_two_gears_by_it(table: Path) -> None:
+def test_opentorsion_couples_two_gears_by_it(table):
     """A turn of either gear shortens the mesh by its base radius: k_mesh r r' between them."""
     torsion = pytest.importorskip("opentorsion")
     names = written(table, "opentorsion", "--torque", 100)
@@ -92,7 +90,7 @@ def test_opentorsion_couples_two_gears_by_it(table: Path) -> None:
         (["--for", "json", "--torque", 1, "--force", 1], "not both"),
     ],
 )
-def test_arguments_it_cannot_use(table: Path, arguments: list[object], text: str) -> None:
+def test_arguments_it_cannot_use(table, arguments, text):
     result = loa("export", table, "-o", table.with_name("k.py"), *arguments)
     assert result.exit_code == 2
     assert text in result.stderr

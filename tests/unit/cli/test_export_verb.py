@@ -1,7 +1,5 @@
 """``loa export``: what it writes and prints, and how it refuses."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import meshlane
@@ -15,7 +13,7 @@ from dynamics.simulation import simulate
 SMALL = spur_case(torques=[50, 100], model="plane_strain")
 
 
-def test_a_run_becomes_a_universal_file_or_a_table(tmp_path: Path) -> None:
+def test_a_run_becomes_a_universal_file_or_a_table(tmp_path):
     simulate(gear_pair_scene(duration=0.02)).to_netcdf(tmp_path / "run.nc")
     unv = (tmp_path / "run.nc", "-o", tmp_path / "run.unv")
     assert printed("export", *unv, "--function", "spectrum") == {
@@ -34,13 +32,13 @@ def test_a_run_becomes_a_universal_file_or_a_table(tmp_path: Path) -> None:
 
 
 @pytest.fixture
-def small(tmp_path: Path) -> Path:
+def small(tmp_path):
     file = tmp_path / "small.toml"
     file.write_text(SMALL)
     return file
 
 
-def test_one_position_is_two_files_and_several_are_numbered(small: Path, tmp_path: Path) -> None:
+def test_one_position_is_two_files_and_several_are_numbered(small, tmp_path):
     assert loa("export", small, "-o", tmp_path / "one").exit_code == 0
     assert sorted(file.name for file in (tmp_path / "one").iterdir()) == ["pinion.vtu", "wheel.vtu"]
     answer = printed("export", small, "--torque", 50, "--at", "0,0.5", "-o", tmp_path / "two")
@@ -65,9 +63,7 @@ def test_one_position_is_two_files_and_several_are_numbered(small: Path, tmp_pat
         (["--torque", "5", "--force", "5"], "normal_force_n = 5.0: must be left out"),
     ],
 )
-def test_bad_arguments_are_one_line_before_the_work(
-    small: Path, tmp_path: Path, arguments: list[str], said: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_bad_arguments_are_one_line_before_the_work(small, tmp_path, arguments, said, monkeypatch):
     monkeypatch.setattr("lineofaction.cli.export.deformed_pairs", None)  # called: code 5
     result = loa("export", small, "-o", tmp_path / "out", *arguments)
     assert (result.exit_code, result.stdout) == (2, "")
@@ -76,7 +72,7 @@ def test_bad_arguments_are_one_line_before_the_work(
 
 
 @pytest.mark.parametrize("output", ["small.toml", "out.vtu", "no/such"])
-def test_a_folder_that_cannot_be_one_is_refused(small: Path, tmp_path: Path, output: str) -> None:
+def test_a_folder_that_cannot_be_one_is_refused(small, tmp_path, output):
     result = loa("export", small, "-o", tmp_path / output)
     assert result.exit_code == 2
     assert "output = " in result.stderr

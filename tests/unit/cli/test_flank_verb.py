@@ -1,9 +1,6 @@
 """``loa flank`` and ``loa report --flank``: what they write and print, and how they refuse."""
 
-from __future__ import annotations
-
 import json
-from pathlib import Path
 
 import pytest
 from command_line import loa, printed
@@ -19,13 +16,13 @@ SMALL = spur_case(torques=[50, 100, 200], model="plane_strain", positions=16)
 
 
 @pytest.fixture
-def small(tmp_path: Path) -> Path:
+def small(tmp_path):
     file = tmp_path / "small.toml"
     file.write_text(SMALL)
     return file
 
 
-def test_the_highest_load_of_the_case_is_the_default(small: Path, tmp_path: Path) -> None:
+def test_the_highest_load_of_the_case_is_the_default(small, tmp_path):
     answer = printed("flank", small, "-o", tmp_path / "f.nc")
     found = LoadDistribution.from_netcdf(tmp_path / "f.nc")
     assert answer["torque_n_m"] == pytest.approx(200.0) == found.scene.torque
@@ -33,7 +30,7 @@ def test_the_highest_load_of_the_case_is_the_default(small: Path, tmp_path: Path
     assert found.metadata.case["load"] == {"torque_n_m": [200.0], "normal_force_n": None}
 
 
-def test_the_report_takes_its_own_load_and_both_ways_agree(small: Path, tmp_path: Path) -> None:
+def test_the_report_takes_its_own_load_and_both_ways_agree(small, tmp_path):
     assert loa("analyze", small, "-o", tmp_path / "ste.nc").exit_code == 0
     plain = loa("report", tmp_path / "ste.nc", "-o", tmp_path / "plain.html")
     assert plain.exit_code == 0
@@ -42,8 +39,8 @@ def test_the_report_takes_its_own_load_and_both_ways_agree(small: Path, tmp_path
     assert result.exit_code == 0
     assert "CPU s" in result.stdout
     page = (tmp_path / "r.html").read_text(encoding="utf-8")
-    assert "mean STE at 100 N m" in page and "At 100.0 N m, 64 positions" in page
-    assert "Contact pattern, 20/20, 100.0 N m" in page
+    assert "mean STE at 100 N m" in page and "largest flank pressure at 100 N m" in page
+    assert "Contact pattern, 20/20, 100 N m" in page and "64 positions of the mesh cycle" in page
     assert loa("flank", small, "--torque", 100, "-o", tmp_path / "f.nc").exit_code == 0
     both = loa("report", tmp_path / "ste.nc", tmp_path / "f.nc", "-o", tmp_path / "b.html")
     assert both.exit_code == 0
@@ -51,14 +48,14 @@ def test_the_report_takes_its_own_load_and_both_ways_agree(small: Path, tmp_path
     assert f"{1e-6 * pressure:.1f} MPa" in page
 
 
-def test_a_report_cannot_compute_flanks_of_nothing(small: Path, tmp_path: Path) -> None:
+def test_a_report_cannot_compute_flanks_of_nothing(small, tmp_path):
     assert loa("flank", small, "-o", tmp_path / "f.nc").exit_code == 0
     result = loa("report", tmp_path / "f.nc", "--flank", "-o", tmp_path / "r.html")
     assert result.exit_code == 2
     assert "Name one or the other" in result.stderr
 
 
-def test_a_table_made_in_python_says_how_to_go_on(tmp_path: Path) -> None:
+def test_a_table_made_in_python_says_how_to_go_on(tmp_path):
     from small_table import small_table  # noqa: PLC0415
 
     small_table().to_netcdf(tmp_path / "ste.nc")
@@ -73,7 +70,7 @@ def case(**changes: object) -> Case:
     return validated(Case, {"pair": pair, "load": {"normal_force_n": [10.0, 20.0]}} | changes)
 
 
-def test_what_a_point_leaves_open_is_the_cases() -> None:
+def test_what_a_point_leaves_open_is_the_cases():
     errors = {"misalignment_um": [-30.0, 10.0, 60.0], "center_distance_change_mm": [0.05]}
     here = case_at(case(errors=errors), FlankPoint())
     assert here.load.normal_force_n == (20.0,)
@@ -84,7 +81,7 @@ def test_what_a_point_leaves_open_is_the_cases() -> None:
     assert other.errors.misalignment_um == (-5.0,)
 
 
-def test_equal_questions_are_one_case() -> None:
+def test_equal_questions_are_one_case():
     """Other loads and positions of the table do not matter, so results are shared."""
     one = case_at(case(), FlankPoint())
     other = case(load={"normal_force_n": [5.0, 20.0]}, accuracy={"tolerance": 0.01, "positions": 32})
@@ -100,17 +97,17 @@ def test_equal_questions_are_one_case() -> None:
         (["--process", "flank", "--inputs", '{"case": {}}'], "must be a JSON object without case"),
     ],
 )
-def test_a_submission_that_cannot_be_is_one_line(small: Path, arguments: list[str], said: str) -> None:
+def test_a_submission_that_cannot_be_is_one_line(small, arguments, said):
     result = loa("submit", small, *arguments)
     assert (result.exit_code, result.stdout) == (2, "")
     assert said in result.stderr
     assert len(result.stderr.splitlines()) == 1
 
 
-def test_a_submission_names_its_process_and_inputs(small: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_submission_names_its_process_and_inputs(small, monkeypatch):
     asked: list[tuple[str, dict[str, object]]] = []
 
-    def submit(_client: LineOfActionClient, process: str, inputs: dict[str, object]) -> JobState:
+    def submit(_client, process, inputs):
         asked.append((process, inputs))
         return JobState("1", process, "accepted", "", "", 0, 0)
 
@@ -123,7 +120,7 @@ def test_a_submission_names_its_process_and_inputs(small: Path, monkeypatch: pyt
     assert validated(Case, inputs["case"]).load.torque_n_m == (50.0, 100.0, 200.0)
 
 
-def test_the_largest_pressure_is_that_of_the_flank_and_an_edge_is_named_apart(small: Path) -> None:
+def test_the_largest_pressure_is_that_of_the_flank_and_an_edge_is_named_apart(small):
     told = loa("flank", small, "--set", "effects.corner_contact=on")
     answer = printed("flank", small, "--set", "effects.corner_contact=on")
     flank, edge = answer["largest_pressure_mpa"], answer["edge_pressure_mpa"]

@@ -1,7 +1,5 @@
 """``loa geometry``: the data sheet against published and hand-worked values, and the drawing."""
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path
@@ -11,6 +9,7 @@ import numpy as np
 import pytest
 from command_line import loa
 from matplotlib.path import Path as Polygon
+from repository import EXAMPLES
 from typer.testing import Result
 
 from fe_contact.geometry.flank_tolerances import helix_tolerance, profile_tolerance
@@ -21,7 +20,6 @@ from lineofaction.gearbox.schemas.toml import toml_text
 from lineofaction.report.drawing.figure import Figure, Panel
 from lineofaction.report.pair import pair_drawing
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 SPUR, HELICAL, INTERNAL = (
     EXAMPLES / f"{name}.toml" for name in ("palermo_spur_20_20", "sensitivity_automotive", "internal_gear")
 )
@@ -37,7 +35,7 @@ def sheet(file: Path) -> dict[str, dict[str, float]]:
     return dict(json.loads(done.stdout))
 
 
-def test_the_spur_pair_by_hand() -> None:
+def test_the_spur_pair_by_hand():
     """Module 4, 20/20, no shift: by formula, and the paper's contact ratio and base pitch."""
     found = sheet(SPUR)
     gear = {
@@ -59,7 +57,7 @@ def test_the_spur_pair_by_hand() -> None:
     assert mesh["normal_backlash_um"] == pytest.approx(0.0, abs=1e-9)
 
 
-def test_iso_tr_6336_30_example_1(tmp_path: Path) -> None:
+def test_iso_tr_6336_30_example_1(tmp_path):
     """Published: m_t, d, eps_alpha 1.549, eps_beta 1.083 (ISO/TR 6336-30, example 1)."""
     file = tmp_path / "case.toml"
     file.write_text(
@@ -78,7 +76,7 @@ def test_iso_tr_6336_30_example_1(tmp_path: Path) -> None:
     assert found["mesh"]["total_contact_ratio"] == total
 
 
-def test_points_of_the_path_lie_a_pitch_apart_on_both_gears() -> None:
+def test_points_of_the_path_lie_a_pitch_apart_on_both_gears():
     for file in (SPUR, HELICAL, INTERNAL):
         found = sheet(file)
         points = found["path_of_contact"]
@@ -94,7 +92,7 @@ def test_points_of_the_path_lie_a_pitch_apart_on_both_gears() -> None:
         assert points["E"]["diameter_mm"][1] == pytest.approx(found["wheel"]["active_root_diameter_mm"])
 
 
-def test_the_table_holds_every_number_of_the_json_in_words() -> None:
+def test_the_table_holds_every_number_of_the_json_in_words():
     text, found = geometry(HELICAL).stdout, sheet(HELICAL)
     for name in ("tip_diameter_mm", "root_form_diameter_mm", "tip_clearance_mm"):
         for side in ("pinion", "wheel"):
@@ -102,21 +100,21 @@ def test_the_table_holds_every_number_of_the_json_in_words() -> None:
     assert f"{found['mesh']['total_contact_ratio']:.4f}" in text
 
 
-def test_what_speaks_against_a_pair_is_said_and_decides_a_strict_exit_code() -> None:
+def test_what_speaks_against_a_pair_is_said_and_decides_a_strict_exit_code():
     done = geometry(SPUR, "--strict")
     assert done.exit_code == 3
     assert "warning (backlash)" in done.stdout
     assert geometry(HELICAL, "--strict").exit_code == 0
 
 
-def test_a_tip_near_the_mating_root_is_a_row_of_the_checks() -> None:
+def test_a_tip_near_the_mating_root_is_a_row_of_the_checks():
     assert "tip_clearance" not in geometry(SPUR).stdout
     done = geometry(SPUR, "--set", "pair.pinion.tip_diameter_mm=89.4")  # 0.3 mm of clearance, module 4 mm
     assert "warning (tip_clearance): pinion tip clearance over module = 0.075" in done.stdout
     assert CHECKS["tip_clearance"].source in " ".join(done.stdout.split())
 
 
-def test_a_pointed_tooth_and_a_short_path_of_contact_are_rows_of_the_checks() -> None:
+def test_a_pointed_tooth_and_a_short_path_of_contact_are_rows_of_the_checks():
     said = geometry(SPUR).stdout
     assert "(tip_thickness)" not in said
     assert "(contact_ratio)" not in said
@@ -136,7 +134,7 @@ def overrides(values: dict[str, float]) -> list[str]:
 
 
 @pytest.mark.parametrize("ending", ["png", "svg", "html"])
-def test_a_drawing_is_written(ending: str, tmp_path: Path) -> None:
+def test_a_drawing_is_written(ending, tmp_path):
     file = tmp_path / f"pair.{ending}"
     assert geometry(HELICAL, "-o", file).exit_code == 0
     assert file.read_bytes().startswith({"png": b"\x89PNG", "svg": b"<?xml", "html": b"<!DOCTYPE"}[ending])
@@ -144,7 +142,7 @@ def test_a_drawing_is_written(ending: str, tmp_path: Path) -> None:
         assert "Data sheet" in file.read_text(encoding="utf-8")
 
 
-def test_other_files_are_refused(tmp_path: Path) -> None:
+def test_other_files_are_refused(tmp_path):
     done = geometry(HELICAL, "-o", tmp_path / "pair.pdf")
     assert done.exit_code == 2
     assert "ending in one of .html, .png, .svg" in done.stderr
@@ -161,7 +159,7 @@ def section(file: Path) -> Panel:
 
 
 @pytest.mark.parametrize("file", [SPUR, HELICAL, INTERNAL])
-def test_drawn_flanks_touch_at_the_pitch_point_and_do_not_overlap(file: Path) -> None:
+def test_drawn_flanks_touch_at_the_pitch_point_and_do_not_overlap(file):
     panel = section(file)
     gears = {
         line.name: np.column_stack((line.x, line.y))
@@ -183,7 +181,7 @@ def test_drawn_flanks_touch_at_the_pitch_point_and_do_not_overlap(file: Path) ->
     assert max(depths, default=0.0) < 0.005  # mm; strokes are chords of curved flanks
 
 
-def test_charts_show_what_is_removed_and_only_of_modified_flanks(tmp_path: Path) -> None:
+def test_charts_show_what_is_removed_and_only_of_modified_flanks(tmp_path):
     plain = drawing(SPUR).content
     assert isinstance(plain, tuple)
     assert [panel.title for panel in plain] == ["Transverse section"]
@@ -202,7 +200,7 @@ def test_charts_show_what_is_removed_and_only_of_modified_flanks(tmp_path: Path)
     assert along.y[[0, 100, 200]] == pytest.approx((8.0, 0.0, 8.0))
 
 
-def test_charts_show_teeth_as_made_beside_the_design() -> None:
+def test_charts_show_teeth_as_made_beside_the_design():
     """A slope of the profile lifts the tip by half of it, one of the helix the end of larger z."""
     case = read_model(Case, SPUR).model_dump(exclude_unset=True)
     sloping = [{"tooth": 3, "profile_slope_um": 6.0}, {"tooth": 7, "helix_slope_um": -4.0}]
@@ -225,7 +223,7 @@ def modified(file: Path, **errors: Any) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("file", [SPUR, HELICAL])
-def test_the_band_about_profile_and_lead_is_the_tolerance_of_the_class(file: Path) -> None:
+def test_the_band_about_profile_and_lead_is_the_tolerance_of_the_class(file):
     """Half to each side of the design; the teeth as made are drawn over it without one."""
     pair = gear_pair(Case.model_validate(modified(file)))
     figure = pair_drawing(pair, 7)
@@ -239,13 +237,13 @@ def test_the_band_about_profile_and_lead_is_the_tolerance_of_the_class(file: Pat
     assert "F_alpha and F_beta of class 7 of ISO 1328-1:2013" in figure.caption
 
 
-def test_without_a_class_nothing_is_shaded() -> None:
+def test_without_a_class_nothing_is_shaded():
     figure = pair_drawing(gear_pair(Case.model_validate(modified(HELICAL))))
     assert not any(line.has_band for panel in figure.content for line in panel.lines)
     assert "Shaded" not in figure.caption
 
 
-def test_the_page_of_a_case_with_a_class_says_it(tmp_path: Path) -> None:
+def test_the_page_of_a_case_with_a_class_says_it(tmp_path):
     for errors in ({"misalignment_class": 7}, {}):
         file = tmp_path / "case.toml"
         file.write_text(toml_text(modified(HELICAL, **errors)), encoding="utf-8")
@@ -255,9 +253,7 @@ def test_the_page_of_a_case_with_a_class_says_it(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("hand", "corner"), [(1.0, "non-datum face"), (-1.0, "datum face")])
-def test_a_triangular_relief_is_drawn_at_the_face_that_lines_of_contact_leave_last(
-    hand: float, corner: str
-) -> None:
+def test_a_triangular_relief_is_drawn_at_the_face_that_lines_of_contact_leave_last(hand, corner):
     """At the tip of a right-hand driver they leave at the non-datum face, at that of a left-hand one."""
     case = read_model(Case, HELICAL).model_dump(exclude_unset=True)
     case["pair"]["helix_angle_deg"] = hand * abs(case["pair"]["helix_angle_deg"])

@@ -1,7 +1,5 @@
 """Housings of a scene by the file of their solid: reduced as in Python, once, refused by name; their cost."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any
@@ -52,7 +50,7 @@ SIDES = [
 
 
 @pytest.fixture(scope="module")
-def shared(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def shared(tmp_path_factory):
     """A folder with the STEP file of the block, and the cache of its mesh."""
     folder = tmp_path_factory.mktemp("solid")
     write_block(folder / "block.step")
@@ -60,7 +58,7 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def folder(tmp_path: Path, shared: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path, shared, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(shared / "cache"))
     (tmp_path / "block.step").write_bytes((shared / "block.step").read_bytes())
     return tmp_path
@@ -94,7 +92,7 @@ def assert_same(one: ReducedHousing, other: ReducedHousing) -> None:
 
 
 @pytest.mark.law
-def test_a_scene_on_a_step_file_is_that_on_its_file_of_modes(folder: Path) -> None:
+def test_a_scene_on_a_step_file_is_that_on_its_file_of_modes(folder):
     """To the last bit: matrices, surface, points; the scene is self-contained then."""
     own = tabled(folder)
     in_python(folder).to_netcdf(folder / "case.nc")
@@ -106,7 +104,7 @@ def test_a_scene_on_a_step_file_is_that_on_its_file_of_modes(folder: Path) -> No
     assert of_file.inputs.housings[0].modes_file is None
 
 
-def test_mounts_and_a_loss_factor_reach_the_housing(folder: Path) -> None:
+def test_mounts_and_a_loss_factor_reach_the_housing(folder):
     rates = {"mount_stiffness_n_per_m": [2e7, 5e7, 3e7], "mount_damping_n_s_per_m": [2e3, 5e3, 3e3]}
     feet = [housing()["feet"][0] | rates, *(part | rates for part in SIDES)]
     mount = Mount(*(tuple(map(tuple, np.diag(values).tolist())) for values in rates.values()))
@@ -117,7 +115,7 @@ def test_mounts_and_a_loss_factor_reach_the_housing(folder: Path) -> None:
 
 
 @pytest.mark.law
-def test_a_mesh_file_is_the_same_housing_in_either_unit(folder: Path) -> None:
+def test_a_mesh_file_is_the_same_housing_in_either_unit(folder):
     """Written in text or binary, turned and moved: columns of `turn` are the axes of the file."""
     expected = tabled(folder).housings["case"]
     mesh = mesh_step(folder / "block.step", 0.025)
@@ -136,7 +134,7 @@ def test_a_mesh_file_is_the_same_housing_in_either_unit(folder: Path) -> None:
         assert reduced.points[0].position == pytest.approx(expected.points[0].position, abs=1e-8)
 
 
-def test_the_second_time_a_housing_comes_from_the_cache(folder: Path, monkeypatch) -> None:
+def test_the_second_time_a_housing_comes_from_the_cache(folder, monkeypatch):
     """Neither meshed nor reduced again; another number of modes is."""
     first = tabled(folder).housings["case"]
     monkeypatch.setattr(kept, "mesh_step", lambda *_: pytest.fail("meshed again"))
@@ -148,7 +146,7 @@ def test_the_second_time_a_housing_comes_from_the_cache(folder: Path, monkeypatc
         tabled(folder, element_size_mm=30.0)
 
 
-def test_what_a_reduction_takes_is_told_before_it_begins_and_kept(folder: Path, monkeypatch) -> None:
+def test_what_a_reduction_takes_is_told_before_it_begins_and_kept(folder, monkeypatch):
     monkeypatch.setattr("dynamics.work_cost.ANNOUNCED", 0.0)
     told: list[str] = []
     file = folder / "scene.json"
@@ -163,7 +161,7 @@ def test_what_a_reduction_takes_is_told_before_it_begins_and_kept(folder: Path, 
     assert first == again and first.seconds > 0.0 and first.predicted_bytes > 0.0
 
 
-def test_a_study_reduces_a_housing_anew_where_a_factor_changes_it(folder: Path, monkeypatch) -> None:
+def test_a_study_reduces_a_housing_anew_where_a_factor_changes_it(folder, monkeypatch):
     """A loss factor changes the damping alone; a load leaves the housing as it is."""
     own = tabled(folder, loss_factor=LOSS)
     paths = ("housings.case.loss_factor", "loads.brake.torque_n_m")
@@ -265,7 +263,7 @@ WRONG: dict[str, tuple[dict[str, Any], str, str]] = {
 
 
 @pytest.mark.parametrize("name", WRONG)
-def test_a_solid_that_cannot_be_is_one_fault_by_name(folder: Path, name: str) -> None:
+def test_a_solid_that_cannot_be_is_one_fault_by_name(folder, name):
     fields, field, words = WRONG[name]
     (folder / "text.step").write_text("no solid")
     (folder / "text.inp").write_text("*HEADING\nno mesh\n")
@@ -283,13 +281,13 @@ def test_a_solid_that_cannot_be_is_one_fault_by_name(folder: Path, name: str) ->
     assert "/tmp" not in str(caught.value).replace(str(folder), "")
 
 
-def test_what_fails_is_said_with_the_name_of_the_housing(folder: Path) -> None:
+def test_what_fails_is_said_with_the_name_of_the_housing(folder):
     (folder / "broken.step").write_text("ISO-10303-21;\nEND-ISO-10303-21;\n")
     with pytest.raises(JobFailed, match=r'housing "case": mesher: .*Heal the geometry'):
         tabled(folder, step_file="broken.step")
 
 
-def test_a_damaged_content_is_refused_at_the_request(folder: Path) -> None:
+def test_a_damaged_content_is_refused_at_the_request(folder):
     """Of what came over HTTP, without meshing it."""
     (folder / "scene.json").write_text(json.dumps(housed_scene(folder)))
     whole = read_model(SceneInput, folder / "scene.json").model_dump(mode="json")
@@ -317,14 +315,12 @@ COST = vars(WorkCost(24.6, 1.07e9, 25.1, None))
 
 
 @pytest.fixture(scope="module")
-def two_bores(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def two_bores(tmp_path_factory):
     return write_housed_scene(tmp_path_factory.mktemp("costs"), modes=6)
 
 
 @pytest.mark.parametrize("study", list(STUDIES))
-def test_figures_and_report_state_the_cost_of_the_reduction(
-    two_bores: Path, study: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_figures_and_report_state_the_cost_of_the_reduction(two_bores, study, monkeypatch):
     """The same from the cache: what was measured once."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(two_bores / "cache"))
     report = two_bores / f"{study}.html"
@@ -341,7 +337,7 @@ def test_figures_and_report_state_the_cost_of_the_reduction(
     assert "case: reduction" in report.read_text("utf-8")
 
 
-def test_the_table_has_prediction_beside_measurement() -> None:
+def test_the_table_has_prediction_beside_measurement():
     facts = {"seconds": {"response": 0.5, "sound": 0.25}, "reduction_cost": {"case": COST}}
     (table,) = cost_tables(facts)
     assert table.rows == (("case: reduction", "25", "25", "-", "1.1"),)
@@ -351,5 +347,5 @@ def test_the_table_has_prediction_beside_measurement() -> None:
     assert cost_tables({"seconds": {}}) == ()
 
 
-def test_less_than_a_thousandth_is_not_written_out() -> None:
+def test_less_than_a_thousandth_is_not_written_out():
     assert (amount(1.2e-7), amount(None), amount(0.0123)) == ("< 0.001", "-", "0.012")

@@ -1,7 +1,5 @@
 """Lines for people: the ledger of effects, what is known early, and whether the tolerance is met."""
 
-from __future__ import annotations
-
 import json
 import re
 from dataclasses import replace
@@ -13,9 +11,8 @@ from command_line import loa
 from typer.testing import Result
 
 from bounds.error_digits import with_error
-from fe_contact import AllowedError, FlankModification, Gear, GearPair, SteDatabase, analyze
+from fe_contact import AllowedError, AnalysisOptions, FlankModification, Gear, GearPair, TableAxes, analyze
 from fe_contact.analysis.run_plan import plan_run
-from fe_contact.options import AnalysisOptions, TableAxes
 from lineofaction.cli.tolerance_lines import tolerance_lines, tolerance_warnings
 from lineofaction.gearbox.convert.answers import draft_line
 from lineofaction.gearbox.convert.effects import assumption_lines, ledger_table, run_lines
@@ -26,7 +23,7 @@ from service.worker.simulation_work import DraftedProgress
 SPUR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 
 
-def test_decisions_influence_price_and_what_does_not_hold_are_told() -> None:
+def test_decisions_influence_price_and_what_does_not_hold_are_told():
     relieved = Gear(
         teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3,
         modification=FlankModification(tip_relief=0.05e-6, tip_relief_length=2e-3),
@@ -50,7 +47,7 @@ def test_decisions_influence_price_and_what_does_not_hold_are_told() -> None:
     assert line == "repeated with misalignment: neglected effects are negligible: 3 % (0.5 CPU s)"
 
 
-def test_what_a_neglected_effect_takes_of_the_tolerance_is_its_influence() -> None:
+def test_what_a_neglected_effect_takes_of_the_tolerance_is_its_influence():
     # the floor is what is allowed: of the mean itself the change is a larger part than of what counts
     trace = FlankModification(tip_relief=0.4e-6, tip_relief_length=1e-3)
     pinion, allowed = replace(SPUR, modification=trace), AllowedError(0.05, 1e-6)
@@ -68,7 +65,7 @@ def test_what_a_neglected_effect_takes_of_the_tolerance_is_its_influence() -> No
     assert abs(influence["relative_mean"]) > 2.0 * max(parts) * allowed.relative
 
 
-def test_ledgers_leave_in_um_whichever_version_wrote_them() -> None:
+def test_ledgers_leave_in_um_whichever_version_wrote_them():
     estimate = {"mean_m": [1e-6], "orders_m": [[2e-6]], "bearing_force_n": [3.0], "words": "w"}
     decision = {"effect": "tilt", "part": "input", "on": True}
     former = {
@@ -91,7 +88,7 @@ def test_ledgers_leave_in_um_whichever_version_wrote_them() -> None:
     assert entry["influence"] == {"torque_n_m": 1e-6, "misalignment_um": 1.0}
 
 
-def test_a_run_says_what_it_was_repeated_for_and_what_does_not_hold() -> None:
+def test_a_run_says_what_it_was_repeated_for_and_what_does_not_hold():
     check = {"assumption": "force inside the table", "part": "mesh", "reason": "forces up to 12 N of 10 N"}
     told = list(
         run_lines(
@@ -141,7 +138,7 @@ PASS = RAN | {"cpu_seconds": 0.5, "used": 3.0, "refined": []}
 
 
 @pytest.fixture(scope="module")
-def draft() -> SteDatabase:
+def draft():
     pair = GearPair(*[Gear(20, 2e-3, 12e-3, 20e-3)] * 2, 40e-3)
     return analyze(pair, torques=[2.0, 5.0], level="draft", model="plane_strain", positions=16)
 
@@ -152,14 +149,14 @@ def run(tmp_path: Path, tolerance: float, *options: str) -> Result:
     return loa("analyze", file, "-o", tmp_path / "ste.nc", *options)
 
 
-def test_a_tolerance_that_is_met_is_no_warning(tmp_path: Path) -> None:
+def test_a_tolerance_that_is_met_is_no_warning(tmp_path):
     done = run(tmp_path, 0.2, "--strict")
     assert done.exit_code == 0, done.output
     assert "tolerance 20 % or 0 nm: met; numerical error " in done.stdout
     assert "warning" not in done.output
 
 
-def test_a_bias_is_stated_beside_the_errors_and_not_in_them(tmp_path: Path) -> None:
+def test_a_bias_is_stated_beside_the_errors_and_not_in_them(tmp_path):
     printed = run(tmp_path, 0.2).stdout
     served = json.loads(run(tmp_path, 0.2, "--json").stdout)
     bias, (load,) = served["receipt"]["bias"], served["loads"]
@@ -184,7 +181,7 @@ def test_a_bias_is_stated_beside_the_errors_and_not_in_them(tmp_path: Path) -> N
     assert not any(row.strip().startswith("finite width") for row in rows)
 
 
-def test_one_that_is_not_met_is_said_first_with_its_reason_and_decides_the_exit_code(tmp_path: Path) -> None:
+def test_one_that_is_not_met_is_said_first_with_its_reason_and_decides_the_exit_code(tmp_path):
     done = run(tmp_path, 0.0001, "--strict")
     assert done.exit_code == EXIT_WARNINGS, done.output
     first = done.stdout.splitlines()[0]
@@ -195,23 +192,22 @@ def test_one_that_is_not_met_is_said_first_with_its_reason_and_decides_the_exit_
     assert run(tmp_path, 0.0001).exit_code == 0
 
 
-def test_json_holds_the_warning_and_the_passes(tmp_path: Path) -> None:
+def test_json_holds_the_warning_and_the_passes(tmp_path):
     done = json.loads(run(tmp_path, 0.0001, "--json").stdout)
     assert [warning["check"] for warning in done["warnings"]] == ["tolerance"]
     assert done["receipt"]["tolerance"]["met"] is False
     assert done["receipt"]["passes"][-1]["kept"] is True
 
 
-def test_the_draft_is_one_line_at_the_highest_load(draft: SteDatabase) -> None:
+def test_the_draft_is_one_line_at_the_highest_load(draft):
     line = draft_line(draft, "slices 15 -> 23")
     found = re.fullmatch(r"draft: mean (.+) ± .+ µm, p-p (.+) ± .+ µm at 5 N m \(refining (.+)\)", line)
-    assert found is not None
     assert float(found[1]) == pytest.approx(1e6 * draft.mean(torque=5.0).value, rel=1e-3)
     assert float(found[2]) == pytest.approx(1e6 * draft.peak_to_peak(torque=5.0).value, rel=1e-3)
     assert found[3] == "slices 15 -> 23"
 
 
-def test_a_job_carries_the_draft_in_its_stages_and_its_fraction_stays(draft: SteDatabase) -> None:
+def test_a_job_carries_the_draft_in_its_stages_and_its_fraction_stays(draft):
     told: list[tuple[str, float, float]] = []
     progress = DraftedProgress(lambda *step: told.append(step), refines=True)
     progress.plan({"compliance": 3.0, "contact": 1.0})
@@ -228,7 +224,7 @@ def test_a_job_carries_the_draft_in_its_stages_and_its_fraction_stays(draft: Ste
     assert told[2][2] == pytest.approx(0.8 + 0.75 * 0.8 * 0.2)
 
 
-def test_passes_are_listed_where_there_are_several() -> None:
+def test_passes_are_listed_where_there_are_several():
     second = PASS | {"level": "standard", "used": 1.5, "refined": ["mesh draft -> standard"]}
     lines = list(tolerance_lines({"tolerance": KEPT, "passes": [PASS, second]}))
     errors = "numerical error 1.5 %; of the method 0.3 %, which no mesh lowers"
@@ -239,7 +235,7 @@ def test_passes_are_listed_where_there_are_several() -> None:
     assert list(tolerance_lines({})) == []
 
 
-def test_what_is_missed_between_loads_says_where_a_value_is_wanted() -> None:
+def test_what_is_missed_between_loads_says_where_a_value_is_wanted():
     limit = {"limit": "add a value there"}
     beyond = {"axis": "misalignment", "used": 2.0, "between": [0.0, 3e-5]} | limit
     (_, line) = tolerance_lines({"tolerance": KEPT | {"between_nodes": [beyond]}})
@@ -250,7 +246,7 @@ def test_what_is_missed_between_loads_says_where_a_value_is_wanted() -> None:
     assert line == f"between the torques 10 and 30 N m {what}"
 
 
-def test_errors_that_were_not_estimated_are_no_warning() -> None:
+def test_errors_that_were_not_estimated_are_no_warning():
     unknown = {"relative": AllowedError().relative, "floor_m": 2e-8, "used": None, "met": None}
     assert list(tolerance_warnings({"tolerance": unknown})) == []
     assert [one["check"] for one in tolerance_warnings({"tolerance": KEPT})] == ["tolerance"]

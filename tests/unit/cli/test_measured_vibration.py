@@ -1,11 +1,7 @@
 """``loa vibration`` of a measured housing: a rigid mass by hand, what is absent and why, refusals."""
 
-from __future__ import annotations
-
 import csv
 import math
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -34,19 +30,19 @@ ABSENT = {
 
 
 @pytest.fixture(scope="module")
-def scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def scene(tmp_path_factory):
     return measured_scene(tmp_path_factory.mktemp("measured"))
 
 
 @pytest.fixture(scope="module")
-def answer(scene: Path) -> Any:
+def answer(scene):
     told = printed("vibration", scene, *SPEEDS)
     check_declared("vibration", told)
     return told
 
 
 @pytest.mark.law
-def test_a_rigid_mass_moves_by_newton(scene: Path, answer: Any) -> None:
+def test_a_rigid_mass_moves_by_newton(scene, answer):
     """v = F / (2 pi f m) of the bearing that was pushed; the foot has the part along x alone."""
     response = printed("response", scene, *SPEEDS)
     force = np.array(response["bearings"]["left"]["force_n"])
@@ -66,7 +62,7 @@ def test_a_rigid_mass_moves_by_newton(scene: Path, answer: Any) -> None:
     np.testing.assert_allclose(level[inside], vibration_level(1e-3 * velocity[inside]))
 
 
-def test_figures_are_those_of_the_library(tmp_path: Path) -> None:
+def test_figures_are_those_of_the_library(tmp_path):
     """Two bearings, whose shares differ by order and speed."""
     both = HOUSING.replace("seat_nodes = [", 'seat_nodes = [{bearing = "right", node = 2}, ')
     scene = measured_scene(tmp_path, both, ((1, 1), (1, -2), (2, 1), (2, -2)))
@@ -93,7 +89,7 @@ def test_figures_are_those_of_the_library(tmp_path: Path) -> None:
         np.testing.assert_allclose(lost, found.omitted_force, rtol=1e-12)
 
 
-def test_what_is_absent_has_a_sentence(scene: Path, answer: Any, tmp_path: Path) -> None:
+def test_what_is_absent_has_a_sentence(scene, answer, tmp_path):
     assert (answer["surface_mm_per_s"], answer["natural_frequency_hz"]) == (None, [])
     assert answer["contributions"]["modes"] == []
     assert answer["measured"]["axes"] == {"lid": "xy", "foot": "x"}
@@ -108,7 +104,7 @@ def test_what_is_absent_has_a_sentence(scene: Path, answer: Any, tmp_path: Path)
     assert "nan" not in result.stdout.lower()
 
 
-def test_files_hold_what_was_measured_alone(scene: Path, answer: Any, tmp_path: Path) -> None:
+def test_files_hold_what_was_measured_alone(scene, answer, tmp_path):
     kept, table = tmp_path / "vibration.nc", tmp_path / "vibration.csv"
     for file in (kept, table):
         assert loa("vibration", scene, *SPEEDS, "-o", file).exit_code == 0
@@ -124,7 +120,7 @@ def test_files_hold_what_was_measured_alone(scene: Path, answer: Any, tmp_path: 
     assert all((row["lid_x_mm_per_s"] == "") == (row["valid"] == "0") for row in rows)
 
 
-def test_a_run_moves_the_points_too(scene: Path, tmp_path: Path) -> None:
+def test_a_run_moves_the_points_too(scene, tmp_path):
     """At constant speed, by the orders of the forces over the run."""
     made = tmp_path / "run.nc"
     scene.with_name("long.toml").write_text(
@@ -148,9 +144,7 @@ def test_a_run_moves_the_points_too(scene: Path, tmp_path: Path) -> None:
         (("-o", "shape.vtu"), ("shape.vtu", "has no surface")),
     ],
 )
-def test_what_is_not_there_is_refused(
-    scene: Path, options: tuple[Any, ...], words: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_is_not_there_is_refused(scene, options, words, monkeypatch):
     monkeypatch.chdir(scene.parent)
     given = options if "--speed-rpm" in options else (*SPEEDS, *options)
     result = loa("vibration", scene, *given)
@@ -159,7 +153,7 @@ def test_what_is_not_there_is_refused(
         assert word in " ".join(result.stderr.split()), result.stderr
 
 
-def test_two_housings_are_chosen_by_their_names(tmp_path: Path) -> None:
+def test_two_housings_are_chosen_by_their_names(tmp_path):
     other = HOUSING.replace('"gearcase"', '"other"').replace('{name = "lid", node = 11}, ', "")
     scene = measured_scene(tmp_path, HOUSING + other)
     first, second = (

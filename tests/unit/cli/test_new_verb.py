@@ -1,7 +1,5 @@
 """``loa new``: what is written can be run, keeps its rules, and says no to what does not exist."""
 
-from __future__ import annotations
-
 import math
 import tomllib
 from pathlib import Path
@@ -32,11 +30,11 @@ def written(kind: str, folder: Path, *options: object) -> Path:
 
 
 def case(kind: str, **wanted: float) -> Case:
-    return validated(Case, tomllib.loads(text_of_kind(kind, PairWishes(**wanted))))  # type: ignore[arg-type]
+    return validated(Case, tomllib.loads(text_of_kind(kind, PairWishes(**wanted))))
 
 
 @pytest.mark.parametrize("kind", CASES)
-def test_a_case_is_analyzed_as_it_is_written(kind: str, tmp_path: Path) -> None:
+def test_a_case_is_analyzed_as_it_is_written(kind, tmp_path):
     file = written(kind, tmp_path, *NARROW)
     done = loa("analyze", file, "-o", tmp_path / "ste.nc", "--torque", 20, *COARSE)
     assert done.exit_code == 0, done.output
@@ -46,7 +44,7 @@ def test_a_case_is_analyzed_as_it_is_written(kind: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("kind", "meshes"), [("scene", 1), ("planetary", 2)])
-def test_a_scene_runs_as_it_is_written(kind: str, meshes: int, tmp_path: Path) -> None:
+def test_a_scene_runs_as_it_is_written(kind, meshes, tmp_path):
     file = written(kind, tmp_path, *NARROW)
     scene = read_model(SceneInput, file)
     assert len(scene.meshes) == meshes
@@ -57,7 +55,7 @@ def test_a_scene_runs_as_it_is_written(kind: str, meshes: int, tmp_path: Path) -
     assert done.exit_code == 0, done.output
 
 
-def test_helical_figures_follow_the_rules() -> None:
+def test_helical_figures_follow_the_rules():
     found = case("helical", module=1.8, teeth=23, ratio=67 / 23, helix=22.0)
     pair = gear_pair(found)
     assert (pair.pinion.teeth, pair.wheel.teeth) == (23, 67)
@@ -76,14 +74,14 @@ def test_helical_figures_follow_the_rules() -> None:
 @pytest.mark.parametrize("kind", [*CASES, "planetary", "scene"])
 @pytest.mark.parametrize("module", [0.5, 2.0, 12.0])
 @pytest.mark.parametrize("teeth", [18, 25, 41])
-def test_pairs_exist_over_the_usual_sizes(kind: str, module: float, teeth: int) -> None:
+def test_pairs_exist_over_the_usual_sizes(kind, module, teeth):
     for ratio in (4.2, 5.2):
         for helix in (None, 15.0):
             text = text_of_kind(kind, PairWishes(module=module, teeth=teeth, ratio=ratio, helix=helix))
             assert text.startswith("# ")
 
 
-def test_every_figure_that_was_given_is_in_the_file() -> None:
+def test_every_figure_that_was_given_is_in_the_file():
     found = case("spur", module=3.25, teeth=19, ratio=2.0, width=31.5).pair
     assert found.normal_module_mm == 3.25
     assert found.pinion.teeth == 19
@@ -92,7 +90,7 @@ def test_every_figure_that_was_given_is_in_the_file() -> None:
     assert found.pinion.face_width_mm == found.wheel.face_width_mm == 31.5
 
 
-def test_planets_fit_and_the_ratio_is_near() -> None:
+def test_planets_fit_and_the_ratio_is_near():
     for ratio in (4.0, 5.0, 8.0):
         scene = validated(SceneInput, tomllib.loads(text_of_kind("planetary", PairWishes(ratio=ratio))))
         sun, ring = (mesh.case.pair for mesh in scene.meshes if mesh.case is not None)
@@ -102,7 +100,7 @@ def test_planets_fit_and_the_ratio_is_near() -> None:
         assert 1.0 + ring.wheel.teeth / sun.pinion.teeth == pytest.approx(ratio, rel=0.05)
 
 
-def test_what_cannot_be_is_refused(tmp_path: Path) -> None:
+def test_what_cannot_be_is_refused(tmp_path):
     for arguments, words in (
         (("--spur", "--helical"), "one of --spur"),
         (("--planetary", "--ratio", 2.1), "at least 3.5 with 24 teeth"),
@@ -115,7 +113,7 @@ def test_what_cannot_be_is_refused(tmp_path: Path) -> None:
         text_of_kind("internal", PairWishes(teeth=36, ratio=1.02))
 
 
-def test_a_file_is_never_written_over(tmp_path: Path) -> None:
+def test_a_file_is_never_written_over(tmp_path):
     file = written("spur", tmp_path)
     before = file.read_bytes()
     done = loa("new", "--helical", "-o", file)
@@ -124,7 +122,7 @@ def test_a_file_is_never_written_over(tmp_path: Path) -> None:
     assert file.read_bytes() == before
 
 
-def test_without_a_file_the_text_is_printed() -> None:
+def test_without_a_file_the_text_is_printed():
     done = loa("new")
     assert done.stdout == text_of_kind("helical", PairWishes())
     assert set(KINDS) == {"spur", "helical", "internal", "planetary", "scene"}

@@ -1,14 +1,10 @@
 """``loa noise``: what it prints and writes, its levels, and how it refuses."""
 
-from __future__ import annotations
-
 import re
 import sys
-from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
 from html import escape
-from pathlib import Path
 
 import meshlane
 import numpy as np
@@ -46,7 +42,7 @@ def housing():
 
 
 @pytest.fixture(scope="module", autouse=True)
-def _once() -> Iterator[None]:
+def _once():
     """Compute what equal calls ask for once; pictures of surfaces and hulls of lines are coarse."""
     with computed_once(run), pytest.MonkeyPatch.context() as patch:
         patch.setattr(exact_lines, "COARSE", Coarseness(EDGES, 100))
@@ -55,14 +51,14 @@ def _once() -> Iterator[None]:
 
 
 @pytest.fixture
-def scene(tmp_path: Path) -> Path:
+def scene(tmp_path):
     file = scene_file(tmp_path)
     housing().to_netcdf(tmp_path / "case.nc")
     file.write_text(f'{file.read_text()}[[housings]]\nname = "case"\nmodes_file = "case.nc"\n')
     return file
 
 
-def test_json_holds_levels_by_order_and_speed_and_the_loudest_points(scene: Path) -> None:
+def test_json_holds_levels_by_order_and_speed_and_the_loudest_points(scene):
     answer = printed("noise", scene, *SPEEDS)
     check_declared("noise", answer)
     level, weighted = np.array(answer["level_db"]), np.array(answer["level_db_a"])
@@ -82,7 +78,7 @@ def test_json_holds_levels_by_order_and_speed_and_the_loudest_points(scene: Path
 
 
 @pytest.mark.law
-def test_a_sound_without_an_effect_is_off_by_what_the_ledger_says(scene: Path) -> None:
+def test_a_sound_without_an_effect_is_off_by_what_the_ledger_says(scene):
     """Of the whole analysis with the effect toggled, its radiation by monopoles: within a factor 2."""
     answer = printed("noise", scene, *SPEEDS)
     ledger = answer["effect_ledger"]
@@ -99,7 +95,7 @@ def test_a_sound_without_an_effect_is_off_by_what_the_ledger_says(scene: Path) -
         assert 0.5 < level["decibels"] / change < 2.0, name
 
 
-def test_the_table_and_the_page_say_the_same(scene: Path, tmp_path: Path) -> None:
+def test_the_table_and_the_page_say_the_same(scene, tmp_path):
     files = {ending: tmp_path / f"noise.{ending}" for ending in ("nc", "html")}
     for file in files.values():
         result = loa("noise", scene, *SPEEDS, "-o", file)
@@ -121,7 +117,7 @@ def test_the_table_and_the_page_say_the_same(scene: Path, tmp_path: Path) -> Non
         assert all(f">{escape(cell)}</td>" in report for cell in row[1:])
 
 
-def test_every_model_states_its_error_and_cost_before_it_is_asked_for(scene: Path) -> None:
+def test_every_model_states_its_error_and_cost_before_it_is_asked_for(scene):
     """Of this housing; boundary elements were not computed, its modes come from a file without a cost."""
     answer = printed("noise", scene, *SPEEDS)
     own = answer["housings"]["case"]
@@ -138,7 +134,7 @@ def test_every_model_states_its_error_and_cost_before_it_is_asked_for(scene: Pat
     assert radiation["predicted_bytes"] > 0.0
 
 
-def test_regions_and_panels_add_up_to_the_power_of_their_point(scene: Path, tmp_path: Path) -> None:
+def test_regions_and_panels_add_up_to_the_power_of_their_point(scene, tmp_path):
     for file in (tmp_path / "noise.nc", tmp_path / "noise.vtu"):
         assert loa("noise", scene, *SPEEDS, "-o", file).exit_code == 0
     found = RadiatedSound.from_netcdf(tmp_path / "noise.nc")
@@ -159,7 +155,7 @@ def test_regions_and_panels_add_up_to_the_power_of_their_point(scene: Path, tmp_
     assert power.sum() == pytest.approx(found.power[loud.speed_index, loud.order_index], rel=1e-9)
 
 
-def test_equivalent_radiated_power_is_louder_where_the_housing_is_small(scene: Path) -> None:
+def test_equivalent_radiated_power_is_louder_where_the_housing_is_small(scene):
     by_plane = printed("noise", scene, *SPEEDS, "--radiation", "equivalent_radiated_power")
     monopoles = printed("noise", scene, *SPEEDS, "--radiation", "monopoles")
     low = np.array(by_plane["frequency_hz"]) < 300.0
@@ -168,9 +164,7 @@ def test_equivalent_radiated_power_is_louder_where_the_housing_is_small(scene: P
     np.testing.assert_allclose(np.array(by_plane["radiation_efficiency"]), 1.0, rtol=0.003)
 
 
-def test_boundary_elements_check_the_loudest_point_that_the_mesh_resolves(
-    scene: Path, tmp_path: Path
-) -> None:
+def test_boundary_elements_check_the_loudest_point_that_the_mesh_resolves(scene, tmp_path):
     """It is louder at 1900 Hz, above the 1618 Hz that the mesh resolves."""
     pytest.importorskip("ngsolve", reason="boundary elements need the extra boundary-elements")
     speeds = ("--speed-rpm", "1600,1750,1900,5700", "--orders", 4, "--no-band")
@@ -187,13 +181,13 @@ def test_boundary_elements_check_the_loudest_point_that_the_mesh_resolves(
     assert abs(monopoles - finest) < 7.0 and abs(estimate - finest) < 3.0 and plane > finest
 
 
-def test_a_scene_without_a_sounding_housing_is_refused(tmp_path: Path) -> None:
+def test_a_scene_without_a_sounding_housing_is_refused(tmp_path):
     result = loa("noise", scene_file(tmp_path), *SPEEDS)
     assert result.exit_code == 2
     assert "housings" in result.stderr and "step_file" in result.stderr
 
 
-def test_a_housing_of_matrices_alone_is_refused(scene: Path) -> None:
+def test_a_housing_of_matrices_alone_is_refused(scene):
     bare_housing(("left", "right"), motions=3, positions=[(0.0, 0.0, 0.05), (0.08, 0.0, 0.05)]).to_netcdf(
         scene.parent / "case.nc"
     )
@@ -202,7 +196,7 @@ def test_a_housing_of_matrices_alone_is_refused(scene: Path) -> None:
     assert "at least one with a surface" in result.stderr
 
 
-def test_levels_have_a_band_unless_it_is_left_out(scene: Path) -> None:
+def test_levels_have_a_band_unless_it_is_left_out(scene):
     answer = printed("noise", scene, *BANDS, "--housing-damping", "0.5,1.5")
     check_declared("noise", answer)
     total, orders = answer["band"]["largest_total"], answer["band"]["orders"]
@@ -219,7 +213,7 @@ def test_levels_have_a_band_unless_it_is_left_out(scene: Path) -> None:
 
 
 @pytest.mark.law
-def test_boundary_elements_narrow_the_band_and_the_largest_rest_is_named(scene: Path) -> None:
+def test_boundary_elements_narrow_the_band_and_the_largest_rest_is_named(scene):
     """The loudest lines are within 0.5 dB; what is left are guesses."""
     pytest.importorskip("ngsolve", reason="boundary elements need the extra boundary-elements")
     exact, estimate = (printed("noise", scene, *speeds)["band"] for speeds in (SWEEP, BANDS))
@@ -235,9 +229,7 @@ def test_boundary_elements_narrow_the_band_and_the_largest_rest_is_named(scene: 
     assert f"{NARROWER[first]}: of {exact['largest_total']['width_db']:.1f} dB" in words
 
 
-def test_without_the_library_the_estimate_stands_and_the_result_says_so(
-    scene: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_without_the_library_the_estimate_stands_and_the_result_says_so(scene, monkeypatch):
     monkeypatch.setitem(sys.modules, "ngsolve", None)
     speeds = ("--speed-rpm", "300:6000:700", "--orders", 4, "--no-band")
     own = printed("noise", scene, *speeds)["housings"]["case"]
@@ -245,7 +237,7 @@ def test_without_the_library_the_estimate_stands_and_the_result_says_so(
     assert own["exact_lines"] == [] and list(own["models_db"])[-1] == "estimate"
 
 
-def test_what_one_decibel_costs_is_ranked(scene: Path, tmp_path: Path) -> None:
+def test_what_one_decibel_costs_is_ranked(scene, tmp_path):
     report, file = tmp_path / "noise.html", tmp_path / "noise.nc"
     for target in (report, file):
         result = loa("noise", scene, *SPEEDS, "--sensitivities", "-o", target)
@@ -276,14 +268,14 @@ def shade() -> HeatMap:
     return _cells(sound.orders, along)
 
 
-def test_it_holds_the_power_of_every_speed() -> None:
+def test_it_holds_the_power_of_every_speed():
     drawn = np.nansum(10.0 ** (shade().z / 10.0), axis=0) * 1e-12
     total = quiet_above().orders.weighted_power.sum(axis=0)
     left_out = total.max() * 10.0 ** (-DEPTH / 10.0) * quiet_above().order.size
     np.testing.assert_allclose(drawn, total, atol=left_out)
 
 
-def test_it_ends_with_what_is_shown() -> None:
+def test_it_ends_with_what_is_shown():
     map_, frequency = shade(), quiet_above().orders.frequency
     assert np.any(np.isfinite(map_.z[-1])) and len(map_.y) == len(map_.z)
     assert map_.y[-1] < 0.5 * (frequency[-2:].max(axis=1).sum())

@@ -1,11 +1,7 @@
 """``loa optimize``: tables, files of every kind, and a design that the case file takes as it is."""
 
-from __future__ import annotations
-
 import json
-from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
 
 import pytest
 from command_line import loa
@@ -31,14 +27,14 @@ positions = 16
 
 
 @pytest.fixture
-def files(tmp_path: Path) -> tuple[Path, Path]:
+def files(tmp_path):
     case, study = tmp_path / "case.toml", tmp_path / "study.toml"
     case.write_text(CASE.format(pinion="", wheel=""), encoding="utf-8")
     study.write_text(STUDY, encoding="utf-8")
     return case, study
 
 
-def test_all_files_say_the_same(files: tuple[Path, Path], tmp_path: Path) -> None:
+def test_all_files_say_the_same(files, tmp_path):
     folder = tmp_path / "optimum"
     ran = loa("optimize", *files, "-o", folder)
     assert ran.exit_code == 0, ran.output
@@ -60,9 +56,7 @@ def test_all_files_say_the_same(files: tuple[Path, Path], tmp_path: Path) -> Non
     assert "Harris map after" in page and "every node of the scatter" in page
 
 
-def test_the_design_in_the_case_file_has_the_ripple_that_was_told(
-    files: tuple[Path, Path], tmp_path: Path
-) -> None:
+def test_the_design_in_the_case_file_has_the_ripple_that_was_told(files, tmp_path):
     case, study = files
     study.write_text(STUDY.replace("profile_slope_um = 2.0", ""), encoding="utf-8")
     best = tmp_path / "best.toml"
@@ -81,14 +75,12 @@ def test_the_design_in_the_case_file_has_the_ripple_that_was_told(
         assert abs(harris["expected_peak_to_peak_um"][index] - curve["peak_to_peak_um"]) <= allowed
 
 
-def test_an_interrupted_search_writes_its_best_and_says_so(
-    files: tuple[Path, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_interrupted_search_writes_its_best_and_says_so(files, tmp_path, monkeypatch):
     asked = [0]
 
     @contextmanager
-    def interrupted_after_twelve() -> Iterator[Callable[[], bool]]:
-        def cancel() -> bool:
+    def interrupted_after_twelve():
+        def cancel():
             asked[0] += 1
             return asked[0] > 13  # once before the start
 

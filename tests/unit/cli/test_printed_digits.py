@@ -3,8 +3,6 @@
 Day: one case in the plane. Night: twelve kinds of cases, all verbs that print results.
 """
 
-from __future__ import annotations
-
 import json
 import shutil
 import tomllib
@@ -18,11 +16,11 @@ import pytest
 from command_line import loa
 from drawn_cases import turn
 from printed_numbers import contradictions, faults, text_of_page
+from repository import EXAMPLES
 
 from lineofaction.gearbox.schemas.toml import toml_text
 
 Json = dict[str, Any]
-EXAMPLES = Path(__file__).parents[3] / "examples"
 DRAFT: Json = {"level": "draft", "positions": 16}
 PLANE: Json = {"level": "draft", "model": "plane_strain"}
 STANDARD: Json = {"level": "standard", "model": "plane_strain"}
@@ -124,7 +122,6 @@ def idler() -> Json:
 
 
 def printed(verb: str, *arguments: object) -> Iterator[str]:
-    """Yield the faults of what a verb prints, beside its JSON."""
     shown, answer = loa(verb, *arguments), loa(verb, *arguments, "--json")
     assert shown.exit_code == 0, shown.output
     for text in (*faults(shown.stdout, json.loads(answer.stdout)), *contradictions(shown.stdout)):
@@ -132,7 +129,6 @@ def printed(verb: str, *arguments: object) -> Iterator[str]:
 
 
 def reported(folder: Path, files: list[Path]) -> Iterator[str]:
-    """Yield the faults of the report of results."""
     made = loa("report", *files, "--still", "-o", folder / "report.html")
     assert made.exit_code == 0, made.output
     yield from (
@@ -144,7 +140,7 @@ def reported(folder: Path, files: list[Path]) -> Iterator[str]:
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=() if name in DAY else pytest.mark.nightly) for name in CASES]
 )
-def test_a_case_prints_no_digit_beyond_its_error(name: str, tmp_path: Path) -> None:
+def test_a_case_prints_no_digit_beyond_its_error(name, tmp_path):
     case = tmp_path / "case.toml"
     case.write_text(toml_text(CASES[name]), encoding="utf-8")
     found = []
@@ -162,7 +158,7 @@ def test_a_case_prints_no_digit_beyond_its_error(name: str, tmp_path: Path) -> N
 @pytest.mark.nightly
 @pytest.mark.law
 @pytest.mark.parametrize("name", ["planetary", "idler", "rexs"])
-def test_a_unit_prints_no_digit_beyond_its_error(name: str, tmp_path: Path) -> None:
+def test_a_unit_prints_no_digit_beyond_its_error(name, tmp_path):
     scene = tmp_path / "scene.toml"
     if name == "rexs":
         opened = loa("open", EXAMPLES / "two_stage_gearbox.rexs", "-o", tmp_path)

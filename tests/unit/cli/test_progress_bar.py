@@ -1,7 +1,5 @@
 """Progress of the verbs on a terminal: what a stage says of itself, on the stage's own bar."""
 
-from __future__ import annotations
-
 import io
 import sys
 
@@ -18,7 +16,7 @@ class Terminal(io.StringIO):
         return True
 
 
-def test_a_stage_says_what_it_will_take_on_its_own_bar(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_stage_says_what_it_will_take_on_its_own_bar(monkeypatch):
     terminal = Terminal()
     monkeypatch.setattr(sys, "stderr", terminal)
     monkeypatch.setenv("COLUMNS", "160")
@@ -33,7 +31,7 @@ def test_a_stage_says_what_it_will_take_on_its_own_bar(monkeypatch: pytest.Monke
 
 
 @pytest.mark.law
-def test_what_is_left_is_that_of_all_stages_by_the_times_of_those_done() -> None:
+def test_what_is_left_is_that_of_all_stages_by_the_times_of_those_done():
     """A stage that ends leaves the others, each as much slower than its share as those before."""
     left = TimeLeft((("gears", 0.2), ("search", 0.6), ("confirmation", 0.2)), 0.0)
     assert left.text("gears", 0.0, 0.0) == ""
@@ -45,7 +43,7 @@ def test_what_is_left_is_that_of_all_stages_by_the_times_of_those_done() -> None
     assert slow.text("gears", 1.0, 60.0) == "0:01:00 left"
 
 
-def test_work_without_known_stages_has_the_pace_of_each_bar() -> None:
+def test_work_without_known_stages_has_the_pace_of_each_bar():
     left = TimeLeft((), 0.0)
     assert left.text("pages", 0.0, 5.0) == "" and left.text("pages", 0.25, 15.0) == "0:00:30 left"
     assert left.text("pages", 1.0, 45.0) == ""

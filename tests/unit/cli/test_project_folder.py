@@ -1,15 +1,13 @@
 """A folder in place of a file: verbs find what they take in it and leave their results there."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil
 from pathlib import Path
-from typing import Any
 
 import pytest
 from command_line import loa, printed
+from repository import EXAMPLES
 from scene_files import scene_file
 from spur_case import spur_case
 
@@ -25,13 +23,10 @@ from lineofaction.gearbox.project import (
     tables_in,
 )
 from lineofaction.gearbox.registry import STUDIES
-from lineofaction.gearbox.study import Study
-
-EXAMPLES = Path(__file__).parents[3] / "examples"
 
 
 @pytest.fixture
-def rotor(tmp_path: Path) -> Path:
+def rotor(tmp_path):
     """A folder with a scene under another name, and files that are none of the program's."""
     folder = tmp_path / "rotor"
     folder.mkdir()
@@ -46,14 +41,14 @@ def rotor(tmp_path: Path) -> Path:
     return folder
 
 
-def test_a_folder_stands_for_the_scene_in_it_whatever_lies_beside(rotor: Path) -> None:
+def test_a_folder_stands_for_the_scene_in_it_whatever_lies_beside(rotor):
     assert file_of(InputFile(rotor), "scene") == InputFile(rotor / "jeffcott.toml", (), rotor)
     assert file_of(InputFile(rotor), "case or scene").path == rotor / "jeffcott.toml"
     with pytest.raises(BadInput, match="must be a folder with a case file in it"):
         file_of(InputFile(rotor), "case")
 
 
-def test_of_several_the_one_of_that_name_is_taken_and_none_is_guessed(rotor: Path) -> None:
+def test_of_several_the_one_of_that_name_is_taken_and_none_is_guessed(rotor):
     shutil.copy(rotor / "jeffcott.toml", rotor / "stiffer.toml")
     with pytest.raises(BadInput, match=r"Name one: .*jeffcott\.toml, .*stiffer\.toml"):
         file_of(InputFile(rotor), "scene")
@@ -61,7 +56,7 @@ def test_of_several_the_one_of_that_name_is_taken_and_none_is_guessed(rotor: Pat
     assert file_of(InputFile(rotor), "scene").path == rotor / "scene.toml"
 
 
-def test_the_file_of_a_study_is_known_by_its_fields(rotor: Path) -> None:
+def test_the_file_of_a_study_is_known_by_its_fields(rotor):
     assert inputs_in(rotor, STUDIES["deflect"]) is None
     (rotor / "loads.toml").write_text("[[load_cases]]\nname = 'one'\n")
     assert inputs_in(rotor, STUDIES["deflect"]) == rotor / "loads.toml"
@@ -70,7 +65,7 @@ def test_the_file_of_a_study_is_known_by_its_fields(rotor: Path) -> None:
         inputs_in(rotor, STUDIES["deflect"])
 
 
-def test_speeds_that_are_not_named_go_up_to_the_highest_of_drive_and_load_cases(tmp_path: Path) -> None:
+def test_speeds_that_are_not_named_go_up_to_the_highest_of_drive_and_load_cases(tmp_path):
     scene = scene_file(tmp_path)  # at 900 rpm
     assert printed("response", scene, "--orders", 1)["speed_rpm"] == pytest.approx(
         [1.5 * k for k in range(1, 601)]
@@ -91,7 +86,7 @@ def test_speeds_that_are_not_named_go_up_to_the_highest_of_drive_and_load_cases(
     assert "others.toml:3" in refused.stderr
 
 
-def test_a_study_over_speeds_says_what_to_name_where_nothing_turns(rotor: Path) -> None:
+def test_a_study_over_speeds_says_what_to_name_where_nothing_turns(rotor):
     file = rotor / "jeffcott.toml"
     file.write_text(file.read_text("utf-8").replace("speed_rpm = [3843.5]", "speed_rpm = [0.0]"))
     for verb in ("noise", "vibration", "response", "steady"):
@@ -104,7 +99,7 @@ def states(folder: Path) -> dict[str, str]:
     return {one.name: one.state for one in status_of(folder)}
 
 
-def test_a_result_lies_in_the_folder_and_is_stale_once_its_scene_is_newer(rotor: Path) -> None:
+def test_a_result_lies_in_the_folder_and_is_stale_once_its_scene_is_newer(rotor):
     assert set(states(rotor).values()) == {"missing"}
     done = loa("modes", rotor, "--speed-rpm", "0:3000:1500")
     assert done.exit_code == 0, done.output
@@ -116,7 +111,7 @@ def test_a_result_lies_in_the_folder_and_is_stale_once_its_scene_is_newer(rotor:
     assert states(rotor)["modes.nc"] == "stale"
 
 
-def test_a_report_of_a_folder_has_all_results_in_it(rotor: Path) -> None:
+def test_a_report_of_a_folder_has_all_results_in_it(rotor):
     assert loa("modes", rotor, "--speed-rpm", "0:3000:1500").exit_code == 0
     (rotor / "sub").mkdir()
     shutil.move(rotor / "modes.nc", rotor / "sub" / "modes.nc")
@@ -127,14 +122,14 @@ def test_a_report_of_a_folder_has_all_results_in_it(rotor: Path) -> None:
 
 
 @pytest.mark.parametrize("verb", ["analyze", "simulate"])
-def test_without_a_folder_an_output_is_asked_for(verb: str) -> None:
+def test_without_a_folder_an_output_is_asked_for(verb):
     file = EXAMPLES / ("palermo_spur_20_20.toml" if verb == "analyze" else "jeffcott_scene.toml")
     done = loa(verb, file)
     assert done.exit_code == EXIT_BAD_INPUT
     assert "Give one with -o, or name a folder to work in" in done.output
 
 
-def test_the_status_is_json_too_and_a_folder_of_nothing_says_so(rotor: Path, tmp_path: Path) -> None:
+def test_the_status_is_json_too_and_a_folder_of_nothing_says_so(rotor, tmp_path):
     rows = json.loads(loa("status", rotor, "--json").stdout)["results"]
     (noise,) = (row for row in rows if row["verb"] == "noise")
     assert (noise["name"], noise["state"], noise["cpu_seconds"]) == ("noise.nc", "missing", None)
@@ -148,7 +143,7 @@ def test_the_status_is_json_too_and_a_folder_of_nothing_says_so(rotor: Path, tmp
         assert f"must be {bound}" in done.output
 
 
-def test_the_status_refuses_nothing_that_is_there_and_says_what_lacks(rotor: Path) -> None:
+def test_the_status_refuses_nothing_that_is_there_and_says_what_lacks(rotor):
     """A complaint that options stated was fresh and refused, noise without a surface not predicted."""
     (rotor / "complaint.nc").touch()
     lines = loa("status", rotor).stdout.splitlines()
@@ -161,7 +156,7 @@ def test_the_status_refuses_nothing_that_is_there_and_says_what_lacks(rotor: Pat
 
 
 @pytest.fixture
-def unit(rotor: Path) -> Path:
+def unit(rotor):
     """A folder with two cases and load cases beside its scene."""
     for stage in ("first", "second"):
         (rotor / f"{stage}.toml").write_text(spur_case(torques=[100.0]))
@@ -191,9 +186,7 @@ STUDIED = {"flank": "case", "sweep --over torque": "case", "sensitivity": "both"
 
 
 @pytest.mark.parametrize("words", VERBS)
-def test_a_verb_takes_a_folder_and_does_each_of_its_cases(
-    words: str, unit: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_verb_takes_a_folder_and_does_each_of_its_cases(words, unit, monkeypatch):
     (function, expected), (verb, *options) = VERBS[words], words.split()
     done: list[str] = []
     monkeypatch.setattr(f"lineofaction.cli.{function}", lambda file, *_, **__: done.append(file.path.name))
@@ -204,12 +197,10 @@ def test_a_verb_takes_a_folder_and_does_each_of_its_cases(
 
 
 @pytest.mark.parametrize("words", STUDIED)
-def test_a_study_takes_a_folder_and_names_its_result_by_the_case(
-    words: str, unit: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_study_takes_a_folder_and_names_its_result_by_the_case(words, unit, monkeypatch):
     done: list[list[str]] = []
 
-    def study(study: Study, options: dict[str, Any]) -> None:
+    def study(study, options):
         files = options[study.argument] if study.several else [options[study.argument]]
         done.append([f"{file.path.name}: {result_name(study, file.part)}" for file in files])
 
@@ -222,14 +213,14 @@ def test_a_study_takes_a_folder_and_names_its_result_by_the_case(
     assert done == subjects[STUDIED[words]]
 
 
-def test_one_object_or_one_file_is_of_one_case(unit: Path) -> None:
+def test_one_object_or_one_file_is_of_one_case(unit):
     for options in (("--json",), ("-o", unit / "ste.nc")):
         done = loa("analyze", unit, *options)
         assert done.exit_code == EXIT_BAD_INPUT
         assert "must be a folder of one case. Name one:" in done.output
 
 
-def test_results_are_told_apart_by_the_case_whose_name_they_bear(unit: Path) -> None:
+def test_results_are_told_apart_by_the_case_whose_name_they_bear(unit):
     for name in ("modes", "first", "first_flank", "second_flank", "firstly"):
         (unit / f"{name}.nc").touch()
     by_part = {part: [path.stem for path in paths] for part, paths in results_by_part(unit).items()}
@@ -246,7 +237,7 @@ def test_results_are_told_apart_by_the_case_whose_name_they_bear(unit: Path) -> 
     assert tables_in(unit, lambda _: kept) == {"first": unit / "first.nc", "second": kept}
 
 
-def test_the_status_says_what_a_result_would_cost_or_that_nothing_predicts_it(unit: Path) -> None:
+def test_the_status_says_what_a_result_would_cost_or_that_nothing_predicts_it(unit):
     (unit / "jeffcott.toml").unlink()
     facts = json.loads(loa("status", unit, "--json").stdout)
     seconds = {row["name"]: row["cpu_seconds"] for row in facts["results"]}
@@ -261,7 +252,7 @@ def test_the_status_says_what_a_result_would_cost_or_that_nothing_predicts_it(un
     assert {name for name, cost in seconds.items() if cost is None}
 
 
-def test_the_status_says_why_a_verb_would_refuse(tmp_path: Path) -> None:
+def test_the_status_says_why_a_verb_would_refuse(tmp_path):
     """Once for a case that cannot be used, with its line; that of a file that cannot be read, too."""
     text = (EXAMPLES / "palermo_spur_20_20.toml").read_text()
     (tmp_path / "case.toml").write_text(text.replace("teeth = 20", "teeth = 2", 1))

@@ -1,11 +1,8 @@
 """What the verbs of studies of scenes find, beyond the contract of all studies: modes, response, steady."""
 
-from __future__ import annotations
-
 import json
 import re
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,14 +18,14 @@ from lineofaction.report.document import write_report
 
 
 @pytest.fixture
-def scene(tmp_path: Path) -> Path:
+def scene(tmp_path):
     return scene_file(tmp_path)
 
 
 # ``loa modes``.
 
 
-def test_modes_cross_the_orders_of_the_mesh_at_critical_speeds(scene: Path) -> None:
+def test_modes_cross_the_orders_of_the_mesh_at_critical_speeds(scene):
     answer = printed("modes", scene, "--speed-rpm", "0:9000:1500", "--orders", 3)
     assert answer["at_rest"][-1]["kind"] == "torsional-lateral on mesh"
     assert answer["speed_rpm"] == pytest.approx([0, 1500, 3000, 4500, 6000, 7500, 9000])
@@ -47,16 +44,14 @@ def test_modes_cross_the_orders_of_the_mesh_at_critical_speeds(scene: Path) -> N
     assert "Campbell diagram: whirl modes over speed" in page and "Critical speeds" in page
 
 
-def test_of_many_modes_the_lowest_are_printed(scene: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_of_many_modes_the_lowest_are_printed(scene, monkeypatch):
     monkeypatch.setattr("lineofaction.report.response.modes.PRINTED_MODES", 2)
     shown = loa("modes", scene).stdout
     assert re.findall(r"^ +(\d+) +[\d.]+ ", shown, re.MULTILINE) == ["1", "2"]
     assert re.search(r"^\d+ more up to [\d.]+ kHz: in the report, with --json$", shown, re.MULTILINE)
 
 
-def test_an_order_that_a_mesh_does_not_excite_has_no_static_error_to_compare(
-    scene: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_order_that_a_mesh_does_not_excite_has_no_static_error_to_compare(scene, monkeypatch):
     """It was 0 times the static one, as if it vanished."""
     own = "lineofaction.report.response.response.peaks"
     monkeypatch.setattr(own, lambda found: [replace(peak, amplification=0.0) for peak in peaks(found)])
@@ -64,14 +59,14 @@ def test_an_order_that_a_mesh_does_not_excite_has_no_static_error_to_compare(
     assert re.search(r"^mesh mesh .* -$", shown, re.MULTILINE)
 
 
-def test_a_load_that_parts_the_flanks_is_refused_by_name(scene: Path) -> None:
+def test_a_load_that_parts_the_flanks_is_refused_by_name(scene):
     scene.write_text(scene.read_text().replace("torque_n_m = [100.0]", "torque_n_m = [-100.0]"))
     result = loa("modes", scene, "--json")
     assert (result.exit_code, result.stdout) == (2, "")
     assert "meshes[0]" in result.stderr and "driving flank" in result.stderr
 
 
-def test_ranges_hold_their_last_speed() -> None:
+def test_ranges_hold_their_last_speed():
     assert number_list("--speed-rpm", "0:1:0.1") == pytest.approx(np.linspace(0.0, 1.0, 11))
     assert number_list("--speed-rpm", "100:300:150") == [100.0, 250.0]
     assert number_list("--speed-rpm", "7:7:1") == [7.0]
@@ -79,7 +74,7 @@ def test_ranges_hold_their_last_speed() -> None:
         number_list("--speed-rpm", "0:nan:1")
 
 
-def test_a_load_far_beyond_the_table_ends_the_study_or_is_told(scene: Path) -> None:
+def test_a_load_far_beyond_the_table_ends_the_study_or_is_told(scene):
     heavy = scene.read_text(encoding="utf-8").replace("torque_n_m = [100.0]", "torque_n_m = [100000.0]")
     assert "100000.0" in heavy
     scene.write_text(heavy, encoding="utf-8")
@@ -95,7 +90,7 @@ def test_a_load_far_beyond_the_table_ends_the_study_or_is_told(scene: Path) -> N
 # ``loa response``.
 
 
-def test_json_holds_amplitudes_by_order_and_speed_and_the_peaks(scene: Path) -> None:
+def test_json_holds_amplitudes_by_order_and_speed_and_the_peaks(scene):
     answer = printed("response", scene, "--speed-rpm", "100:6000:50", "--orders", 4)
     assert answer["order"] == [1.0, 2.0, 3.0, 4.0]
     mesh = answer["meshes"]["mesh"]
@@ -118,7 +113,7 @@ def test_json_holds_amplitudes_by_order_and_speed_and_the_peaks(scene: Path) -> 
     assert answer["residual"] < 1e-9 and answer["parting_rpm"] == []
 
 
-def test_the_report_says_where_the_vibration_is_lost_if_it_is_known(scene: Path, tmp_path: Path) -> None:
+def test_the_report_says_where_the_vibration_is_lost_if_it_is_known(scene, tmp_path):
     file, page = tmp_path / "response.nc", tmp_path / "page.html"
     result = loa("response", scene, "--speed-rpm", "2000:6000:100", "--orders", 3, "-o", file)
     assert result.exit_code == 0, result.stderr
@@ -134,7 +129,7 @@ def test_the_report_says_where_the_vibration_is_lost_if_it_is_known(scene: Path,
     assert "Power lost" not in page.read_text()
 
 
-def test_the_power_of_the_vibration_is_lost_where_the_table_says(scene: Path) -> None:
+def test_the_power_of_the_vibration_is_lost_where_the_table_says(scene):
     arguments = ("response", scene, "--speed-rpm", "2000:6000:500", "--orders", 3)
     power = printed(*arguments)["power"]
     lost = np.sum([part["loss_w"] for part in power["losses"]], axis=0)
@@ -152,7 +147,7 @@ def test_the_power_of_the_vibration_is_lost_where_the_table_says(scene: Path) ->
     assert float(row.split()[-1]) == pytest.approx(100.0 * shares["mesh"], rel=0.01)
 
 
-def test_speeds_at_which_flanks_part_are_said(scene: Path) -> None:
+def test_speeds_at_which_flanks_part_are_said(scene):
     scene.write_text(scene.read_text().replace("damping_ratio = 0.08", "damping_ratio = 0.005"))
     parting = printed("response", scene, "--speed-rpm", "13500:14500:50")["parting_rpm"]
     assert parting and min(parting) > 13500
@@ -160,7 +155,7 @@ def test_speeds_at_which_flanks_part_are_said(scene: Path) -> None:
     assert f"flanks lift off at {len(parting)} of 21 speeds" in shown.stdout
 
 
-def test_trains_that_torques_alone_move_are_refused_by_name(scene: Path) -> None:
+def test_trains_that_torques_alone_move_are_refused_by_name(scene):
     text = scene.read_text().replace("[[drives]]", "[[free_rotations]]")
     scene.write_text(text.replace("speed_rpm = [900.0]", "initial_speed_rpm = 900.0"))
     result = loa("response", scene, "--speed-rpm", "100")
@@ -171,7 +166,7 @@ def test_trains_that_torques_alone_move_are_refused_by_name(scene: Path) -> None
 # ``loa steady``.
 
 
-def test_rising_and_falling_speeds_meet_on_a_stable_branch(scene: Path, tmp_path: Path) -> None:
+def test_rising_and_falling_speeds_meet_on_a_stable_branch(scene, tmp_path):
     file, page = tmp_path / "steady.nc", tmp_path / "page.html"
     done = loa("steady", scene, "--speed-rpm", "3000,3200", "--settling-periods", 2, "-o", file)
     assert (done.exit_code, done.stderr) == (0, "")
@@ -191,9 +186,7 @@ def test_rising_and_falling_speeds_meet_on_a_stable_branch(scene: Path, tmp_path
     assert found["jumps"] == [] and found["branch"]["status"] == "completed"
 
 
-def test_motions_that_are_not_found_are_printed_and_fail(
-    scene: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_motions_that_are_not_found_are_printed_and_fail(scene, tmp_path, monkeypatch):
     monkeypatch.setitem(find_orbit.__globals__, "ITERATION_LIMIT", 0)
     for form in ((), ("--json",)):
         result = loa(

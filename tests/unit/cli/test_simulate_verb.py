@@ -1,7 +1,5 @@
 """``loa simulate``: Ctrl-C keeps what was computed, ``--resume`` goes on from there."""
 
-from __future__ import annotations
-
 import signal
 
 import numpy as np
@@ -9,8 +7,7 @@ import pytest
 from command_line import loa
 from geared_scenes import gear_pair_scene
 
-from dynamics.results import RunResult
-from dynamics.simulation import simulate
+from dynamics import RunResult, simulate
 from dynamics.types import RunStatus
 from lineofaction.cli.simulate import _run, _run_headlines
 from lineofaction.gearbox.convert.scene_effects import scene_table
@@ -23,7 +20,7 @@ SCENE = gear_pair_scene(duration=0.02)
 def test_ctrl_c_keeps_what_was_computed_and_resume_goes_on(tmp_path):
     path = tmp_path / "run.nc"
 
-    def stop(_stage: str, fraction: float) -> None:
+    def stop(_stage, fraction):
         if 0.3 < fraction < 0.33:
             signal.raise_signal(signal.SIGINT)
 

@@ -1,10 +1,7 @@
 """What a curve says stands in one look: figures with errors, harmonics in decibels, load sharing."""
 
-from __future__ import annotations
-
 import math
 import re
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,14 +18,14 @@ TORQUE = 1.0
 
 
 @pytest.fixture(scope="module")
-def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def file(tmp_path_factory):
     file = tmp_path_factory.mktemp("table") / "ste.nc"
     small_table().to_netcdf(file)
     return file
 
 
 @pytest.fixture(scope="module")
-def curve(file: Path) -> Json:
+def curve(file):
     """A curve whose errors are small enough for some of its harmonics to be above them."""
     found = curve_json(SteDatabase.from_netcdf(file), torque_n_m=TORQUE)
     smaller = {name: 1e-3 * np.array(value) for name, value in found.items() if "error" in name}
@@ -36,11 +33,11 @@ def curve(file: Path) -> Json:
 
 
 @pytest.fixture(scope="module")
-def answer(file: Path, curve: Json) -> list[str]:
+def answer(file, curve):
     return list(_answer(SteDatabase.from_netcdf(file), f"report {file}", curve))
 
 
-def test_the_answer_is_one_look(file: Path, answer: list[str]) -> None:
+def test_the_answer_is_one_look(file, answer):
     done = loa("ste", file, "--torque", TORQUE)
     assert done.exit_code == 0, done.output
     for lines in (answer, done.stdout.splitlines()):
@@ -50,11 +47,10 @@ def test_the_answer_is_one_look(file: Path, answer: list[str]) -> None:
         assert lines[-1].startswith(f"next: loa report {file}")
 
 
-def test_figures_are_those_of_the_curve_with_two_digits_of_the_error(answer: list[str], curve: Json) -> None:
+def test_figures_are_those_of_the_curve_with_two_digits_of_the_error(answer, curve):
     for name, key in (("mean", "mean_um"), ("peak to peak", "peak_to_peak_um")):
         (line,) = (line for line in answer if line.startswith(f"  {name} "))
         found = re.match(rf"  {name} +([\d.]+) +± ([\d.]+) µm", line)
-        assert found is not None
         places = len(found[2].partition(".")[2])
         assert places == len(found[1].partition(".")[2]) and 9.5 < float(found[2]) * 10.0**places < 100.0
         last = 0.51 * 10.0**-places
@@ -62,9 +58,7 @@ def test_figures_are_those_of_the_curve_with_two_digits_of_the_error(answer: lis
         assert float(found[2]) == pytest.approx(curve[key.replace("_um", "_error_um")], abs=last)
 
 
-def test_harmonics_above_their_errors_are_in_decibels_and_the_others_are_named(
-    answer: list[str], curve: Json
-) -> None:
+def test_harmonics_above_their_errors_are_in_decibels_and_the_others_are_named(answer, curve):
     sizes, errors = (dict(enumerate(curve[name][:8], 1)) for name in ("harmonics_um", "harmonics_error_um"))
     sure = {order for order, size in sizes.items() if size > errors[order]}
     assert 1 < len(sure) < 8
@@ -78,7 +72,7 @@ def test_harmonics_above_their_errors_are_in_decibels_and_the_others_are_named(
     assert {int(order) for order in re.findall(r"\d+", rest.partition(":")[0])} == set(sizes) - sure
 
 
-def test_the_ripple_is_drawn_over_two_periods(answer: list[str], curve: Json) -> None:
+def test_the_ripple_is_drawn_over_two_periods(answer, curve):
     (line,) = (line for line in answer if line.endswith("two periods"))
     drawn = line.removesuffix("two periods").split()[-1]
     half, ste = len(drawn) // 2, np.array(curve["ste_um"])
@@ -87,7 +81,7 @@ def test_the_ripple_is_drawn_over_two_periods(answer: list[str], curve: Json) ->
     assert drawn[round(ste.argmin() * half / ste.size)] == min(drawn) == "▁"
 
 
-def test_positions_are_printed_where_they_are_requested(file: Path) -> None:
+def test_positions_are_printed_where_they_are_requested(file):
     whole = loa("ste", file, "--torque", TORQUE, "--table").stdout.splitlines()
     some = loa("ste", file, "--torque", TORQUE, "--at", "0,0.25").stdout.splitlines()
     assert whole[0].split()[:2] == some[0].split()[:2] == ["position", "ste_um"]
@@ -95,8 +89,8 @@ def test_positions_are_printed_where_they_are_requested(file: Path) -> None:
     assert len(whole) == 1 + len(SteDatabase.from_netcdf(file).position)
 
 
-def test_the_error_of_a_point_names_the_part_of_interpolation(file: Path, curve: Json) -> None:
-    def said(**bands: Any) -> str:
+def test_the_error_of_a_point_names_the_part_of_interpolation(file, curve):
+    def said(**bands):
         lines = _answer(SteDatabase.from_netcdf(file), "report", curve | bands)
         return next(line.strip() for line in lines if "error of a point" in line)
 
@@ -105,7 +99,7 @@ def test_the_error_of_a_point_names_the_part_of_interpolation(file: Path, curve:
     assert said(**bands | {"interval_error_um": 0.0}) == "error of a point: up to 0.2 µm"
 
 
-def test_every_row_of_a_list_has_the_error_of_its_point(file: Path) -> None:
+def test_every_row_of_a_list_has_the_error_of_its_point(file):
     table = SteDatabase.from_netcdf(file)
     header, *rows = loa("ste", file, "--torque", "30", "--at", "0,0.25,0.6", "--csv").stdout.splitlines()
     assert header.split(",")[-1] == "ste_error_um"

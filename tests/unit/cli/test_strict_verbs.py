@@ -1,9 +1,6 @@
 """What is implausible comes before the numbers, into JSON and files, and decides the exit code if asked."""
 
-from __future__ import annotations
-
 import json
-from pathlib import Path
 
 import h5netcdf
 import pytest
@@ -36,38 +33,38 @@ MESSAGE = "pair.pinion.tip_relief_um = 0.02 µm: "
 
 
 @pytest.fixture
-def case(tmp_path: Path) -> Path:
+def case(tmp_path):
     file = tmp_path / "case.toml"
     file.write_text(CASE.format(relief="tip_relief_um = 0.02\ntip_relief_length_mm = 1.5"))
     return file
 
 
-def test_a_plan_says_it_first_and_keeps_its_exit_code(case: Path) -> None:
+def test_a_plan_says_it_first_and_keeps_its_exit_code(case):
     done = loa("plan", case)
     assert done.exit_code == 0
     assert done.stdout.startswith(f"warning (relief_amount): {MESSAGE}")
 
 
-def test_strict_ends_with_its_own_code(case: Path) -> None:
+def test_strict_ends_with_its_own_code(case):
     done = loa("plan", case, "--strict")
     assert done.exit_code == EXIT_WARNINGS == 3
     assert done.stderr == "error: 1 warning under --strict\n"
     assert "nothing is computed yet" in done.stdout
 
 
-def test_strict_without_warnings_is_done(case: Path) -> None:
+def test_strict_without_warnings_is_done(case):
     case.write_text(CASE.format(relief=""))
     done = loa("plan", case, "--strict", "--json")
     assert done.exit_code == 0
     assert json.loads(done.stdout)["warnings"] == []
 
 
-def test_bad_input_stays_bad_input_under_strict(case: Path) -> None:
+def test_bad_input_stays_bad_input_under_strict(case):
     case.write_text(CASE.format(relief="teth = 3"))
     assert loa("plan", case, "--strict").exit_code == EXIT_BAD_INPUT
 
 
-def test_table_report_and_json_carry_it(case: Path, tmp_path: Path) -> None:
+def test_table_report_and_json_carry_it(case, tmp_path):
     """The file says it to whoever reads it: curve, report, Python."""
     table, page = tmp_path / "ste.nc", tmp_path / "page.html"
     done = loa("analyze", case, "-o", table, "--json")
@@ -85,6 +82,6 @@ def test_table_report_and_json_carry_it(case: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", VERBS)
-def test_every_verb_that_computes_can_be_strict(name: str) -> None:
+def test_every_verb_that_computes_can_be_strict(name):
     verb = LOA.get_command(Context(LOA), name)
     assert ("strict" in [option.name for option in verb.params]) == (name not in NOT_COMPUTING)

@@ -1,7 +1,5 @@
 """loa study: many scenes from two files, equal to single runs, taken up after a kill; of other flanks too."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal
@@ -12,17 +10,17 @@ import tomllib
 from dataclasses import dataclass
 from functools import wraps
 from pathlib import Path
-from typing import Any, get_args
+from typing import get_args
 
 import numpy as np
 import pytest
 from command_line import loa
 from declared_figures import check_declared
+from repository import EXAMPLES
 from scene_files import SCENE, scene_file
 from spur_case import spur_case
 
-from dynamics.results import RunResult
-from dynamics.simulation import simulate
+from dynamics import RunResult, simulate
 from dynamics.study import QUANTITIES, Design, Levels, Response, Study, StudyTask, responses_of, study
 from dynamics.study.run_study import _run_batch
 from fe_contact.ste import PairGeometry
@@ -42,7 +40,6 @@ from lineofaction.gearbox.studies.study.scenes import VariedScene, places_of, wi
 from lineofaction.gearbox.subjects import scene_of, with_inline_cases
 from lineofaction.report.document import write_report
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 STUDY = """
 samples = 3
 seed = 5
@@ -69,7 +66,7 @@ def study_file(folder: Path, text: str = STUDY) -> Path:
 
 
 @pytest.fixture
-def scene(tmp_path: Path) -> Path:
+def scene(tmp_path):
     return scene_file(tmp_path)
 
 
@@ -83,7 +80,7 @@ class Studied:
 
 
 @pytest.fixture(scope="module")
-def studied(tmp_path_factory: pytest.TempPathFactory) -> Studied:
+def studied(tmp_path_factory):
     folder = tmp_path_factory.mktemp("studied")
     scene, out = scene_file(folder), folder / "out"
     with pytest.MonkeyPatch.context() as patch:
@@ -93,7 +90,7 @@ def studied(tmp_path_factory: pytest.TempPathFactory) -> Studied:
     return Studied(scene, out, result.stdout)
 
 
-def test_figures_are_those_of_loa_simulate(studied: Studied, tmp_path: Path) -> None:
+def test_figures_are_those_of_loa_simulate(studied, tmp_path):
     answer = json.loads(studied.printed)
     check_declared("study", answer)
     made = Study.from_netcdf(studied.out / "study.nc")
@@ -113,20 +110,20 @@ def test_figures_are_those_of_loa_simulate(studied: Studied, tmp_path: Path) -> 
 
 
 @pytest.mark.law
-def test_two_processes_give_the_same_bits(studied: Studied, scene: Path, tmp_path: Path) -> None:
+def test_two_processes_give_the_same_bits(studied, scene, tmp_path):
     assert loa("study", scene, study_file(tmp_path), "-o", tmp_path / "two", "--workers", 2).exit_code == 0
     one, two = (Study.from_netcdf(folder / "study.nc") for folder in (studied.out, tmp_path / "two"))
     np.testing.assert_array_equal(one.figure, two.figure)
 
 
 @pytest.mark.law
-def test_a_killed_study_goes_on_where_it_was(scene: Path, tmp_path: Path) -> None:
+def test_a_killed_study_goes_on_where_it_was(scene, tmp_path):
     many = STUDY.replace("samples = 3", "samples = 40").replace("keep_worst = 1", "")
     arguments = ["study", str(scene), str(study_file(tmp_path, many)), "-o", str(tmp_path / "killed")]
     kept = tmp_path / "cache" / "lineofaction" / "studies"
     decided = 4  # points at which effects are decided before the runs
 
-    def finished() -> list[Path]:
+    def finished():
         return [file for file in kept.glob("*/*") if file.suffix != ".partial"]
 
     with subprocess.Popen([sys.executable, "-m", "lineofaction.cli", *arguments], env=os.environ) as running:
@@ -140,7 +137,7 @@ def test_a_killed_study_goes_on_where_it_was(scene: Path, tmp_path: Path) -> Non
     done = []
 
     @wraps(_run_batch)
-    def counted(task: Any, batch: Any) -> Any:
+    def counted(task, batch):
         done.append(len(batch))
         return _run_batch(task, batch)
 
@@ -165,9 +162,7 @@ def test_a_killed_study_goes_on_where_it_was(scene: Path, tmp_path: Path) -> Non
         ("meshes.mesh.case.pair.pinion.tip_relief_um", "takes a database"),
     ],
 )
-def test_a_path_that_there_is_not_is_refused_with_the_nearest(
-    scene: Path, tmp_path: Path, path: str, said: str
-) -> None:
+def test_a_path_that_there_is_not_is_refused_with_the_nearest(scene, tmp_path, path, said):
     text = STUDY.replace("loads.brake.torque_n_m", path)
     result = loa("study", scene, study_file(tmp_path, text))
     assert result.exit_code == 2
@@ -181,15 +176,13 @@ def test_a_path_that_there_is_not_is_refused_with_the_nearest(
         ("order = 1", "", "order"),
     ],
 )
-def test_a_response_that_there_is_not_is_refused_by_its_field(
-    scene: Path, tmp_path: Path, old: str, new: str, field: str
-) -> None:
+def test_a_response_that_there_is_not_is_refused_by_its_field(scene, tmp_path, old, new, field):
     text = STUDY.replace(old, new)
     result = loa("study", scene, study_file(tmp_path, text))
     assert result.exit_code == 2 and field in result.stderr, result.output
 
 
-def test_a_path_names_parts_entries_and_what_is_left_out(scene: Path) -> None:
+def test_a_path_names_parts_entries_and_what_is_left_out(scene):
     inputs = read_model(SceneInput, scene)
     assert places_of(inputs, "path", "bushings.*.damping_ratio") == (
         ("bushings", 0, "damping_ratio"), ("bushings", 1, "damping_ratio"),
@@ -203,11 +196,11 @@ def test_a_path_names_parts_entries_and_what_is_left_out(scene: Path) -> None:
     assert table["drives"][0]["speed_rpm"] == [5.0] * len(inputs.drives[0].speed_rpm or ())
 
 
-def test_the_quantities_are_those_of_the_library() -> None:
+def test_the_quantities_are_those_of_the_library():
     assert get_args(QuantityName) == tuple(QUANTITIES)
 
 
-def test_a_value_that_the_scene_refuses_is_a_failed_point(scene: Path, tmp_path: Path) -> None:
+def test_a_value_that_the_scene_refuses_is_a_failed_point(scene, tmp_path):
     text = STUDY.replace("levels = [50.0, 100.0]", "levels = [50.0, 1e5]")  # beyond what the table holds
     assert loa("study", scene, study_file(tmp_path, text), "-o", tmp_path / "out").exit_code == 0
     made = Study.from_netcdf(tmp_path / "out" / "study.nc")
@@ -216,7 +209,7 @@ def test_a_value_that_the_scene_refuses_is_a_failed_point(scene: Path, tmp_path:
     assert np.isnan(made.figure[3:]).all() and np.isfinite(made.figure[:3]).all()
 
 
-def test_the_report_has_the_runs_and_their_plots(studied: Studied, tmp_path: Path) -> None:
+def test_the_report_has_the_runs_and_their_plots(studied, tmp_path):
     write_report(studied.out / "study.nc", tmp_path / "again.html")
     for page in (studied.out / "study.html", tmp_path / "again.html"):
         text = page.read_text(encoding="utf-8")
@@ -224,7 +217,7 @@ def test_the_report_has_the_runs_and_their_plots(studied: Studied, tmp_path: Pat
             assert word in text
 
 
-def test_a_grid_without_samples_has_a_report(scene: Path, tmp_path: Path) -> None:
+def test_a_grid_without_samples_has_a_report(scene, tmp_path):
     text = 'factors = [{ path = "loads.brake.torque_n_m", levels = [50.0, 100.0] }]\n'
     text += 'responses = [{ quantity = "dte_rms" }]\n'
     result = loa("study", scene, study_file(tmp_path, text), "-o", tmp_path / "out")
@@ -234,7 +227,7 @@ def test_a_grid_without_samples_has_a_report(scene: Path, tmp_path: Path) -> Non
     assert np.isnan(Study.from_netcdf(tmp_path / "out" / "study.nc").correlation(0)).all()
 
 
-def test_a_study_of_failed_runs_alone_is_still_shown_and_has_failed(scene: Path, tmp_path: Path) -> None:
+def test_a_study_of_failed_runs_alone_is_still_shown_and_has_failed(scene, tmp_path):
     text = STUDY.replace("levels = [50.0, 100.0]", "levels = [1e5, 2e5]")
     result = loa("study", scene, study_file(tmp_path, text), "-o", tmp_path / "out")
     assert result.exit_code == 1 and "No run has figures" in result.stderr
@@ -242,7 +235,7 @@ def test_a_study_of_failed_runs_alone_is_still_shown_and_has_failed(scene: Path,
     assert Study.from_netcdf(tmp_path / "out" / "study.nc").worst.size == 0
 
 
-def test_a_factor_says_whether_it_is_sampled() -> None:
+def test_a_factor_says_whether_it_is_sampled():
     inputs = Inputs.model_validate(tomllib.loads(STUDY))
     assert [factor.sampled for factor in inputs.factors] == [False, True]
 
@@ -255,7 +248,7 @@ RESPONSES = (Response("dte_peak_to_peak"), Response("peak_mesh_force"))
 
 
 @pytest.fixture(scope="module")
-def written(tmp_path_factory: pytest.TempPathFactory) -> SceneInput:
+def written(tmp_path_factory):
     folder = tmp_path_factory.mktemp("flanks")
     (folder / "case.toml").write_text(SPUR_CASE, encoding="utf-8")
     text = SCENE.format(duration=0.05, speed=300.0, rate=20e3)
@@ -265,9 +258,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> SceneInput:
 
 
 @pytest.fixture(scope="module")
-def scenes(
-    written: SceneInput, tmp_path_factory: pytest.TempPathFactory, condensed_once: None
-) -> VariedScene:
+def scenes(written, tmp_path_factory, condensed_once):
     case = written.meshes[0].case
     assert case is not None
     database = computed_table(CheckedCase(case), lambda _stage, _fraction: None)
@@ -276,9 +267,7 @@ def scenes(
     return VariedScene(written.model_dump_json(), {"mesh": database}, places, home)
 
 
-def test_other_flanks_are_other_tables_and_the_designed_ones_agree_with_the_analysis(
-    scenes: VariedScene,
-) -> None:
+def test_other_flanks_are_other_tables_and_the_designed_ones_agree_with_the_analysis(scenes):
     designed, deep = (simulate(scenes.scene({PATH: relief})) for relief in (10.0, 40.0))
     analysis = simulate(dynamic_scene(scenes.inputs({PATH: 10.0}), scenes.databases))
     known, same, other = (responses_of(run, RESPONSES)[0] for run in (analysis, designed, deep))
@@ -287,7 +276,7 @@ def test_other_flanks_are_other_tables_and_the_designed_ones_agree_with_the_anal
     assert abs(other[0] / known[0] - 1.0) > 0.2
 
 
-def test_runs_of_equal_flanks_are_in_a_row_and_equal_to_single_runs(scenes: VariedScene) -> None:
+def test_runs_of_equal_flanks_are_in_a_row_and_equal_to_single_runs(scenes):
     torque = "loads.brake.torque_n_m"
     both = VariedScene(
         scenes.written,
@@ -303,7 +292,7 @@ def test_runs_of_equal_flanks_are_in_a_row_and_equal_to_single_runs(scenes: Vari
         np.testing.assert_array_equal(figures, responses_of(run, RESPONSES)[0])
 
 
-def test_a_class_of_iso_1328_is_a_band_about_the_design(written: SceneInput) -> None:
+def test_a_class_of_iso_1328_is_a_band_about_the_design(written):
     path = "meshes.mesh.case.pair.pinion.profile_slope_um"
     factor = {"path": path, "iso1328_class": 7}
     inputs = Inputs.model_validate(
@@ -315,7 +304,7 @@ def test_a_class_of_iso_1328_is_a_band_about_the_design(written: SceneInput) -> 
     assert points.std() == pytest.approx(11.0 / 3.0, rel=0.1)
 
 
-def test_deviations_of_a_case_with_axes_are_refused(written: SceneInput) -> None:
+def test_deviations_of_a_case_with_axes_are_refused(written):
     table = written.model_dump(mode="json")
     table["meshes"][0]["case"]["errors"]["misalignment_um"] = [0.0, 10.0]
     several = SceneInput.model_validate(table)
@@ -326,7 +315,7 @@ def test_deviations_of_a_case_with_axes_are_refused(written: SceneInput) -> None
         factor_places(several, inputs)
 
 
-def test_responses_may_name_what_a_scene_has_with_all_its_planets() -> None:
+def test_responses_may_name_what_a_scene_has_with_all_its_planets():
     inputs = workbench.read(EXAMPLES / "planetary_scene.toml")
     assert isinstance(inputs, SceneInput)
     meshes = [mesh for _, mesh in inputs.with_database if mesh.case]

@@ -1,9 +1,6 @@
 """``loa sweep``: names as in the case file or short, the same numbers in every form, three lines."""
 
-from __future__ import annotations
-
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -24,14 +21,14 @@ OVER = "torque=100:200:50,pinion.tip_relief=0:20:10"
 
 
 @pytest.fixture
-def file(tmp_path: Path) -> Path:
+def file(tmp_path):
     file = tmp_path / "case.toml"
     file.write_text(CASE, encoding="utf-8")
     return file
 
 
 @pytest.fixture
-def case(file: Path) -> CheckedCase:
+def case(file):
     return CheckedCase(read_model(Case, InputFile(file)))
 
 
@@ -42,19 +39,19 @@ def output(*arguments: object) -> str:
 
 
 @pytest.mark.parametrize("name", SWEEPABLE)
-def test_every_spelling_means_one_thing(name: str, case: CheckedCase) -> None:
+def test_every_spelling_means_one_thing(name, case):
     for spelling in SWEEPABLE[name].spellings:
         assert axis_of_text(case, f"{spelling}=1:3:1").name == name
 
 
-def test_a_name_without_a_gear_means_both_and_its_unit_may_be_left_out(case: CheckedCase) -> None:
+def test_a_name_without_a_gear_means_both_and_its_unit_may_be_left_out(case):
     axis = axis_of_text(case, "tip_relief_um=0:40:20")
     assert axis.values == pytest.approx((0.0, 20e-6, 40e-6))
     assert axis.variables == ("pinion.tip_relief", "wheel.tip_relief")
     assert axis_of_text(case, "pair.pinion.tip_relief_um=0:40:20").variables == ("pinion.tip_relief",)
 
 
-def test_ranges_that_are_not_given_are_about_the_case(case: CheckedCase) -> None:
+def test_ranges_that_are_not_given_are_about_the_case(case):
     usual = {
         name: axis_of_text(case, name).values for name in ("torque", "pinion.tip_relief", "misalignment")
     }
@@ -74,12 +71,12 @@ def test_ranges_that_are_not_given_are_about_the_case(case: CheckedCase) -> None
         ("torque=300:100:50", "rises"),
     ],
 )
-def test_what_is_no_axis_is_refused(case: CheckedCase, text: str, said: str) -> None:
+def test_what_is_no_axis_is_refused(case, text, said):
     with pytest.raises(BadInput, match=said):
         axis_of_text(case, text)
 
 
-def test_files_and_terminal_say_the_same(file: Path, tmp_path: Path) -> None:
+def test_files_and_terminal_say_the_same(file, tmp_path):
     target = tmp_path / "map.csv"
     ended = output("sweep", file, "--over", OVER, "-o", target).strip().splitlines()
     best, largest, *_, written = ended
@@ -97,7 +94,7 @@ def test_files_and_terminal_say_the_same(file: Path, tmp_path: Path) -> None:
     assert largest.startswith(f"largest peak-to-peak STE: {to_error(*errors)} µm")
 
 
-def test_what_is_said_to_be_as_low_is(file: Path) -> None:
+def test_what_is_said_to_be_as_low_is(file):
     told = printed("sweep", file, "--over", OVER)
     points = told["points"]
     minimum = min(points, key=lambda point: point["harmonic_1_um"])
@@ -112,7 +109,7 @@ def test_what_is_said_to_be_as_low_is(file: Path) -> None:
     assert said["load.torque_n_m"] == minimum["load.torque_n_m"]
 
 
-def test_a_report_shows_a_stored_map(file: Path, tmp_path: Path) -> None:
+def test_a_report_shows_a_stored_map(file, tmp_path):
     stored, page = tmp_path / "map.nc", tmp_path / "map.html"
     output("sweep", file, "--over", OVER, "-o", stored)
     output("report", stored, "-o", page)
@@ -123,9 +120,7 @@ def test_a_report_shows_a_stored_map(file: Path, tmp_path: Path) -> None:
     assert curve.stat().st_size > 10_000
 
 
-def test_the_complaint_of_the_case_is_marked_in_the_plots_and_in_those_of_its_file(
-    file: Path, tmp_path: Path
-) -> None:
+def test_the_complaint_of_the_case_is_marked_in_the_plots_and_in_those_of_its_file(file, tmp_path):
     file.write_text(f"{CASE}\n[complaint]\nfrequency_hz = 1000.0\nspeed_rpm = 3000.0\ntorque_n_m = 130.0\n")
     for ending in (".html", ".nc"):
         done = loa("sweep", file, "--over", "torque=100:200:50", "-o", tmp_path / f"map{ending}")

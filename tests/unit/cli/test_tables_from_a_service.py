@@ -14,9 +14,7 @@ from lineofaction.client import JobState, scene_calls
     [(("accepted", "running", "running", "successful"), 1), (("successful",), 0)],
     ids=["a table that is waited for", "a table that is there"],
 )
-def test_the_loops_of_a_run_are_compiled_once_while_it_waits(
-    monkeypatch: pytest.MonkeyPatch, seen: tuple[str, ...], times: int
-) -> None:
+def test_the_loops_of_a_run_are_compiled_once_while_it_waits(monkeypatch, seen, times):
     compiled: list[int] = []
 
     def client(_service, progress):

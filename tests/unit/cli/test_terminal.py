@@ -1,7 +1,5 @@
 """At 80 and at 120 columns a verb answers in its first lines, and nothing is cut."""
 
-from __future__ import annotations
-
 import contextlib
 import io
 import os
@@ -19,7 +17,6 @@ from spur_case import spur_case
 from lineofaction.cli.commands import app
 from lineofaction.cli.output import EMPHASIS, console, print_parts, table
 from lineofaction.cli.verb_warnings import in_lines
-from lineofaction.cli.verbs import of_imports
 from lineofaction.cli.verbs.of_studies import GROUPS, StudyGroup
 from lineofaction.report.presentation import effect_text
 
@@ -44,7 +41,7 @@ ANSWERS: dict[str, tuple[tuple[str, ...], str]] = {
 
 
 @pytest.fixture(scope="module")
-def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+def files(tmp_path_factory):
     folder = tmp_path_factory.mktemp("terminal")
     project = folder / "unit"
     project.mkdir()
@@ -65,9 +62,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
 @pytest.mark.law
 @pytest.mark.parametrize("columns", COLUMNS)
 @pytest.mark.parametrize("verb", ANSWERS)
-def test_the_answer_stands_first_and_nothing_is_cut(
-    verb: str, columns: int, files: dict[str, Path], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_answer_stands_first_and_nothing_is_cut(verb, columns, files, monkeypatch):
     monkeypatch.setenv("COLUMNS", str(columns))
     files["NEW"].unlink(missing_ok=True)
     arguments, answer = ANSWERS[verb]
@@ -83,9 +78,7 @@ def test_the_answer_stands_first_and_nothing_is_cut(
 
 
 @pytest.mark.parametrize("columns", COLUMNS)
-def test_a_wide_table_stands_in_blocks_and_no_word_is_broken(
-    columns: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_wide_table_stands_in_blocks_and_no_word_is_broken(columns, monkeypatch, capsys):
     monkeypatch.setenv("COLUMNS", str(columns))
     head = ["mesh", "load case", *(f"quantity-{k}, unit" for k in range(12))]
     rows = [["second stage", "load case 1", *(f"{k}.125 ± 0.0004" for k in range(12))]]
@@ -109,9 +102,7 @@ EFFECTS = {
 
 
 @pytest.mark.parametrize("columns", COLUMNS)
-def test_effects_stand_once_named_and_with_their_reasons_below(
-    columns: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_effects_stand_once_named_and_with_their_reasons_below(columns, monkeypatch, capsys):
     """A reason took 24 columns of 80 beside a second table of the same rows, some without a name."""
     monkeypatch.setenv("COLUMNS", str(columns))
     print_parts(effect_text(EFFECTS))
@@ -127,9 +118,7 @@ def test_effects_stand_once_named_and_with_their_reasons_below(
 
 
 @pytest.mark.parametrize("unit", ["N m", "CPU s", "kg m²", "N s/m", "N m/rad"])
-def test_a_unit_is_not_parted(
-    unit: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_unit_is_not_parted(unit, monkeypatch, capsys):
     """Neither in a head nor in a sentence, at any width: "torque N" stood above "m"."""
     for columns in range(20, 120):
         monkeypatch.setenv("COLUMNS", str(columns))
@@ -141,9 +130,7 @@ def test_a_unit_is_not_parted(
         assert f"12 {unit}" in in_lines(f"at rest the gear has 12 {unit} in its first mesh", columns)
 
 
-def test_a_text_wraps_only_where_that_saves_a_block(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_text_wraps_only_where_that_saves_a_block(monkeypatch, capsys):
     monkeypatch.setenv("COLUMNS", "80")
     name, head = (
         "bearing of the output, motor side",
@@ -156,7 +143,7 @@ def test_a_text_wraps_only_where_that_saves_a_block(
     assert line.split()[-4:] == ["1234567"] * 4 and wrapped in name
 
 
-def test_decimal_points_of_a_column_stand_below_each_other(capsys: pytest.CaptureFixture[str]) -> None:
+def test_decimal_points_of_a_column_stand_below_each_other(capsys):
     """Errors, too; a unit stays at its number ("-11      %" above "-0.1234 %"), what is none at the right."""
     rows = [
         ["draft", "16", "7.035 ±0.041", "-11 %"],
@@ -167,7 +154,7 @@ def test_decimal_points_of_a_column_stand_below_each_other(capsys: pytest.Captur
     head, *lines = capsys.readouterr().out.splitlines()
     assert head.split() == ["mesh", "CPU", "s", "mean", "µm", "p-p"]
     (whole, mean, part), (point, other, lower) = (
-        [re.search(mark, line).start() for mark in marks]  # type: ignore[union-attr]
+        [re.search(mark, line).start() for mark in marks]
         for line, marks in zip(
             lines, ([r" 16 ", r"\.035", r"-11"], [r"\.25", r"\.6 ", r"\.2345 %"]), strict=False
         )
@@ -185,9 +172,7 @@ class Terminal(io.StringIO):
 
 
 @pytest.mark.parametrize("columns", COLUMNS)
-def test_a_terminal_breaks_sentences_between_words_and_leaves_paths_whole(
-    columns: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_terminal_breaks_sentences_between_words_and_leaves_paths_whole(columns, monkeypatch):
     monkeypatch.setenv("COLUMNS", str(columns))
     path = f"/tmp/{'unit-' * 30}/flank.nc"
     text = f"error: {'peak-to-peak transmission error ' * 6}of\n  {path} and what follows it {'µm ' * 60}"
@@ -227,7 +212,7 @@ BOLD, CYAN, GREY = "\x1b[1m", "\x1b[36m", "\x1b[90m"
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="terminals of POSIX")
-def test_the_finding_is_bold_errors_are_colored_and_what_is_beside_is_grey(files: dict[str, Path]) -> None:
+def test_the_finding_is_bold_errors_are_colored_and_what_is_beside_is_grey(files):
     arguments = ["ste", str(files["TABLE"]), "--torque", "1"]
     shown = seen_on_a_terminal(arguments)
     first = next(line for line in shown.splitlines() if "gear pair" in line)
@@ -242,7 +227,7 @@ def test_the_finding_is_bold_errors_are_colored_and_what_is_beside_is_grey(files
     assert f"{BOLD}complaint: order 20.0 of " in seen_on_a_terminal(study)
 
 
-def test_a_table_in_a_pipe_is_as_wide_as_it_needs(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_table_in_a_pipe_is_as_wide_as_it_needs(capsys):
     names = [f"column_{k:02}" for k in range(15)]
     console().print(table(names, [["1"] * 15]))
     head, row = capsys.readouterr().out.splitlines()
@@ -272,21 +257,6 @@ def check_help(columns: int) -> None:
 
 
 @pytest.mark.parametrize("columns", COLUMNS)
-def test_the_help_has_every_verb_in_one_group_and_cuts_no_line(
-    columns: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_help_has_every_verb_in_one_group_and_cuts_no_line(columns, monkeypatch):
     monkeypatch.setenv("COLUMNS", str(columns))
     check_help(columns)
-
-
-@pytest.mark.parametrize("group", [None, "further"])
-def test_a_verb_in_no_group_fails_the_check(group: str | None, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(of_imports.verbs.registered_commands[0], "rich_help_panel", group)
-    with pytest.raises(AssertionError, match="KeyError"):
-        check_help(80)
-
-
-def test_a_number_stays_with_its_unit_of_two_words(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("COLUMNS", "30")
-    lines = in_lines("largest peak-to-peak STE at 27 N m and 28 µm", Terminal()).splitlines()
-    assert lines == ["largest peak-to-peak STE at", "27 N m and 28 µm"]

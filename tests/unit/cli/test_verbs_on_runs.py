@@ -1,7 +1,5 @@
 """``loa noise --run`` and ``loa vibration --run``: bearing forces of a run, not of the linear response."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -29,7 +27,7 @@ def told(*arguments: object) -> Any:
 
 
 @pytest.fixture(scope="module")
-def scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def scene(tmp_path_factory):
     """A scene with a housing, run up, in `run.nc` beside it, and at a constant speed, in `even.nc`."""
     folder = tmp_path_factory.mktemp("runs")
     file = scene_file(folder, duration=0.6)
@@ -50,7 +48,7 @@ def run_of(scene: Path, name: str = "run") -> Path:
     return scene.with_name(f"{name}.nc")
 
 
-def test_levels_of_a_run_go_over_its_speeds_and_its_time(scene: Path) -> None:
+def test_levels_of_a_run_go_over_its_speeds_and_its_time(scene):
     answer = told("noise", scene, CHEAP, "--run", run_of(scene), "--orders", ORDERS)
     forces, heard = answer["forces"], answer["over_time"]
     speed = np.array(answer["speed_rpm"])
@@ -67,7 +65,7 @@ def test_levels_of_a_run_go_over_its_speeds_and_its_time(scene: Path) -> None:
     assert np.all(10.0 * np.log10(bands) <= np.array(heard["total_level_db"]) + 1e-6)
 
 
-def test_a_housing_in_which_the_run_did_not_move_is_named(scene: Path, tmp_path: Path) -> None:
+def test_a_housing_in_which_the_run_did_not_move_is_named(scene, tmp_path):
     run, call = RunResult.from_netcdf(run_of(scene)), ("--orders", ORDERS)
     assert told("vibration", scene, "--run", run_of(scene), *call)["forces"]["other_housings"] == []
     (part,) = run.case["housings"]
@@ -81,7 +79,7 @@ def test_a_housing_in_which_the_run_did_not_move_is_named(scene: Path, tmp_path:
 
 
 @pytest.mark.law
-def test_at_constant_speed_it_is_near_the_linear_response(scene: Path) -> None:
+def test_at_constant_speed_it_is_near_the_linear_response(scene):
     """The stiffness of the table varies; the first order of a heavily loaded pair hardly knows."""
     run = told("noise", scene, CHEAP, "--run", run_of(scene, "even"), "--orders", ORDERS)
     linear = told("noise", scene, CHEAP, "--speed-rpm", 2000, "--orders", ORDERS, "--no-band")
@@ -96,15 +94,7 @@ def test_at_constant_speed_it_is_near_the_linear_response(scene: Path) -> None:
     ("verb", "key"), [(("noise", CHEAP), "sound_over_time"), (("vibration",), "housing_velocity")]
 )
 @pytest.mark.parametrize(("name", "axis"), [("run", "speed of input, rpm"), ("even", "time, s")])
-def test_reports_say_whose_forces_they_are(
-    scene: Path,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    verb: tuple[str, ...],
-    key: str,
-    name: str,
-    axis: str,
-) -> None:
+def test_reports_say_whose_forces_they_are(scene, tmp_path, monkeypatch, verb, key, name, axis):
     monkeypatch.setattr(surface_view, "ACROSS", 90)
     file = tmp_path / "report.html"
     result = loa(verb[0], scene, *verb[1:], "--run", run_of(scene, name), "--orders", ORDERS, "-o", file)
@@ -115,7 +105,7 @@ def test_reports_say_whose_forces_they_are(
         assert words in text
 
 
-def test_velocities_of_a_run_are_by_its_speeds(scene: Path) -> None:
+def test_velocities_of_a_run_are_by_its_speeds(scene):
     answer = told("vibration", scene, "--run", run_of(scene), "--orders", ORDERS)
     assert answer["forces"]["source"] == "run"
     assert np.array(answer["surface_mm_per_s"]).shape == (ORDERS, len(answer["speed_rpm"]))
@@ -132,9 +122,7 @@ def test_velocities_of_a_run_are_by_its_speeds(scene: Path) -> None:
         (("--run", "run.nc", "--orders", 90), ("orders = 90", "outputs.mesh_orders = 90")),
     ],
 )
-def test_what_does_not_go_together_is_refused(
-    scene: Path, options: tuple[Any, ...], words: tuple[str, ...]
-) -> None:
+def test_what_does_not_go_together_is_refused(scene, options, words):
     named = [scene.with_name(part) if str(part).endswith(".nc") else part for part in options]
     result = loa("noise", scene, *named)
     assert result.exit_code == 2
@@ -142,7 +130,7 @@ def test_what_does_not_go_together_is_refused(
         assert word in " ".join(result.stderr.split()), result.stderr
 
 
-def test_a_run_of_other_bearings_is_refused(scene: Path, tmp_path: Path) -> None:
+def test_a_run_of_other_bearings_is_refused(scene, tmp_path):
     run = RunResult.from_netcdf(run_of(scene))
     object.__setattr__(run, "bearing", ("left", "rear"))
     run.to_netcdf(tmp_path / "other.nc")

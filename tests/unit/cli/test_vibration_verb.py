@@ -1,10 +1,7 @@
 """``loa vibration``: what it prints and writes, and how it refuses."""
 
-from __future__ import annotations
-
 import json
 import re
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -25,12 +22,12 @@ SPEEDS = ("--speed-rpm", "1500:3000:250", "--orders", 4)
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def folder(tmp_path_factory):
     return write_housed_scene(tmp_path_factory.mktemp("vibration"), modes=6)
 
 
 @pytest.fixture(scope="module", autouse=True)
-def _once() -> Iterator[None]:
+def _once():
     """Compute what equal calls ask for once; pictures of surfaces are coarse."""
     with computed_once(run), pytest.MonkeyPatch.context() as patch:
         patch.setattr(surface_view, "ACROSS", 90)
@@ -38,17 +35,17 @@ def _once() -> Iterator[None]:
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("cache")
 
 
 @pytest.fixture
-def scene(folder: Path, cache: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def scene(folder, cache, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(cache))
     return folder / "scene.json"
 
 
-def test_the_surface_and_the_cost_of_the_housing_are_written(scene: Path, tmp_path: Path) -> None:
+def test_the_surface_and_the_cost_of_the_housing_are_written(scene, tmp_path):
     files = {ending: tmp_path / f"vibration.{ending}" for ending in ("nc", "vtu", "html")}
     for file in files.values():
         result = loa("vibration", scene, *SPEEDS, "-o", file)
@@ -70,7 +67,7 @@ def test_the_surface_and_the_cost_of_the_housing_are_written(scene: Path, tmp_pa
 
 
 @pytest.mark.law
-def test_figures_are_root_mean_squares_and_contributions_add_up(scene: Path) -> None:
+def test_figures_are_root_mean_squares_and_contributions_add_up(scene):
     answer = told(scene)
     cover = answer["points"]["cover"]
     velocity = np.array(cover["velocity_mm_per_s"])
@@ -91,13 +88,13 @@ def test_figures_are_root_mean_squares_and_contributions_add_up(scene: Path) -> 
     assert answer["highest_valid_frequency_hz"] == pytest.approx(0.7 * answer["natural_frequency_hz"][-1])
 
 
-def test_parts_are_those_of_the_order_and_speed_asked_for(scene: Path) -> None:
+def test_parts_are_those_of_the_order_and_speed_asked_for(scene):
     shown = told(scene, "--at-rpm", 2600, "--at-order", 2.9)["contributions"]
     assert (shown["speed_rpm"], shown["order"]) == (pytest.approx(2500.0), 3.0)
     assert shown["frequency_hz"] == pytest.approx(2500.0 / 60.0 * 20 * 3)
 
 
-def test_orders_that_the_modes_kept_do_not_carry_are_named(folder: Path, scene: Path) -> None:
+def test_orders_that_the_modes_kept_do_not_carry_are_named(folder, scene):
     few = folder / "few.json"
     few.write_text(json.dumps(housed_scene(folder, modes=1)))
     result = loa("vibration", few, "--speed-rpm", "2500,6000", "--orders", 4)
@@ -108,7 +105,7 @@ def test_orders_that_the_modes_kept_do_not_carry_are_named(folder: Path, scene: 
     assert f"orders {', '.join(f'{order:g}' for order in beyond)} go beyond" in result.stdout
 
 
-def test_a_mode_is_drawn_in_place_of_the_deflection(scene: Path, tmp_path: Path) -> None:
+def test_a_mode_is_drawn_in_place_of_the_deflection(scene, tmp_path):
     assert loa("vibration", scene, *SPEEDS, "--mode", 2, "-o", tmp_path / "mode.vtu").exit_code == 0
     motion = meshlane.read(tmp_path / "mode.vtu").point_data["mode_2_real"]
     assert np.linalg.norm(motion, axis=1).max() == pytest.approx(1.0)
@@ -121,14 +118,14 @@ def test_a_mode_is_drawn_in_place_of_the_deflection(scene: Path, tmp_path: Path)
         (("--housing", "other"), ("housing = 'other'", "one of case")),
     ],
 )
-def test_what_is_not_there_is_refused(scene: Path, options: tuple[Any, ...], words: tuple[str, ...]) -> None:
+def test_what_is_not_there_is_refused(scene, options, words):
     result = loa("vibration", scene, *SPEEDS, *options)
     assert result.exit_code == 2
     for word in words:
         assert word in " ".join(result.stderr.split()), result.stderr
 
 
-def test_a_scene_without_a_housing_that_moves_is_refused_with_advice(tmp_path: Path) -> None:
+def test_a_scene_without_a_housing_that_moves_is_refused_with_advice(tmp_path):
     result = loa("vibration", scene_file(tmp_path), *SPEEDS)
     assert result.exit_code == 2
     assert "housings" in result.stderr and "step_file" in result.stderr

@@ -1,9 +1,5 @@
 """Batches from both clients, against the service itself with fake work."""
 
-from __future__ import annotations
-
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -21,16 +17,16 @@ WISHES: list[dict[str, Any]] = [{"text": "b"}, {"text": "a"}, {"mode": "mesh"}]
 
 
 @pytest.fixture
-def address(tmp_path: Path) -> Iterator[str]:
+def address(tmp_path):
     with served(create_app(Settings(data_directory=tmp_path / "service", workers=2), REGISTRY)) as port:
         yield f"http://127.0.0.1:{port}"
 
 
-def test_both_clients_get_the_jobs_of_a_batch_in_order(address: str, tmp_path: Path) -> None:
+def test_both_clients_get_the_jobs_of_a_batch_in_order(address, tmp_path):
     assert "fake" not in offers()  # its results are read as files
     jobs = [{"wish": wish} for wish in WISHES]
 
-    def blocking() -> tuple[list[str], list[str], int]:
+    def blocking():
         with LineOfActionClient(address, cache_dir=tmp_path / "a") as client:
             batch = client.batch(client.submit_batch("fake", jobs).id)
             progress = [event.progress for event in batch.events()]
@@ -44,7 +40,7 @@ def test_both_clients_get_the_jobs_of_a_batch_in_order(address: str, tmp_path: P
             assert progress == sorted(progress)
             return texts, [job.state.status for job in ends], batch.state.children
 
-    async def awaited() -> tuple[list[str], list[str], int]:
+    async def awaited():
         async with AsyncLineOfActionClient(address, cache_dir=tmp_path / "b") as client:
             batch = await client.batch((await client.submit_batch("fake", jobs)).id)
             async for event in batch.events():
@@ -56,7 +52,7 @@ def test_both_clients_get_the_jobs_of_a_batch_in_order(address: str, tmp_path: P
     assert blocking() == outcome(awaited()) == (["b", "a"], ["successful", "successful", "failed"], 3)
 
 
-def test_the_results_of_a_batch_are_a_list(address: str, tmp_path: Path) -> None:
+def test_the_results_of_a_batch_are_a_list(address, tmp_path):
     with LineOfActionClient(address, cache_dir=tmp_path) as client:
         shared = {"wish": {"text": "x", "number": 1.0}}
         state = client.submit_batch("fake", [{}, {"wish": {"text": "y"}}], shared)
@@ -64,7 +60,7 @@ def test_the_results_of_a_batch_are_a_list(address: str, tmp_path: Path) -> None
         assert [file.read_text() for file in files] == ["x", "y"]
 
 
-def test_a_batch_is_dismissed_and_refused_as_a_whole(address: str, tmp_path: Path) -> None:
+def test_a_batch_is_dismissed_and_refused_as_a_whole(address, tmp_path):
     with LineOfActionClient(address, cache_dir=tmp_path) as client:
         batch = client.batch(client.submit_batch("fake", [{"wish": {"mode": "hang"}}] * 2).id)
         assert batch.dismiss().status == "dismissed"

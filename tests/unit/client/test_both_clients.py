@@ -1,13 +1,9 @@
 """What the blocking and the awaited client share: names, answers, order, bounds, retries."""
 
-from __future__ import annotations
-
 import inspect
 import json
 import time
-from collections.abc import Iterator
 from itertools import pairwise
-from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
@@ -44,16 +40,16 @@ def public(surface: type) -> dict[str, str]:
     ("blocking", "awaited"),
     [(LineOfActionClient, AsyncLineOfActionClient), (Job, AsyncJob), (Batch, AsyncBatch)],
 )
-def test_both_have_one_surface(blocking: type, awaited: type) -> None:
+def test_both_have_one_surface(blocking, awaited):
     assert public(blocking) == public(awaited)
     assert {"submit", "events"} <= set(public(LineOfActionClient)) and {"result"} <= set(public(Job))
 
 
-def test_a_live_question_has_the_options_of_its_schema_and_no_others(tmp_path: Path) -> None:
+def test_a_live_question_has_the_options_of_its_schema_and_no_others(tmp_path):
     assert set(LiveOptions.__annotations__) == set(LiveInput.model_fields) - {"torque_n_m"}
     asked: list[Any] = []
 
-    def answer(request: httpx2.Request) -> httpx2.Response:
+    def answer(request):
         asked.append(json.loads(request.content))
         return httpx2.Response(404, json=NotFound("no table").as_json())
 
@@ -66,13 +62,13 @@ def test_a_live_question_has_the_options_of_its_schema_and_no_others(tmp_path: P
     assert question["pinion"] == dict(relief)
 
 
-def test_both_answer_alike(tmp_path: Path) -> None:
-    def blocking() -> list[Any]:
+def test_both_answer_alike(tmp_path):
+    def blocking():
         with against(StoredJobs(), tmp_path / "a") as client:
             job = client.analyze.submit(case(20))
             return [job.file().read_text(), job.state.status, job.wait(), client.status(job.id)]
 
-    async def awaited() -> list[Any]:
+    async def awaited():
         async with awaited_against(StoredJobs(), tmp_path / "b") as client:
             job = await client.analyze.submit(case(20))
             file = await job.file()
@@ -82,16 +78,16 @@ def test_both_answer_alike(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("concurrency", [1, 3, 8])
-def test_a_map_keeps_the_order_and_the_bound(tmp_path: Path, concurrency: int) -> None:
+def test_a_map_keeps_the_order_and_the_bound(tmp_path, concurrency):
     """Each job is looked at another number of times; none is entered before there is room for it."""
     teeth = range(12, 40)
 
-    def blocking(network: StoredJobs) -> list[str]:
+    def blocking(network):
         with against(network, tmp_path / "a") as client:
             jobs = client.analyze.map(map(case, teeth), concurrency=concurrency)
             return [job.file().read_text() for job in jobs]
 
-    async def awaited(network: StoredJobs) -> list[str]:
+    async def awaited(network):
         async with awaited_against(network, tmp_path / "b") as client:
             jobs = client.analyze.map(map(case, teeth), concurrency=concurrency)
             return [(await job.file()).read_text() async for job in jobs]
@@ -103,10 +99,10 @@ def test_a_map_keeps_the_order_and_the_bound(tmp_path: Path, concurrency: int) -
     assert (one.most_running, other.most_running) == (concurrency, concurrency)
 
 
-def test_a_map_takes_its_subjects_as_it_needs_them(tmp_path: Path) -> None:
+def test_a_map_takes_its_subjects_as_it_needs_them(tmp_path):
     taken: list[int] = []
 
-    def cases() -> Iterator[dict[str, Any]]:
+    def cases():
         for teeth in range(12, 10_000):
             taken.append(teeth)
             yield case(teeth)
@@ -118,10 +114,10 @@ def test_a_map_takes_its_subjects_as_it_needs_them(tmp_path: Path) -> None:
     assert len(taken) <= 5 + 4
 
 
-def test_a_job_that_fails_does_not_end_the_map(tmp_path: Path) -> None:
+def test_a_job_that_fails_does_not_end_the_map(tmp_path):
     stored = StoredJobs()
 
-    def answer(request: httpx2.Request) -> httpx2.Response:
+    def answer(request):
         if "analyze-13" in request.url.path:
             if request.url.path.endswith("/results"):
                 return httpx2.Response(500, json=JobFailed("no mesh").as_json())
@@ -137,10 +133,10 @@ def test_a_job_that_fails_does_not_end_the_map(tmp_path: Path) -> None:
             list(client.analyze.map([case(20), case(-1)]))
 
 
-def test_a_map_asks_nothing_of_what_this_version_gave_before(tmp_path: Path) -> None:
+def test_a_map_asks_nothing_of_what_this_version_gave_before(tmp_path):
     network = StoredJobs()
 
-    def mapped() -> list[str]:
+    def mapped():
         with against(network, tmp_path) as client:
             jobs = list(client.analyze.map(map(case, (12, 13))))
             assert (
@@ -159,10 +155,10 @@ def test_a_map_asks_nothing_of_what_this_version_gave_before(tmp_path: Path) -> 
     assert mapped() == first and len(network.keys) == 6
 
 
-def test_a_submission_that_is_sent_again_is_the_same_request(tmp_path: Path) -> None:
+def test_a_submission_that_is_sent_again_is_the_same_request(tmp_path):
     stored, sent = StoredJobs(), [0]
 
-    def answer(request: httpx2.Request) -> httpx2.Response:
+    def answer(request):
         reply = stored(request)
         if request.method == "POST":
             sent[0] += 1
@@ -184,25 +180,25 @@ def event(progress: int, status: str = "running") -> bytes:
 
 
 @pytest.mark.parametrize("size", [1, 2, 3, 7, 50, 10_000])
-def test_events_are_read_from_pieces_of_any_size(size: int) -> None:
+def test_events_are_read_from_pieces_of_any_size(size):
     text = event(1) + b": the job goes on\r\n\r\n" + event(2).replace(b"\n", b"\r\n") + event(100)[:-2]
     reader = EventReader()
     documents = [d for at in range(0, len(text), size) for d in reader.documents(text[at : at + size])]
     assert [document["progress"] for document in documents] == [1, 2]  # the last one is not complete
 
 
-def test_a_stream_that_breaks_is_taken_up_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_stream_that_breaks_is_taken_up_again(tmp_path, monkeypatch):
     monkeypatch.setattr(time, "sleep", lambda _seconds: None)
     opened: list[str] = []
 
-    def pieces() -> Iterator[bytes]:
+    def pieces():
         yield event(1)
         if len(opened) == 1:
             yield event(2)[:30]
             raise httpx2.ReadError("the line broke")
         yield event(3) + event(100, "successful")
 
-    def answer(request: httpx2.Request) -> httpx2.Response:
+    def answer(request):
         opened.append(request.url.path)
         return httpx2.Response(200, content=pieces(), headers={"Content-Type": "text/event-stream"})
 
@@ -212,7 +208,7 @@ def test_a_stream_that_breaks_is_taken_up_again(tmp_path: Path, monkeypatch: pyt
     assert opened == ["/v1/jobs/j/events"] * 2
 
 
-def test_events_of_what_is_no_stream_are_refused(tmp_path: Path) -> None:
+def test_events_of_what_is_no_stream_are_refused(tmp_path):
     for reply in (
         httpx2.Response(200, text="<html>"),
         httpx2.Response(200, headers={"Content-Type": "text/event-stream"}),
@@ -226,12 +222,10 @@ def test_events_of_what_is_no_stream_are_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("limit", "requests"), [(None, 3), (1, 1), (100, 1), (101, 2), (250, 3), (900, 3)])
-def test_lists_come_page_by_page_as_far_as_they_are_wanted(
-    tmp_path: Path, limit: int | None, requests: int
-) -> None:
+def test_lists_come_page_by_page_as_far_as_they_are_wanted(tmp_path, limit, requests):
     asked: list[httpx2.URL] = []
 
-    def answer(request: httpx2.Request) -> httpx2.Response:
+    def answer(request):
         asked.append(request.url)
         begin, size = int(request.url.params.get("cursor", 0)), int(request.url.params["limit"])
         numbers = range(begin, min(begin + size, 250))

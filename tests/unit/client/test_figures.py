@@ -1,9 +1,6 @@
 """Figures of results as the client has them: typed by kind, whole, and read by name as before."""
 
-from __future__ import annotations
-
 import json
-from pathlib import Path
 from typing import Any, get_type_hints
 
 import pytest
@@ -30,7 +27,7 @@ ABLATION = OF_FILE | {
 }
 
 
-def test_every_kind_has_a_model_of_its_own() -> None:
+def test_every_kind_has_a_model_of_its_own():
     models = {kind: figures_model(kind) for kind in RESULT_KINDS}
     assert len(set(models.values())) == len(RESULT_KINDS) == len(STUDIES) + 2
     assert all(issubclass(model, Figures) and model is not Figures for model in models.values())
@@ -38,22 +35,22 @@ def test_every_kind_has_a_model_of_its_own() -> None:
     assert figures_model("of a later version") is Figures
 
 
-def test_a_table_says_what_is_declared() -> None:
+def test_a_table_says_what_is_declared():
     check_declared("database", json.loads(json.dumps(metadata_json(small_table()))))
 
 
-def test_members_are_read_as_attributes_and_by_their_names() -> None:
+def test_members_are_read_as_attributes_and_by_their_names():
     figures = figures_model("ablation").model_validate(ABLATION)
-    assert figures.nominal.mean_um == [1.0]  # type: ignore[attr-defined]
+    assert figures.nominal.mean_um == [1.0]
     assert figures["nominal"] == ABLATION["nominal"]
     for missing in ("nominals", "torque_n_m"):  # of a case alone
         with pytest.raises(KeyError):
             figures[missing]
     with pytest.raises(ValidationError):
-        figures.of = "scene"  # type: ignore[attr-defined]
+        figures.of = "scene"
 
 
-def test_what_a_later_service_adds_is_kept() -> None:
+def test_what_a_later_service_adds_is_kept():
     later = ABLATION | {"moon": "full"}
     figures = figures_model("ablation").model_validate(later)
     assert document(figures) == later and figures["moon"] == "full"
@@ -67,7 +64,7 @@ class Octaves(Part):
     speed_rpm: float
 
 
-def test_a_name_that_figures_share_is_none_of_theirs() -> None:
+def test_a_name_that_figures_share_is_none_of_theirs():
     figures = figures_of(Octaves, {"speed": 60.0 * RPM}, band_hz=[1.0], band_db=[2.0])
     assert figures == {"band_hz": [1.0], "band_db": [2.0], "speed_rpm": 60.0}
     with pytest.raises(TypeError, match="one figure of Octaves: band"):
@@ -78,7 +75,7 @@ def test_a_name_that_figures_share_is_none_of_theirs() -> None:
         figures_of(Octaves, {"speed": 1.0, "band": [1.0]})
 
 
-def test_no_call_returns_a_bare_dictionary() -> None:
+def test_no_call_returns_a_bare_dictionary():
     """Of all that clients and jobs offer, as annotated."""
     for surface in (LineOfActionClient, AsyncLineOfActionClient, Job, AsyncJob):
         for kind in surface.__mro__:
@@ -88,7 +85,7 @@ def test_no_call_returns_a_bare_dictionary() -> None:
                     assert "dict" not in returned.lower() and "Mapping" not in returned, (name, returned)
 
 
-def test_a_job_reads_the_figures_of_its_kind(tmp_path: Path) -> None:
+def test_a_job_reads_the_figures_of_its_kind(tmp_path):
     network = StoredJobs()
     table: dict[str, Any] = OF_FILE | json.loads(json.dumps(metadata_json(small_table())))
     with against(network, tmp_path) as client:

@@ -1,16 +1,12 @@
 """Services that go away in the middle, and callers that do: no job is lost, none is left unsaid."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import time
-from collections.abc import Iterator
 from contextlib import aclosing
 from datetime import UTC, datetime, timedelta
 from email.utils import format_datetime
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from pathlib import Path
 from threading import Thread
 
 import httpx2
@@ -45,7 +41,7 @@ class Restarting(StoredJobs):
 
 
 @pytest.mark.parametrize("period", [4, 5, 7, 11])
-def test_a_map_outlasts_restarts_wherever_they_fall(tmp_path: Path, slept: list[float], period: int) -> None:
+def test_a_map_outlasts_restarts_wherever_they_fall(tmp_path, slept, period):
     network = Restarting(slept, period, seconds=10.0)
     with against(network, tmp_path) as client:
         jobs = client.analyze.map(map(case, range(12, 20)), concurrency=3)
@@ -54,7 +50,7 @@ def test_a_map_outlasts_restarts_wherever_they_fall(tmp_path: Path, slept: list[
     assert len(set(network.keys)) == 8  # what is sent again is the same submission
 
 
-def test_a_map_ends_when_the_service_stays_away(tmp_path: Path, slept: list[float]) -> None:
+def test_a_map_ends_when_the_service_stays_away(tmp_path, slept):
     with (
         against(Restarting(slept, 6, seconds=1e6), tmp_path, patience=30.0) as client,
         pytest.raises(Unreachable) as caught,
@@ -64,10 +60,10 @@ def test_a_map_ends_when_the_service_stays_away(tmp_path: Path, slept: list[floa
     assert any("continues at the service" in note for note in caught.value.__notes__)
 
 
-def test_a_full_queue_delays_a_map(tmp_path: Path, slept: list[float]) -> None:
+def test_a_full_queue_delays_a_map(tmp_path, slept):
     network, full = StoredJobs(), QueueFull("100 computations wait already.").as_json()
 
-    def answer(request: httpx2.Request) -> httpx2.Response:
+    def answer(request):
         if request.method == "POST" and sum(slept) < 40.0:
             return httpx2.Response(429, json=full, headers={"Retry-After": "7"})
         return network(request)
@@ -76,19 +72,19 @@ def test_a_full_queue_delays_a_map(tmp_path: Path, slept: list[float]) -> None:
         assert len(list(client.analyze.map(map(case, (12, 13))))) == 2
 
 
-def test_a_restart_while_the_result_is_fetched_is_waited_out(tmp_path: Path, slept: list[float]) -> None:
+def test_a_restart_while_the_result_is_fetched_is_waited_out(tmp_path, slept):
     network = StoredJobs()
     with against(network, tmp_path) as client:
         job = client.analyze.submit(case(20))
         result = job.wait()
         begin = sum(slept)
 
-        def answer(request: httpx2.Request) -> httpx2.Response:
+        def answer(request):
             if sum(slept) - begin < 20.0:
                 raise httpx2.ConnectError("refused")
             return network(request)
 
-        client.driver._http._transport = httpx2.MockTransport(answer)  # type: ignore[assignment]
+        client.driver._http._transport = httpx2.MockTransport(answer)
         assert job.file().read_text() == "analyze-20"
     assert result.kind == "database"
 
@@ -113,7 +109,7 @@ class Endless(StoredJobs):
 UNDER_WAY = {"analyze-14", "analyze-15", "analyze-16"}
 
 
-def test_a_loop_left_early_dismisses_what_is_under_way(tmp_path: Path) -> None:
+def test_a_loop_left_early_dismisses_what_is_under_way(tmp_path):
     network = Endless()
     with against(network, tmp_path) as client:
         for job in client.analyze.map(map(case, range(13, 40)), concurrency=4):
@@ -122,10 +118,10 @@ def test_a_loop_left_early_dismisses_what_is_under_way(tmp_path: Path) -> None:
         assert network.dismissed == network.running == UNDER_WAY
 
 
-def test_an_awaited_loop_left_early_dismisses_what_is_under_way(tmp_path: Path) -> None:
+def test_an_awaited_loop_left_early_dismisses_what_is_under_way(tmp_path):
     network = Endless()
 
-    async def left() -> None:
+    async def left():
         async with awaited_against(network, tmp_path) as client:
             async with aclosing(client.analyze.map(map(case, range(13, 40)), concurrency=4)) as jobs:
                 async for job in jobs:
@@ -144,12 +140,10 @@ def noted(error: BaseException) -> set[str]:
 
 
 @pytest.mark.parametrize("looks", [3, 4, 9])
-def test_ctrl_c_in_a_map_says_which_jobs_continue(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, looks: int
-) -> None:
+def test_ctrl_c_in_a_map_says_which_jobs_continue(tmp_path, monkeypatch, looks):
     network, pauses = Endless(), [0]
 
-    def stop(_seconds: float) -> None:
+    def stop(_seconds):
         pauses[0] += 1
         if pauses[0] > looks:
             raise KeyboardInterrupt
@@ -162,17 +156,17 @@ def test_ctrl_c_in_a_map_says_which_jobs_continue(
     assert noted(caught.value) == network.running and network.running and not network.dismissed
 
 
-def test_what_is_cancelled_says_which_jobs_continue(tmp_path: Path) -> None:
+def test_what_is_cancelled_says_which_jobs_continue(tmp_path):
     network = Endless()
 
-    async def cancelled() -> tuple[BaseException, BaseException]:
+    async def cancelled():
         async with awaited_against(network, tmp_path) as client:
 
-            async def mapped() -> None:
+            async def mapped():
                 async for _ in client.analyze.map(map(case, range(14, 40)), concurrency=3):
                     pass
 
-            async def waited() -> None:
+            async def waited():
                 await client.wait("analyze-99")
 
             errors = []
@@ -189,15 +183,13 @@ def test_what_is_cancelled_says_which_jobs_continue(tmp_path: Path) -> None:
     assert noted(of_map) == UNDER_WAY and noted(of_wait) == {"analyze-99"} and not network.dismissed
 
 
-def test_a_map_of_no_jobs_at_once_is_refused(tmp_path: Path) -> None:
+def test_a_map_of_no_jobs_at_once_is_refused(tmp_path):
     with against(StoredJobs(), tmp_path) as client, pytest.raises(BadInput, match="concurrency = 0"):
         list(client.analyze.map([case(20)], concurrency=0))
 
 
 @pytest.mark.parametrize("ahead", [timedelta(hours=-3), timedelta(0), timedelta(hours=3)])
-def test_a_clock_that_is_wrong_does_not_change_the_pause(
-    tmp_path: Path, slept: list[float], ahead: timedelta
-) -> None:
+def test_a_clock_that_is_wrong_does_not_change_the_pause(tmp_path, slept, ahead):
     """The service says when by its own clock, which its answer shows."""
     theirs = datetime.now(UTC) + ahead
     when = {"Date": theirs, "Retry-After": theirs + timedelta(seconds=6)}
@@ -207,11 +199,9 @@ def test_a_clock_that_is_wrong_does_not_change_the_pause(
     assert slept == [6.0]
 
 
-def test_events_that_are_interrupted_say_so_and_those_that_end_do_at_once(
-    tmp_path: Path, slept: list[float]
-) -> None:
-    def stream(status: str, error: type[BaseException] | None) -> httpx2.Response:
-        def pieces() -> Iterator[bytes]:
+def test_events_that_are_interrupted_say_so_and_those_that_end_do_at_once(tmp_path, slept):
+    def stream(status, error):
+        def pieces():
             yield b"data: " + json.dumps(state("j", status)).encode() + b"\n\n"
             if error is not None:
                 raise error
@@ -225,13 +215,13 @@ def test_events_that_are_interrupted_say_so_and_those_that_end_do_at_once(
     assert last.ended and slept == []
 
 
-def test_a_body_that_ends_too_early_is_asked_for_again(tmp_path: Path) -> None:
+def test_a_body_that_ends_too_early_is_asked_for_again(tmp_path):
     """By a real server: the first answer promises more bytes than come."""
     body = json.dumps(state("j", "running")).encode()
     asked: list[str] = []
 
     class Handler(BaseHTTPRequestHandler):
-        def do_GET(self) -> None:
+        def do_GET(self):
             asked.append(self.path)
             self.send_response(200)
             self.send_header("Content-Type", "application/json")
@@ -239,7 +229,7 @@ def test_a_body_that_ends_too_early_is_asked_for_again(tmp_path: Path) -> None:
             self.end_headers()
             self.wfile.write(body if len(asked) > 1 else body[:20])
 
-        def log_message(self, *_args: object) -> None:
+        def log_message(self, *_args):
             """Say nothing."""
 
     server = ThreadingHTTPServer(("127.0.0.1", 0), Handler)

@@ -1,12 +1,9 @@
 """An address of the page is the case and the result that it shows; a hostile one is an error."""
 
-from __future__ import annotations
-
 import base64
 import json
 import zlib
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import httpx2
@@ -60,7 +57,7 @@ def service(request: httpx2.Request) -> httpx2.Response:
     return httpx2.Response(200, json=answer)
 
 
-def test_a_case_is_packed_as_by_the_page() -> None:
+def test_a_case_is_packed_as_by_the_page():
     page = PageAddress.of(f"{ADDRESS}/#case={BY_THE_PAGE}")
     assert page.case == validated(Case, relieved())
     numbers = json.dumps(relieved(), ensure_ascii=False, separators=(",", ":")).replace(".0", "")
@@ -83,9 +80,7 @@ def test_a_case_is_packed_as_by_the_page() -> None:
         (f"#case={packed(case(24))}&a={KEY}..{packed(case(25))}&c=first&on=b&motion=3", 24, None),
     ],
 )
-def test_an_address_is_the_case_and_the_result_that_it_shows(
-    fragment: str, teeth: int, result: str | None, tmp_path: Path
-) -> None:
+def test_an_address_is_the_case_and_the_result_that_it_shows(fragment, teeth, result, tmp_path):
     with against(service, tmp_path) as client:
         assert client.case_at(f"{ADDRESS}/{fragment}") == validated(Case, case(teeth))
         if result is not None:
@@ -95,7 +90,7 @@ def test_an_address_is_the_case_and_the_result_that_it_shows(
             client.result_at(f"{ADDRESS}/{fragment}")
 
 
-def test_nothing_that_is_known_is_not_found(tmp_path: Path) -> None:
+def test_nothing_that_is_known_is_not_found(tmp_path):
     with against(service, tmp_path) as client, pytest.raises(NotFound):
         client.case_at(f"{ADDRESS}/#database={OTHER}")
 
@@ -104,7 +99,6 @@ def test_nothing_that_is_known_is_not_found(tmp_path: Path) -> None:
 
 
 def typed(content: object) -> str:
-    """Return the address of a design as typed."""
     return f"{ADDRESS}/#case={packed(content)}"
 
 
@@ -150,17 +144,17 @@ HOSTILE = {
 
 
 @pytest.fixture
-def asked(monkeypatch: pytest.MonkeyPatch) -> list[httpx2.Request]:
+def asked(monkeypatch):
     """Requests of the command line, which the service in memory answers."""
     requests: list[httpx2.Request] = []
 
-    def answer(request: httpx2.Request) -> httpx2.Response:
+    def answer(request):
         requests.append(request)
         return service(request)
 
     plain: Callable[..., None] = BlockingDriver.__init__
 
-    def connect(driver: BlockingDriver, _: object, options: dict[str, Any]) -> None:
+    def connect(driver, _, options):
         plain(driver, httpx2.MockTransport(answer), options)
 
     monkeypatch.setattr(BlockingDriver, "__init__", connect)
@@ -172,9 +166,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[httpx2.Request]:
 @pytest.mark.drawn
 @pytest.mark.parametrize("name", HOSTILE)
 @pytest.mark.parametrize("ending", ["toml", "nc"])
-def test_a_hostile_address_is_one_error_that_names_the_word(
-    name: str, ending: str, asked: list[httpx2.Request], tmp_path: Path
-) -> None:
+def test_a_hostile_address_is_one_error_that_names_the_word(name, ending, asked, tmp_path):
     address, word, said = HOSTILE[name]
     refused = loa("fetch", address, "-o", tmp_path / f"x.{ending}")
     assert refused.exit_code == 2, refused.output
@@ -197,13 +189,8 @@ def test_a_hostile_address_is_one_error_that_names_the_word(
 )
 @pytest.mark.parametrize("fragment", [f"case={CASE}", f"database={KEY}", f"analyze={JOB}", ""])
 def test_no_key_and_no_request_leaves_its_service(
-    environment: dict[str, str],
-    option: tuple[str, ...],
-    fragment: str,
-    asked: list[httpx2.Request],
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+    environment, option, fragment, asked, tmp_path, monkeypatch
+):
     for name, value in environment.items():
         monkeypatch.setenv(name, value)
     for ending in ("toml", "nc"):
@@ -214,9 +201,7 @@ def test_no_key_and_no_request_leaves_its_service(
     assert asked == [] and list(tmp_path.iterdir()) == []
 
 
-def test_a_key_goes_to_the_service_that_is_stated(
-    asked: list[httpx2.Request], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_key_goes_to_the_service_that_is_stated(asked, tmp_path, monkeypatch):
     monkeypatch.setenv("LOA_KEY", "mine")
     monkeypatch.setenv("LOA_SERVICE", "http://example.org:80/")
     printed("fetch", f"http://example.org/#database={KEY}", "-o", tmp_path / "case.toml")
@@ -224,16 +209,14 @@ def test_a_key_goes_to_the_service_that_is_stated(
     assert asked[0].headers["authorization"] == "Bearer mine"
 
 
-def test_a_case_as_typed_is_a_file_without_a_request(asked: list[httpx2.Request], tmp_path: Path) -> None:
+def test_a_case_as_typed_is_a_file_without_a_request(asked, tmp_path):
     file = tmp_path / "case.toml"
     assert printed("fetch", f"https://example.org/#case={BY_THE_PAGE}", "-o", file)["kind"] == "case"
     assert read_model(Case, file) == validated(Case, relieved())
     assert asked == []
 
 
-def test_the_result_of_an_edited_design_says_so(
-    asked: list[httpx2.Request], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_result_of_an_edited_design_says_so(asked, tmp_path, monkeypatch):
     stored, file = tmp_path / "stored.nc", tmp_path / "ste.nc"
     small_table().to_netcdf(stored)
     monkeypatch.setattr(

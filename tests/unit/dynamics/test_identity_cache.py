@@ -1,7 +1,5 @@
 """Results that are kept by the identity of what they are made from."""
 
-from __future__ import annotations
-
 import gc
 import weakref
 from dataclasses import dataclass
@@ -23,7 +21,7 @@ def counted() -> tuple[list[Frozen], object]:
     calls: list[Frozen] = []
 
     @identity_cached
-    def total(data: Frozen, factor: float) -> list[float]:
+    def total(data, factor):
         calls.append(data)
         if factor < 0.0:
             raise ValueError("negative")
@@ -32,7 +30,7 @@ def counted() -> tuple[list[Frozen], object]:
     return calls, total
 
 
-def test_a_result_is_made_once_for_each_object_and_argument() -> None:
+def test_a_result_is_made_once_for_each_object_and_argument():
     calls, total = counted()
     one, equal = Frozen([1.0]), Frozen([1.0])
     assert total(one, 2.0) is total(one, 2.0)
@@ -41,21 +39,21 @@ def test_a_result_is_made_once_for_each_object_and_argument() -> None:
     assert [data is one for data in calls] == [True, False, True]
 
 
-def test_a_tuple_is_the_same_if_its_parts_are() -> None:
+def test_a_tuple_is_the_same_if_its_parts_are():
     one, other = Frozen([1.0]), Frozen([1.0])
     joined = identity_cached(lambda parts: [*parts])
     assert joined((one, other)) is joined((one, other))
     assert joined((one, other)) is not joined((one, one))
 
 
-def test_data_is_the_same_if_the_parts_that_are_read_are() -> None:
+def test_data_is_the_same_if_the_parts_that_are_read_are():
     values = [1.0]
     total = cached_by(lambda data: (data.values,))(lambda data: [sum(data.values)])
     assert total(Frozen(values)) is total(Frozen(values))
     assert total(Frozen(values)) is not total(Frozen([1.0]))
 
 
-def test_an_error_is_raised_each_time() -> None:
+def test_an_error_is_raised_each_time():
     calls, total = counted()
     one = Frozen([1.0])
     for _ in range(2):
@@ -64,7 +62,7 @@ def test_an_error_is_raised_each_time() -> None:
     assert len(calls) == 2
 
 
-def test_only_the_last_results_are_kept() -> None:
+def test_only_the_last_results_are_kept():
     first, total = Frozen([0.0]), identity_cached(lambda data: list(data.values))
     gone = weakref.ref(first)
     total(first)

@@ -1,11 +1,8 @@
 """Predicted and measured cost: speed of the host, log of earlier work, growth of memory, announcement."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -31,23 +28,23 @@ KIND, COST = "work", Cost(10.0, 2e9)
 
 
 @pytest.fixture(autouse=True)
-def _host_three_times_as_slow(monkeypatch: pytest.MonkeyPatch) -> None:
+def _host_three_times_as_slow(monkeypatch):
     monkeypatch.setattr(host_speed, "measured_slowness", lambda: 3.0)
 
 
-def test_a_slow_host_takes_longer_and_no_more_memory(tmp_path: Path) -> None:
+def test_a_slow_host_takes_longer_and_no_more_memory(tmp_path):
     for cache in (None, tmp_path):
         assert on_this_host(KIND, COST, cache) == (30.0, 2e9)
 
 
-def test_earlier_work_of_a_kind_corrects_its_prediction_alone(tmp_path: Path) -> None:
+def test_earlier_work_of_a_kind_corrects_its_prediction_alone(tmp_path):
     for _ in range(5):
         record(tmp_path, {KIND: 30.0}, {KIND: 60.0})
     assert on_this_host(KIND, COST, tmp_path).seconds == pytest.approx(60.0)
     assert on_this_host("other work", COST, tmp_path).seconds == 30.0
 
 
-def test_work_is_logged_beside_its_uncorrected_prediction(tmp_path: Path) -> None:
+def test_work_is_logged_beside_its_uncorrected_prediction(tmp_path):
     """Else a correction would be corrected again, and forgotten after so many runs."""
     for _ in range(5):
         record(tmp_path, {KIND: 30.0}, {KIND: 60.0})
@@ -61,7 +58,7 @@ def test_work_is_logged_beside_its_uncorrected_prediction(tmp_path: Path) -> Non
 
 
 @pytest.mark.skipif(memory_figure("VmRSS") is None, reason="the system does not tell resident memory")
-def test_memory_is_what_the_process_grew_by_or_not_known() -> None:
+def test_memory_is_what_the_process_grew_by_or_not_known():
     """In a process of its own, which is small."""
     done = subprocess.run([sys.executable, "-c", GROWN], capture_output=True, text=True, check=True)
     size, first, second = json.loads(done.stdout)
@@ -69,12 +66,12 @@ def test_memory_is_what_the_process_grew_by_or_not_known() -> None:
     assert second is None
 
 
-def test_one_after_the_other_seconds_add_up_and_memory_is_used_again() -> None:
+def test_one_after_the_other_seconds_add_up_and_memory_is_used_again():
     assert COST.then(Cost(5.0, 3e9)) == (15.0, 3e9)
     assert COST.times(4) == (40.0, 2e9)
 
 
-def test_what_takes_a_moment_is_not_announced() -> None:
+def test_what_takes_a_moment_is_not_announced():
     told: list[tuple[str, float]] = []
     announce(lambda *step: told.append(step), "housing", "case", Cost(2.9, 1e9))
     assert not told

@@ -1,7 +1,5 @@
 """Plausibility in Python: warned of once in SI units, kept with the result; numbers stay as they are."""
 
-from __future__ import annotations
-
 import warnings
 from pathlib import Path
 
@@ -34,7 +32,7 @@ def said_by(pair: GearPair, torque: float) -> tuple[SteDatabase, list[str]]:
     return database, plausible
 
 
-def test_millimeters_are_recognized_by_the_line_that_asked(tmp_path: Path) -> None:
+def test_millimeters_are_recognized_by_the_line_that_asked(tmp_path):
     """A module of 4 is 4 m; scaled loads give the scaled table, and one warning, which the file keeps."""
     wrong, said = said_by(pair_of(4.0), 100.0e9)
     right, nothing = said_by(pair_of(4.0, 1e-3), 100.0)
@@ -60,7 +58,7 @@ def test_millimeters_are_recognized_by_the_line_that_asked(tmp_path: Path) -> No
     assert {Path(one.filename).name for one in caught} == {Path(__file__).name}
 
 
-def test_torque_in_newton_millimeters_warns_once_of_each_consequence() -> None:
+def test_torque_in_newton_millimeters_warns_once_of_each_consequence():
     """What the estimates announce before the run is not said again of its results."""
     database, said = said_by(pair_of(4.0, 1e-3), 1e5)
     assert len(said) == len(set(said)) == 4
@@ -71,7 +69,7 @@ def test_torque_in_newton_millimeters_warns_once_of_each_consequence() -> None:
     assert solved["transmission_error"] == "transmission_error"
 
 
-def test_estimates_are_near_what_is_solved() -> None:
+def test_estimates_are_near_what_is_solved():
     """Pressure within 10 % at the pitch point, deflection within 40 %."""
     pair = pair_of(4.0, 1e-3)
     database, _ = said_by(pair, 400.0)
@@ -84,7 +82,7 @@ def test_estimates_are_near_what_is_solved() -> None:
     )
 
 
-def test_the_nominal_root_stress_is_that_of_iso_6336_3() -> None:
+def test_the_nominal_root_stress_is_that_of_iso_6336_3():
     """Y_F Y_S of the pinion of 20 teeth without shift, load at the end of single contact: 1.45 x 1.9."""
     pair = pair_of(4.0, 1e-3)
     force = float(pair.normal_force(100.0))
@@ -95,7 +93,7 @@ def test_the_nominal_root_stress_is_that_of_iso_6336_3() -> None:
     assert 2.3 < factor < 3.3
 
 
-def test_findings_begin_at_their_limits() -> None:
+def test_findings_begin_at_their_limits():
     """At 2.6 GPa of pressure, 2 GPa at a root and a tenth of the module; failed points are not assessed."""
     table, hertz = np.full((8, 1, 1, 1), 1e-6), ["hertz_pressure"]
     for pressure, checks in ((2.5e9, []), (2.7e9, hertz)):

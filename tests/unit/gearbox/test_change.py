@@ -1,7 +1,5 @@
 """What a change of flanks brings: laws of levels over one sample of tolerances."""
 
-from __future__ import annotations
-
 import copy
 from dataclasses import replace
 from functools import cache
@@ -66,7 +64,7 @@ def relieved() -> FlankChange:
     return compared(None, RELIEVED)
 
 
-def test_equal_flanks_change_nothing_of_any_pair() -> None:
+def test_equal_flanks_change_nothing_of_any_pair():
     same = compared(case(), case())
     assert np.array_equal(same.before.pairs, same.after.pairs)
     assert not same.change.any() and not same.louder_share.any() and not list(same.louder())
@@ -74,7 +72,7 @@ def test_equal_flanks_change_nothing_of_any_pair() -> None:
 
 
 @pytest.mark.law
-def test_levels_of_a_draft_differ_from_finer_ones_by_no_more_than_their_errors() -> None:
+def test_levels_of_a_draft_differ_from_finer_ones_by_no_more_than_their_errors():
     """As designed and the change, of all orders and of those within 25 dB; bands hold the errors."""
     found = {}
     for level in ("draft", "standard"):
@@ -94,7 +92,7 @@ def test_levels_of_a_draft_differ_from_finer_ones_by_no_more_than_their_errors()
 
 
 @pytest.mark.law
-def test_all_orders_are_those_of_the_mesh() -> None:
+def test_all_orders_are_those_of_the_mesh():
     """What an unbalance excites at the order of its shaft is heard with any flanks, and not compared."""
     own = scene()
     own["unbalances"] = [{"name": "heavy", "shaft": "input", "position_mm": 100.0, "amount_g_mm": 100.0}]
@@ -104,14 +102,14 @@ def test_all_orders_are_those_of_the_mesh() -> None:
     assert np.all(found.before.nominal[:, 0] >= found.before.nominal[:, 1:].max(axis=1) - 1e-9)
 
 
-def test_the_other_way_round_changes_the_sign() -> None:
+def test_the_other_way_round_changes_the_sign():
     """Each level is one of a pair: it does not depend on which design the transfer functions are about."""
     back = compared(RELIEVED, case())
     np.testing.assert_allclose(back.change, -relieved().change, atol=1e-6)
     np.testing.assert_allclose(back.nominal_change, -relieved().nominal_change, atol=1e-6)
 
 
-def test_the_same_deviations_leave_less_spread_than_two_samples() -> None:
+def test_the_same_deviations_leave_less_spread_than_two_samples():
     own = relieved()
     before, after = own.before.pairs[:, :, 0], own.after.pairs[:, :, 0]
     together = (after - before).std(axis=0)
@@ -119,14 +117,14 @@ def test_the_same_deviations_leave_less_spread_than_two_samples() -> None:
     assert np.all(together < apart)
 
 
-def test_the_sample_is_that_of_the_tolerances_of_the_case() -> None:
+def test_the_sample_is_that_of_the_tolerances_of_the_case():
     drawn = scatter(case(), {"samples": PAIRS, "tolerance_class": 3})
     assert relieved().names == drawn.names
     assert np.array_equal(relieved().deviation, drawn.deviation)
 
 
 @pytest.mark.parametrize("side", ["before", "after"])
-def test_as_designed_is_what_a_whole_analysis_of_the_scene_gives(side: str) -> None:
+def test_as_designed_is_what_a_whole_analysis_of_the_scene_gives(side):
     """Bearing forces of the forced response with the table of the case lie within the stated error."""
     whole = scene()
     whole["meshes"][0]["case"] = RELIEVED if side == "after" else case()
@@ -139,11 +137,11 @@ def test_as_designed_is_what_a_whole_analysis_of_the_scene_gives(side: str) -> N
     assert np.max(np.abs(off[loud])) > 0.1  # by the stiffness that varies
 
 
-def test_twice_the_transmission_error_is_6_db_louder(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_twice_the_transmission_error_is_6_db_louder(monkeypatch):
     """A spur pair whose stiffness is the same everywhere: its transmission error alone excites it."""
     involute = HeardFlanks.table
 
-    def waved(self: HeardFlanks, pair: Any, misalignment: float = 0.0) -> SteDatabase:
+    def waved(self, pair, misalignment=0.0):
         plain = self.bodies.checked.request.pair
         twice = pair.pinion.modification.tip_relief > 0.0
         return rippling(involute(self, plain, misalignment), 2e-8 if twice else 1e-8)
@@ -154,7 +152,7 @@ def test_twice_the_transmission_error_is_6_db_louder(monkeypatch: pytest.MonkeyP
     np.testing.assert_allclose(louder.change[:, :, :2], 20.0 * np.log10(2.0), atol=1e-3)
 
 
-def test_a_requirement_is_met_or_not() -> None:
+def test_a_requirement_is_met_or_not():
     own = relieved()
     high = own.after.quantiles()[2, :, 0].max()
     met, missed = (compared(None, RELIEVED, requirement_db=float(high) + step) for step in (0.1, -0.1))
@@ -192,14 +190,14 @@ def deviating(own: Json, names: tuple[str, ...], deviation: np.ndarray) -> Json:
 
 @pytest.mark.nightly
 @pytest.mark.filterwarnings("ignore:.*smaller than can be made")
-def test_quantiles_are_those_of_whole_analyses_of_the_pairs() -> None:
+def test_quantiles_are_those_of_whole_analyses_of_the_pairs():
     """Of a helical pair in three dimensions, whose load travels along the face."""
     speeds: Json = {"speed_rpm": [1000.0, 3000.0, 6000.0], "orders": 3}
     designs = helical_case(), helical_case(tip_relief_um=4.0, tip_relief_length_mm=0.4, helix_crowning_um=3.0)
     tolerances = {"samples": 200, "tolerance_class": 4}
     own = change(helical(), {"after": designs[1], "tolerances": tolerances, **speeds})
 
-    def level(case: Json) -> float:
+    def level(case):
         force = response(helical(case), speeds).bearing_force[:, :3]
         return float(10.0 * np.log10(0.5 * np.sum(np.abs(force) ** 2, axis=(0, 1, 3)).max()))
 
@@ -218,7 +216,7 @@ def test_quantiles_are_those_of_whole_analyses_of_the_pairs() -> None:
 
 
 @pytest.mark.nightly
-def test_nine_of_ten_further_pairs_lie_in_the_band() -> None:
+def test_nine_of_ten_further_pairs_lie_in_the_band():
     """In the mean over samples of 200: one alone covers 2 % more or less."""
     question = {"load_cases": [{"name": "whole"}]}
     further = compared(
@@ -237,7 +235,7 @@ def test_nine_of_ten_further_pairs_lie_in_the_band() -> None:
         assert 0.87 <= np.mean(covered) <= 0.93
 
 
-def test_a_scene_without_bearings_is_refused_before_it_is_solved() -> None:
+def test_a_scene_without_bearings_is_refused_before_it_is_solved():
     """Forces on bearings are what is heard; without one there is no level to compare."""
     bare = scene() | {"bushings": [], "rolling_bearings": [], "planet_bearings": []}
     with pytest.raises(BadInput, match=r"scene\.bushings = nothing: must be at least one bearing"):

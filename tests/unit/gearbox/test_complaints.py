@@ -1,15 +1,13 @@
 """Complaints: the mesh and the harmonic that teeth, ratios and speeds give by hand, and bad questions."""
 
-from __future__ import annotations
-
 import json
 import math
 import tomllib
-from pathlib import Path
 from typing import Any
 
 import pytest
 from pytest import approx
+from repository import ROOT
 from typer.testing import CliRunner
 
 import lineofaction as loa
@@ -17,12 +15,7 @@ from dynamics.mechanism.passing import MESH, SIDEBAND
 from lineofaction.cli.commands import app
 from lineofaction.gearbox.convert.case_plausibility import case_warnings
 from lineofaction.gearbox.convert.checked_case import CheckedCase
-from lineofaction.gearbox.convert.complaint import (
-    Complaint,
-    complaint_of,
-    complaint_of_case,
-    marks_of_case,
-)
+from lineofaction.gearbox.convert.complaint import Complaint, complaint_of, complaint_of_case, marks_of_case
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import validated
@@ -34,7 +27,6 @@ from lineofaction.report.drawing.marks import of_run
 from lineofaction.report.response.complaint import PAGE
 
 Json = dict[str, Any]
-ROOT = Path(__file__).parents[3]
 ANGLE = math.radians(20.0)
 
 
@@ -81,7 +73,6 @@ def planetary(held: str = "ring") -> Json:
 
 
 def asked(scene: Json, levels: dict[str, tuple[float, ...]] | None = None, **fields: Any) -> Complaint:
-    """Return the complaint of a scene, all of it checked as every study does."""
     stated = validated(SceneInput, scene | {"complaint": fields})
     return complaint_of(stated, check_scene(stated, {}), levels or {})
 
@@ -136,9 +127,7 @@ CASES: tuple[tuple[Json, Json, list[str], float], ...] = (
 
 
 @pytest.mark.parametrize(("scene", "fields", "names", "hertz"), CASES)
-def test_the_mesh_and_the_harmonic_are_those_of_the_table(
-    scene: Json, fields: Json, names: list[str], hertz: float
-) -> None:
+def test_the_mesh_and_the_harmonic_are_those_of_the_table(scene, fields, names, hertz):
     complaint = asked(scene, **fields)
     within = complaint.within
     assert [f"{each.excitation.name} h{each.harmonic}" for each in within] == names
@@ -147,7 +136,7 @@ def test_the_mesh_and_the_harmonic_are_those_of_the_table(
     assert found is None if math.isnan(hertz) else found == approx(hertz, rel=1e-4)
 
 
-def test_orders_are_counted_as_results_count_them() -> None:
+def test_orders_are_counted_as_results_count_them():
     """Results count by pitches of the first mesh: the second stage's second harmonic is 2/3 of one."""
     complaint = asked(UNIT, frequency_hz=833.0, speed_rpm=3000.0)
     assert complaint.marks["order"] == approx(2.0 / 3.0)
@@ -155,7 +144,7 @@ def test_orders_are_counted_as_results_count_them() -> None:
     assert complaint.marks["axes"]["frequency, Hz"] == 833.0
 
 
-def test_a_far_harmonic_is_no_better_for_being_a_little_nearer() -> None:
+def test_a_far_harmonic_is_no_better_for_being_a_little_nearer():
     """30/41 and 22/61: 1 x 30 and 4 x 22 x 30/41 = 64.39; 61 of 60 and 64.39 lies between twice and that."""
     complaint = asked(train((30, 41), (22, 61)), order=62.5)
     near, far = complaint.within
@@ -169,7 +158,7 @@ def test_a_far_harmonic_is_no_better_for_being_a_little_nearer() -> None:
     assert complaint.marks["order"] == approx(2.0)
 
 
-def test_what_excites_more_is_likelier() -> None:
+def test_what_excites_more_is_likelier():
     """The same with 1 N by harmonic 2 of the first stage, 3 N by harmonic 4 of the second."""
     levels = {"mesh 0": (9.0, 1.0), "mesh 1": (9.0, 9.0, 9.0, 3.0)}
     complaint = asked(train((30, 41), (22, 61)), levels, order=62.5)
@@ -186,7 +175,7 @@ def test_what_excites_more_is_likelier() -> None:
     # ring of 99 at rest, 3 planets: 99 is a multiple of 3, so that 99 - 3, 99 + 3 and 198 + 3 pass
     [(96.0, "lower", 1), (102.0, "upper", 1), (201.0, "upper", 2)],
 )
-def test_planets_pass_beside_the_harmonics_of_their_meshes(order: float, side: str, harmonic: int) -> None:
+def test_planets_pass_beside_the_harmonics_of_their_meshes(order, side, harmonic):
     complaint = asked(planetary(), order=order, shaft="carrier")
     bands = [each for each in complaint.within if each.excitation.kind == SIDEBAND]
     assert {(each.excitation.name, each.excitation.part, each.harmonic) for each in bands} == {
@@ -197,7 +186,7 @@ def test_planets_pass_beside_the_harmonics_of_their_meshes(order: float, side: s
 
 
 @pytest.mark.law
-def test_sidebands_are_those_that_the_planets_leave() -> None:
+def test_sidebands_are_those_that_the_planets_leave():
     """7 planets, ring of 99 at rest: 98 and 105 are multiples of 7, of the sun as well; of 3: 96, 102."""
     for number, orders in ((3, {96.0, 102.0}), (7, {98.0, 105.0})):
         scene = planetary()
@@ -219,14 +208,14 @@ def with_balls(count: int, diameter_mm: float, pitch_diameter_mm: float) -> Json
     return PAIR | {"rolling_bearings": [bearing]}
 
 
-def test_a_bearing_is_named_where_no_mesh_passes() -> None:
+def test_a_bearing_is_named_where_no_mesh_passes():
     """9 balls of 10 mm on 50 mm: 9 (1 - 0.2) / 2 = 3.6 pass the outer ring a revolution; twice is 120 Hz."""
     (only,) = asked(with_balls(9, 10.0, 50.0), frequency_hz=121.0, speed_rpm=1000.0).within
     of = only.excitation
     assert (of.kind, of.name, of.part, only.harmonic) == ("bearing", "left", "outer ring", 2)
 
 
-def test_a_bearing_is_named_behind_a_mesh_only_where_it_is_nearer() -> None:
+def test_a_bearing_is_named_behind_a_mesh_only_where_it_is_nearer():
     """22 balls of 6 mm on 60 mm: 22 (1 + 0.1) / 2 = 12.1 pass the inner ring, twice 24.2; the mesh has 25."""
     scene = with_balls(22, 6.0, 60.0)
     nearer, farther = (asked(scene, order=order).within for order in (24.4, 24.8))
@@ -261,7 +250,7 @@ CASE: Json = {
         ({"order": 50.0}, 2, math.nan),
     ],
 )
-def test_a_case_complains_of_its_pair(fields: Json, harmonic: int, hertz: float) -> None:
+def test_a_case_complains_of_its_pair(fields, harmonic, hertz):
     complaint = complaint_of_case(validated(Case, CASE | {"complaint": fields}))
     (only,) = complaint.within
     assert (only.excitation.kind, only.harmonic) == (MESH, harmonic)
@@ -270,7 +259,7 @@ def test_a_case_complains_of_its_pair(fields: Json, harmonic: int, hertz: float)
     assert complaint.torques == {"pair": 80.0}
 
 
-def test_the_table_of_a_case_is_marked_at_its_harmonic_its_speed_and_its_torque() -> None:
+def test_the_table_of_a_case_is_marked_at_its_harmonic_its_speed_and_its_torque():
     fields = {"frequency_hz": 1400.0, "speed_rpm": 3360.0 / 2.44, "shaft": "wheel", "torque_n_m": 60.0}
     case = validated(Case, CASE | {"complaint": fields})
     marks = of_run(marks_of_case(case.model_dump(mode="json")) or {}, "pair")
@@ -293,7 +282,7 @@ def test_the_table_of_a_case_is_marked_at_its_harmonic_its_speed_and_its_torque(
         ({"frequency_hz": 550.0, "speed_rpm": 1000.0}, "complaint.frequency_hz", "416.7 Hz, off by -24 %"),
     ],
 )
-def test_a_bad_complaint_of_a_case_is_refused_by_every_verb(fields: Json, field: str, said: str) -> None:
+def test_a_bad_complaint_of_a_case_is_refused_by_every_verb(fields, field, said):
     with pytest.raises(BadInput) as error:
         case_warnings(CheckedCase(validated(Case, CASE | {"complaint": fields})))
     (fault,) = error.value.faults
@@ -334,7 +323,7 @@ REFUSED: tuple[tuple[Json, str, str], ...] = (
 
 
 @pytest.mark.parametrize(("fields", "field", "said"), REFUSED)
-def test_a_bad_question_is_one_sentence_that_names_its_field(fields: Json, field: str, said: str) -> None:
+def test_a_bad_question_is_one_sentence_that_names_its_field(fields, field, said):
     with pytest.raises(BadInput) as error:
         asked(PAIR, **fields)
     (fault,) = error.value.faults
@@ -342,7 +331,7 @@ def test_a_bad_question_is_one_sentence_that_names_its_field(fields: Json, field
     assert said in f"{fault.bound} {fault.suggestion}"
 
 
-def test_a_speed_beyond_a_table_of_torques_is_refused() -> None:
+def test_a_speed_beyond_a_table_of_torques_is_refused():
     table = {
         "name": "motor",
         "shaft": "shaft 0",
@@ -359,7 +348,7 @@ def test_a_speed_beyond_a_table_of_torques_is_refused() -> None:
     assert "0 to 2000 rpm" in fault.bound
 
 
-def test_the_shaft_of_the_wheels_is_asked_for_where_several_are_loaded() -> None:
+def test_the_shaft_of_the_wheels_is_asked_for_where_several_are_loaded():
     second = {"name": "pump", "shaft": "shaft 0", "torque_n_m": [1.0]}
     scene = PAIR | {"loads": [*PAIR["loads"], second]}
     with pytest.raises(BadInput, match="2 shafts have a load"):
@@ -367,7 +356,7 @@ def test_the_shaft_of_the_wheels_is_asked_for_where_several_are_loaded() -> None
     assert asked(scene, frequency_hz=1400.0, **AT_40, final_shaft="shaft 1").within
 
 
-def test_an_option_replaces_what_it_is_an_alternative_to() -> None:
+def test_an_option_replaces_what_it_is_an_alternative_to():
     own = ComplaintInput(frequency_hz=1400.0, **AT_40)
     assert with_options(own, ComplaintFields(order=25.0)) == {"order": 25.0, **AT_40}
     by_shaft = with_options(own, ComplaintFields(speed_rpm=1000.0))
@@ -375,14 +364,13 @@ def test_an_option_replaces_what_it_is_an_alternative_to() -> None:
     assert with_options(own, ComplaintFields(road_speed_km_h=50.0))["tire_radius_mm"] == 310.0
 
 
-def test_a_run_keeps_what_its_scene_complains_of(tmp_path: Path) -> None:
+def test_a_run_keeps_what_its_scene_complains_of(tmp_path):
     """By the mesh: its own order, and the speed of the shaft of its driving gear."""
     scene = UNIT | {"complaint": {"frequency_hz": 833.0, "speed_rpm": 3000.0}, "run": {"duration_s": 1e-3}}
     (tmp_path / "scene.json").write_text(json.dumps(scene))
     done = CliRunner().invoke(app, ["simulate", str(tmp_path / "scene.json"), "-o", str(tmp_path / "run.nc")])
     assert done.exit_code == 0, done.stderr
     marks = read_inputs([tmp_path / "run.nc"]).marks
-    assert marks is not None
     assert marks["meshes"] == {
         "mesh 0": {"order": approx(2.0 / 3.0), "driver_rpm": approx(3000.0), "torque_n_m": None},
         "mesh 1": {"order": approx(2.0), "driver_rpm": approx(3000.0 * 25 / 63), "torque_n_m": None},
@@ -391,7 +379,7 @@ def test_a_run_keeps_what_its_scene_complains_of(tmp_path: Path) -> None:
 
 
 @pytest.mark.law
-def test_a_study_over_speed_leaves_out_the_torque_of_a_run_up() -> None:
+def test_a_study_over_speed_leaves_out_the_torque_of_a_run_up():
     """From rest to 1000 rpm in 20 ms: the flanks carry the brake's 10 N m alone, and so does the answer."""
     scene = train((25, 61))
     stiffness = {"value": [3e8], "amplitude": [4e7]}
@@ -404,7 +392,7 @@ def test_a_study_over_speed_leaves_out_the_torque_of_a_run_up() -> None:
     assert rising.mesh_force == approx(running.mesh_force, rel=1e-9)
 
 
-def test_an_answer_names_the_speed_of_its_complaint_not_that_of_a_drive() -> None:
+def test_an_answer_names_the_speed_of_its_complaint_not_that_of_a_drive():
     scene = train((25, 61))  # driven at 1000 rpm
     scene["meshes"][0]["stiffness"]["stiffness_n_per_m"] = {"value": [3e8], "amplitude": [4e7]}
     for shaft, rpm in (("shaft 0", 610.0), ("shaft 1", 250.0)):
@@ -414,7 +402,7 @@ def test_an_answer_names_the_speed_of_its_complaint_not_that_of_a_drive() -> Non
         assert answer.complaint.within[0].harmonic == 1
 
 
-def test_a_force_that_no_linear_response_holds_is_told() -> None:
+def test_a_force_that_no_linear_response_holds_is_told():
     """A stiffness that swings by 80 % parts the flanks in the torsional mode, at any load."""
     scene = train((25, 61))
     mode = loa.modes(scene, speed_rpm=[1.0]).natural_frequency[-1]

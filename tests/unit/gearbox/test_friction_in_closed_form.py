@@ -1,7 +1,5 @@
 """A coefficient of friction on a mesh in closed form acts."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -36,7 +34,7 @@ def pair(**changes: Any) -> SceneInput:
     )
 
 
-def test_friction_of_a_mesh_in_closed_form_is_simulated() -> None:
+def test_friction_of_a_mesh_in_closed_form_is_simulated():
     scene, without = dynamic_scene(pair(friction=0.05), {}), dynamic_scene(pair(), {})
     (entry,) = assemble(scene).ledger.of("friction")
     assert entry.on and entry.influence > 0.0

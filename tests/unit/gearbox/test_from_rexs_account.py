@@ -1,7 +1,5 @@
 """Components of a REXS file: the account of an import, one line for every value, and their frames."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -28,7 +26,6 @@ COLOR = Attribute("custom_color", "string", "red")
 
 
 def unit() -> GearUnit:
-    """Return a shaft with a gear and two sections, and a load case."""
     parts = (
         Component(1, "shaft", name="input"),
         Component(2, "cylindrical_gear", (MODULE, HELIX, COLOR)),
@@ -36,7 +33,7 @@ def unit() -> GearUnit:
         Component(4, "shaft_section"),
     )
 
-    def owned(number: int, kind: str, part: int, order: int | None = None) -> Relation:
+    def owned(number, kind, part, order=None):
         return Relation(number, kind, (Reference(1, "assembly"), Reference(part, "part")), order)
 
     relations = (
@@ -54,7 +51,7 @@ def fates(gears: GearUnit) -> dict[tuple[str, str], str]:
     return {(line.place, line.item): line.fate for line in gears.account.lines()}
 
 
-def test_each_component_and_attribute_has_exactly_one_line() -> None:
+def test_each_component_and_attribute_has_exactly_one_line():
     gears = unit()
     lines = [(line.place, line.item) for line in gears.account.lines()]
     expected = [
@@ -65,7 +62,7 @@ def test_each_component_and_attribute_has_exactly_one_line() -> None:
     assert lines == expected
 
 
-def test_what_is_read_is_taken_and_what_is_not_is_ignored() -> None:
+def test_what_is_read_is_taken_and_what_is_not_is_ignored():
     gears = unit()
     gear = gears.part(2)
     assert gear.number("normal_module", "normal_module_mm") == pytest.approx(4.5e-3, rel=1e-15)
@@ -78,7 +75,7 @@ def test_what_is_read_is_taken_and_what_is_not_is_ignored() -> None:
     assert ("component 2", "face_width") not in said
 
 
-def test_the_last_word_counts_and_a_value_that_lacks_can_be_said() -> None:
+def test_the_last_word_counts_and_a_value_that_lacks_can_be_said():
     gears = unit()
     gear = gears.part(2)
     gear.number("helix_angle_reference_diameter", "helix_angle_deg")
@@ -89,17 +86,16 @@ def test_the_last_word_counts_and_a_value_that_lacks_can_be_said() -> None:
     assert said["component 2", "addendum_modification_coefficient"] == "derived"
 
 
-def test_parts_come_in_the_order_of_an_ordered_assembly() -> None:
+def test_parts_come_in_the_order_of_an_ordered_assembly():
     gears = unit()
     shaft = gears.part(1)
     assert [part.id for part in shaft.children("shaft_section")] == [3, 4]
     assert {part.id for part in shaft.children()} == {2, 3, 4}
     owner = gears.part(4).shaft
-    assert owner is not None
     assert owner.id == 1
 
 
-def test_load_cases_have_lines_of_their_own() -> None:
+def test_load_cases_have_lines_of_their_own():
     gears = unit()
     ((shaft,),) = gears.load_cases()
     assert shaft.number("rotational_speed", "speed_rpm") == pytest.approx(2.0 * math.pi, rel=1e-15)
@@ -113,7 +109,7 @@ def frame_with(**values: Any) -> Any:
     return frame_of(unit.part(PINION)), unit
 
 
-def test_a_frame_within_a_turned_frame_is_turned_with_it() -> None:
+def test_a_frame_within_a_turned_frame_is_turned_with_it():
     # Shaft 1 points along w of the unit; 30 mm along its u axis is 30 mm along w.
     turned = {
         "support_vector": (1.0, 2.0, 3.0),
@@ -127,12 +123,12 @@ def test_a_frame_within_a_turned_frame_is_turned_with_it() -> None:
     assert np.linalg.det(frame.axes) == pytest.approx(1.0, rel=1e-12)
 
 
-def test_a_gear_without_a_place_stands_at_its_coordinate_on_the_shaft() -> None:
+def test_a_gear_without_a_place_stands_at_its_coordinate_on_the_shaft():
     frame, _ = frame_with(support_vector=None, u_coordinate_on_shaft=12.0)
     assert frame.origin == pytest.approx([12e-3, 0.0, 0.0], rel=1e-12)
 
 
-def test_a_vector_that_is_none_is_left_out_and_said() -> None:
+def test_a_vector_that_is_none_is_left_out_and_said():
     frame, unit = frame_with(u_axis_vector=False)
     assert frame.u == pytest.approx([1.0, 0.0, 0.0])
     fates = {(line.component, line.item): line.fate for line in unit.account.lines()}
@@ -146,12 +142,12 @@ def test_a_vector_that_is_none_is_left_out_and_said() -> None:
         ({"u_axis_vector": (0.0, 0.0, 2.0), "w_axis_vector": (0.0, 0.0, 1.0)}, "not along u_axis_vector"),
     ],
 )
-def test_a_frame_that_is_none_is_refused(values: dict[str, Any], words: str) -> None:
+def test_a_frame_that_is_none_is_refused(values, words):
     with pytest.raises(BadInput, match=words):
         frame_with(**values)
 
 
-def test_frames_in_a_circle_are_refused() -> None:
+def test_frames_in_a_circle_are_refused():
     unit = stage_unit(
         {
             PINION: {"reference_component_for_position": 1},
@@ -162,7 +158,7 @@ def test_frames_in_a_circle_are_refused() -> None:
         frame_of(unit.part(PINION))
 
 
-def test_a_part_of_a_shaft_that_another_refers_to_carries_it() -> None:
+def test_a_part_of_a_shaft_that_another_refers_to_carries_it():
     """The pinion has no place but its coordinate; what refers to it stands there too."""
     changes = {
         PINION: {"support_vector": None, "u_coordinate_on_shaft": 12.0},

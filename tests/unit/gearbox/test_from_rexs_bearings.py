@@ -1,7 +1,5 @@
 """Bearings and housing of a REXS file: sides, seats, clearances, stiffnesses, and why some are bushings."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
@@ -22,7 +20,6 @@ from rexs_unit import (
     RIGHT,
     ROLLER,
     ROW,
-    Stated,
     at,
     inside,
     on_lines,
@@ -63,7 +60,7 @@ def thrusts(bearing: RollingBearingInput) -> tuple[float, float]:
 
 
 @pytest.mark.parametrize("arrangement", ["located", "cross-located"])
-def test_the_thrust_of_drive_and_coast_goes_where_the_file_says(arrangement: str) -> None:
+def test_the_thrust_of_drive_and_coast_goes_where_the_file_says(arrangement):
     """Of a cross-located pair the bearing to which the mesh pushes the shaft; always the locating one."""
     crossed = arrangement == "cross-located"
     sides = ("negative", "positive") if crossed else ("both_directions", "no_direction")
@@ -82,13 +79,12 @@ def test_the_thrust_of_drive_and_coast_goes_where_the_file_says(arrangement: str
     assert sorted(thrust.values()) == pytest.approx([-axial_force, axial_force], rel=1e-6)
 
 
-def test_a_catalog_line_is_stated_as_it_is() -> None:
+def test_a_catalog_line_is_stated_as_it_is():
     (bearing, *_) = by_name(OpenedUnit.of(on_lines({"axial_force_absorption": "both_directions"}))).values()
-    assert bearing.catalog is not None
     stated = {"bore_mm": 25.0, "outside_diameter_mm": 62.0, "static_rating_n": 11600.0, "clearance_um": 10.0}
     assert bearing.catalog.model_dump() == stated
-    assert (bearing.position_mm, bearing.dynamic_capacity_n) == (pytest.approx(15.0), 23400.0)  # type: ignore[attr-defined]
-    assert (bearing.locating, bearing.axial_preload_n) == ("both", 0.0)  # type: ignore[attr-defined]
+    assert (bearing.position_mm, bearing.dynamic_capacity_n) == (pytest.approx(15.0), 23400.0)
+    assert (bearing.locating, bearing.axial_preload_n) == ("both", 0.0)
 
 
 @pytest.mark.parametrize("u", [1.0, -1.0])
@@ -101,21 +97,19 @@ def test_a_catalog_line_is_stated_as_it_is() -> None:
         ("negative", (False, True)),
     ],
 )
-def test_a_deep_groove_bearing_holds_the_shaft_in_the_directions_of_its_own_u(
-    stated: str, held: tuple[bool, bool], u: float
-) -> None:
+def test_a_deep_groove_bearing_holds_the_shaft_in_the_directions_of_its_own_u(stated, held, u):
     turned = {"axial_force_absorption": stated, "u_axis_vector": (u, 0.0, 0.0)}
     along, against = thrusts(by_name(OpenedUnit.of(on_lines(turned)))[LEFT])
     assert (along > 100.0, against < -100.0) == (held if u > 0.0 else held[::-1])
     assert all(force == 0.0 or abs(force) > 100.0 for force in (along, against))
 
 
-def test_a_bearing_without_a_place_has_the_u_of_its_shaft() -> None:
+def test_a_bearing_without_a_place_has_the_u_of_its_shaft():
     shaft = {"support_vector": (150.0, 0.0, 0.0), "u_axis_vector": (-1.0, 0.0, 0.0)}
     more = at(LEFT, "catalog", LINE | {"axial_force_absorption": "positive"})
     values = {k: v for k, v in more[LEFT][1].items() if k not in ROLES}
     bearing = by_name(OpenedUnit.of(two_stages({INPUT: shaft}, more={LEFT: (more[LEFT][0], values)})))[LEFT]
-    assert bearing.position_mm == pytest.approx(135.0)  # type: ignore[attr-defined]
+    assert bearing.position_mm == pytest.approx(135.0)
     along, against = thrusts(bearing)
     assert along == 0.0 and against < -100.0
 
@@ -124,9 +118,7 @@ def test_a_bearing_without_a_place_has_the_u_of_its_shaft() -> None:
 @pytest.mark.parametrize("kind", ["radial_tapered_roller_bearing", "angular_contact_ball_bearing"])
 @pytest.mark.parametrize("arrangement", ["X", "O"])
 @pytest.mark.parametrize("of", ["", "_of_row"])
-def test_rows_with_a_contact_angle_hold_the_side_that_the_file_states(
-    arrangement: str, kind: str, u: float, of: str
-) -> None:
+def test_rows_with_a_contact_angle_hold_the_side_that_the_file_states(arrangement, kind, u, of):
     """X: the bearing to the right holds a shaft that is pushed to the right; O: the other one.
 
     `u` turns the axes of both bearings against the shaft's.
@@ -158,7 +150,7 @@ def test_rows_with_a_contact_angle_hold_the_side_that_the_file_states(
         ),
     ],
 )
-def test_a_contact_angle_without_a_side_is_a_bushing(left: Stated, words: str) -> None:
+def test_a_contact_angle_without_a_side_is_a_bushing(left, words):
     unit = OpenedUnit.of(inside(left, {"axial_force_absorption": "positive"}))
     assert words in why(unit, LEFT)
     assert list(by_name(unit)) == [RIGHT]
@@ -180,12 +172,10 @@ def test_a_contact_angle_without_a_side_is_a_bushing(left: Stated, words: str) -
         ({"operating_radial_bearing_clearance": 5e4}, 0.0, "defaulted"),
     ],
 )
-def test_the_clearance_nearest_to_operation_counts(
-    values: Stated, clearance: float, fate: str | None
-) -> None:
+def test_the_clearance_nearest_to_operation_counts(values, clearance, fate):
     unit = OpenedUnit.of(on_lines({"operating_radial_bearing_clearance": None} | dict(values)))
     catalog = by_name(unit)[LEFT].catalog
-    assert catalog is not None and catalog.clearance_um == pytest.approx(clearance, abs=1e-9)  # type: ignore[attr-defined]
+    assert catalog is not None and catalog.clearance_um == pytest.approx(clearance, abs=1e-9)
     if fate is not None:
         assert said(unit, LEFT, "operating_radial_bearing_clearance")[0] == fate
 
@@ -201,19 +191,16 @@ def test_the_clearance_nearest_to_operation_counts(
         ({"preload_force": 500.0, "preload_distance": 8.0}, 0.0, 500.0),
     ],
 )
-def test_clearance_and_preload_of_a_contact_angle_are_along_the_axis(
-    values: Stated, clearance: float, preload: float
-) -> None:
+def test_clearance_and_preload_of_a_contact_angle_are_along_the_axis(values, clearance, preload):
     own = [dict(values) | {"axial_force_absorption": side} for side in ("negative", "positive")]
     found = by_name(OpenedUnit.of(inside(*own)))
     for number, sign in ((LEFT, -1.0), (RIGHT, 1.0)):
         bearing = found[number]
-        assert bearing.roller is not None
-        assert bearing.roller.clearance_um == pytest.approx(clearance, abs=1e-9)  # type: ignore[attr-defined]
-        assert bearing.axial_preload_n == sign * preload  # type: ignore[attr-defined]
+        assert bearing.roller.clearance_um == pytest.approx(clearance, abs=1e-9)
+        assert bearing.axial_preload_n == sign * preload
 
 
-def test_cylindrical_rollers_hold_nothing_and_ribs_are_a_bushing() -> None:
+def test_cylindrical_rollers_hold_nothing_and_ribs_are_a_bushing():
     own = {"bearing_type": "radial_roller_bearing"}
     sides = [own | {"axial_force_absorption": side} for side in ("no_direction", "both_directions")]
     unit = OpenedUnit.of(inside(*sides, row=ROW | {"pressure_angle": 0.0}))
@@ -237,34 +224,34 @@ def test_cylindrical_rollers_hold_nothing_and_ribs_are_a_bushing() -> None:
         ({"bearing_type": None}, "without bearing_type"),
     ],
 )
-def test_a_bushing_says_why(values: Stated, words: str) -> None:
+def test_a_bushing_says_why(values, words):
     unit = OpenedUnit.of(on_lines(values, {}))
     assert words in why(unit, LEFT)
     assert list(by_name(unit)) == [RIGHT]
 
 
-def test_a_stiffness_without_end_is_ignored_beside_the_geometry() -> None:
+def test_a_stiffness_without_end_is_ignored_beside_the_geometry():
     unit = OpenedUnit.of(on_lines({"radial_stiffness": 1e23, "axial_stiffness": 0.0}))
     assert LEFT in by_name(unit)
     assert said(unit, LEFT, "radial_stiffness") == ("ignored", "the stiffness follows from the geometry")
 
 
-def test_a_rating_or_preload_that_no_bearing_has_is_left_out_and_said() -> None:
+def test_a_rating_or_preload_that_no_bearing_has_is_left_out_and_said():
     unit = OpenedUnit.of(on_lines({"radial_dynamic_load_rating": 1e9}))
-    assert by_name(unit)[LEFT].dynamic_capacity_n is None  # type: ignore[attr-defined]
+    assert by_name(unit)[LEFT].dynamic_capacity_n is None
     words = "1000000000.0 kN is not from 1 to 1e+09 N"
     assert said(unit, LEFT, "radial_dynamic_load_rating") == ("refused", words)
     own = [{"axial_force_absorption": side, "preload_force": 1e12} for side in ("negative", "positive")]
-    assert by_name(OpenedUnit.of(inside(*own)))[LEFT].axial_preload_n == 0.0  # type: ignore[attr-defined]
+    assert by_name(OpenedUnit.of(inside(*own)))[LEFT].axial_preload_n == 0.0
 
 
-def test_a_direction_that_the_file_lacks_is_defaulted_and_said() -> None:
+def test_a_direction_that_the_file_lacks_is_defaulted_and_said():
     unit = OpenedUnit.of(on_lines({}))
-    assert by_name(unit)[LEFT].locating == "both"  # type: ignore[attr-defined]
+    assert by_name(unit)[LEFT].locating == "both"
     assert said(unit, LEFT, "axial_force_absorption")[0] == "defaulted"
 
 
-def test_a_shaft_in_the_outer_ring_is_on_a_bushing() -> None:
+def test_a_shaft_in_the_outer_ring_is_on_a_bushing():
     number = 37
     more = {number: ("rolling_bearing_with_catalog_geometry", LINE | place(70.0, 0.0, 0.0))}
     side = relation(2000, "side", assembly=number, inner_part=CASING, outer_part=INPUT)
@@ -299,7 +286,7 @@ def on_input_shaft(stiffness: FloatArray) -> SceneInput:
 
 
 @pytest.mark.parametrize("held", [True, False])
-def test_bearings_of_a_casing_are_bushings_where_nothing_holds_it_and_say_so(held: bool) -> None:
+def test_bearings_of_a_casing_are_bushings_where_nothing_holds_it_and_say_so(held):
     group = place(0.0, 0.0, 0.0) | matrix_of(np.diag([1e6] * 5 + [1e6 * held]))
     more = at(LEFT, "catalog", LINE) | at(RIGHT, "catalog", LINE)
     unit = OpenedUnit.of(housed(group, {51: LEFT}, more))
@@ -315,10 +302,9 @@ ROLES = {"support_vector", "u_axis_vector", "w_axis_vector", "reference_componen
 
 
 @needs_reference
-def test_cross_located_pairs_of_a_real_unit_hold_outwards() -> None:
+def test_cross_located_pairs_of_a_real_unit_hold_outwards():
     unit = OpenedUnit.of(read_rexs(reference("examples/SEW_3-stage_cylindrical_gearbox_1.0.rexs")))
-    assert unit.scene is not None
-    found = [(b.shaft, b.position_mm, b.locating) for b in unit.scene.rolling_bearings]  # type: ignore[attr-defined]
+    found = [(b.shaft, b.position_mm, b.locating) for b in unit.scene.rolling_bearings]
     shafts = {shaft for shaft, *_ in found}
     arranged = {shaft: [seat for _, _, seat in sorted(b for b in found if b[0] == shaft)] for shaft in shafts}
     assert sorted(arranged.values()) == sorted(
@@ -328,7 +314,7 @@ def test_cross_located_pairs_of_a_real_unit_hold_outwards() -> None:
     assert "NUP204E" in bushing.name
 
 
-def test_a_rigid_bearing_is_stiff_and_a_floating_one_free_along_the_axis() -> None:
+def test_a_rigid_bearing_is_stiff_and_a_floating_one_free_along_the_axis():
     document = two_stages(
         {31: {"radial_stiffness": 1e23, "axial_stiffness": 1e23, "bending_stiffness": 1e15}}
     )
@@ -339,12 +325,7 @@ def test_a_rigid_bearing_is_stiff_and_a_floating_one_free_along_the_axis() -> No
     assert said(OpenedUnit.of(document), 31, "radial_stiffness")[1].startswith("1e+23 N/m means rigid")
 
 
-def test_a_bearing_without_any_stiffness_is_defaulted_and_said() -> None:
-    unit = OpenedUnit.of(two_stages({32: {"radial_stiffness": None}}))
-    assert said(unit, 32, "radial_stiffness")[0] == "defaulted"
-
-
-def test_a_stiffness_at_the_operating_point_turns_from_u_v_w_to_x_y_z() -> None:
+def test_a_stiffness_at_the_operating_point_turns_from_u_v_w_to_x_y_z():
     # axial 1, across v 2, across w 3 (1e8 N/m), about v 4 (1e7 N mm/rad), v with the rotation about w
     values = {"f_u_d_u": 1e8, "f_v_d_v": 2e8, "f_w_d_w": 3e8, "m_v_rot_v": 4e7, "m_w_rot_w": 5e7}
     values |= {"f_v_rot_w": 1e5, "m_w_d_v": 1e5}
@@ -356,7 +337,7 @@ def test_a_stiffness_at_the_operating_point_turns_from_u_v_w_to_x_y_z() -> None:
     assert np.array(matrix) == pytest.approx(expected, rel=1e-12, abs=1e-6)
 
 
-def test_a_housing_matrix_turns_into_the_axes_of_the_scene() -> None:
+def test_a_housing_matrix_turns_into_the_axes_of_the_scene():
     # per point u, v, w in N/mm, rotations in N mm/rad; the middle point carries nothing
     matrix = np.kron(np.eye(3), np.diag([1e5, 2e5, 3e5, 1e9, 2e9, 3e9]))
     matrix[0, 12] = matrix[12, 0] = -2e4
@@ -369,7 +350,7 @@ def test_a_housing_matrix_turns_into_the_axes_of_the_scene() -> None:
     assert stiffness[0, 6] == pytest.approx(-2e7)
 
 
-def test_points_of_a_housing_that_carry_nothing_follow_free_of_force() -> None:
+def test_points_of_a_housing_that_carry_nothing_follow_free_of_force():
     # springs k from the first point over the free one to the third: k / 2 between those
     matrix = np.zeros((18, 18))
     for a, b in ((0, 6), (6, 12)):
@@ -382,7 +363,7 @@ def test_points_of_a_housing_that_carry_nothing_follow_free_of_force() -> None:
 EXAMPLE = Path(__file__).parents[3] / "examples" / "two_stage" / "two_stage.rexs"
 
 
-def test_the_example_opens_with_bearings_by_geometry_on_its_housing() -> None:
+def test_the_example_opens_with_bearings_by_geometry_on_its_housing():
     document = read_rexs(EXAMPLE)
     unit, scene = OpenedUnit.of(document), scene_of(document)
     assert not [line for line in unit.lines if line.fate == "refused"]

@@ -1,7 +1,5 @@
 """The pages on REXS files list what the import reads, no more and no less of each component."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -148,7 +146,6 @@ def whole_units() -> Iterator[GearUnit]:
 
 
 def ring_unit() -> GearUnit:
-    """Return a unit with a ring gear."""
     ring = {
         "number_of_teeth": 60,
         "tip_diameter": 117.0,
@@ -178,21 +175,21 @@ def read_attributes() -> set[str]:
     return items
 
 
-def test_the_page_lists_the_attributes_that_are_read() -> None:
+def test_the_page_lists_the_attributes_that_are_read():
     read, _ = PAGE.split("\n## Results\n")
     rows = [row.split("|") for row in read.splitlines() if row.startswith("| ") and "---" not in row]
     listed = {name for row in rows for name in re.findall(r"`([a-z_]+)`", row[2])}
     assert listed == read_attributes()
 
 
-def test_the_page_lists_every_component_that_modifies_a_flank() -> None:
+def test_the_page_lists_every_component_that_modifies_a_flank():
     components = set(re.findall(r"^\| `([a-z_]+)` \|", PAGE, re.MULTILINE))
     assert set(READERS) <= components
     assert not set(UNREAD) & components
     assert set(READERS) == set(MODIFICATIONS)
 
 
-def test_the_fields_of_the_page_are_fields_of_a_case() -> None:
+def test_the_fields_of_the_page_are_fields_of_a_case():
     rows = [row.split("|") for row in PAGE.splitlines() if row.startswith("| ")]
     named = {name for row in rows for name in re.findall(r"`([a-z_]+_(?:um|mm|coefficient))`", row[3])}
     pair = {"center_distance_mm", "normal_module_mm"}
@@ -222,7 +219,7 @@ def read_of_bearings() -> set[str]:
     return stated - ROLES - {"u_coordinate_on_shaft_inner_side"}
 
 
-def test_the_page_lists_the_attributes_of_bearings_that_are_read() -> None:
+def test_the_page_lists_the_attributes_of_bearings_that_are_read():
     rows = [row.split("|") for row in page_of("bearings").splitlines() if row.startswith("| ")]
     listed = {name for row in rows[1:] for name in re.findall(r"`([a-z_]+)`", row[2])}
     assert listed == read_of_bearings()

@@ -1,10 +1,7 @@
 """External loads of a REXS file as forces of a scene and its load cases: axes, signs, places, reactions."""
 
-from __future__ import annotations
-
 import tomllib
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -69,7 +66,7 @@ def lines_of(unit: OpenedUnit, number: int) -> dict[str, list[tuple[str, str]]]:
     }
 
 
-def test_an_overhung_force_is_carried_as_computed_by_hand() -> None:
+def test_an_overhung_force_is_carried_as_computed_by_hand():
     """1000 N at 10 mm beyond the right bearing of 125 mm: 1080 N on it, -80 N on the left one."""
     cases = [{"force_v_direction": 1000.0}, {"force_w_direction": -500.0, "torque_around_v_axis": 25.0}, {}]
     loads = pulled(u_coordinate_on_shaft=END, cases=cases)
@@ -98,9 +95,8 @@ def reactions(unit: OpenedUnit) -> Any:
     return np.array([[own[name] for name in names] for own in by_case])
 
 
-def test_beyond_the_end_of_its_shaft_a_force_acts_with_its_lever() -> None:
+def test_beyond_the_end_of_its_shaft_a_force_acts_with_its_lever():
     unit, at = OpenedUnit.of(two_stages(**pulled(u_coordinate_on_shaft=END + 20.0, **VALUES))), BELT
-    assert unit.scene is not None
     (force,) = unit.scene.forces
     assert (force.shaft, force.position_mm) == ("shaft 3", pytest.approx(END, rel=1e-12))
     # x, y, z are v, w, u; the lever of 20 mm adds -0.02 F_w about v and 0.02 F_v about w
@@ -111,7 +107,7 @@ def test_beyond_the_end_of_its_shaft_a_force_acts_with_its_lever() -> None:
     ]
 
 
-def test_forces_are_along_the_axes_of_their_shaft() -> None:
+def test_forces_are_along_the_axes_of_their_shaft():
     """With w of the shaft along v of the unit, its v is against w of the unit."""
     changes = {INPUT: {"w_axis_vector": (0.0, 1.0, 0.0)}}
     ((force, moment),) = forces_of(
@@ -121,18 +117,17 @@ def test_forces_are_along_the_axes_of_their_shaft() -> None:
     assert moment == pytest.approx((-9.0, -6.0, 0.0), rel=1e-12)
 
 
-def test_a_shaft_described_from_its_other_end_is_pulled_the_same_way() -> None:
+def test_a_shaft_described_from_its_other_end_is_pulled_the_same_way():
     loads = pulled(u_coordinate_on_shaft=100.0, **VALUES)
     plain, other = (
         OpenedUnit.of(document) for document in (two_stages(**loads), antiparallel(INPUT, END, **loads))
     )
-    assert plain.scene is not None and other.scene is not None
     for own, seen in zip(plain.scene.forces, other.scene.forces, strict=True):
         assert seen.position_mm == pytest.approx(own.position_mm, rel=1e-12)
         assert (seen.force_n, seen.moment_n_m) == (own.force_n, own.moment_n_m)
 
 
-def test_the_mirrored_unit_is_pulled_to_the_other_side() -> None:
+def test_the_mirrored_unit_is_pulled_to_the_other_side():
     """In x, which is v: forces are mirrored, moments are against what is mirrored."""
     loads = pulled(u_coordinate_on_shaft=END, **VALUES)
     (plain,), (image,) = (forces_of(make(**loads)).values() for make in (two_stages, mirrored))
@@ -141,16 +136,15 @@ def test_the_mirrored_unit_is_pulled_to_the_other_side() -> None:
     assert np.count_nonzero([*plain[0], *plain[1]]) == 5
 
 
-def test_the_torque_of_a_load_drives_and_is_no_moment_of_its_force() -> None:
+def test_the_torque_of_a_load_drives_and_is_no_moment_of_its_force():
     changes = {MOTOR: {"force_v_direction": 70.0, "torque_around_w_axis": 3.0}}
     plain, unit = (OpenedUnit.of(two_stages(changed)) for changed in ({}, changes))
-    assert plain.scene is not None and unit.scene is not None
     assert (unit.scene.loads, unit.scene.drives) == (plain.scene.loads, plain.scene.drives)
     assert forces_of(two_stages(changes)) == {"external_load 41": ((70.0, 0.0, 0.0), (0.0, 3.0, 0.0))}
     assert lines_of(unit, MOTOR)["torque_around_u_axis"] == [("taken", "torque about u from outside, N m")]
 
 
-def test_a_load_case_sets_what_it_states_and_keeps_the_rest() -> None:
+def test_a_load_case_sets_what_it_states_and_keeps_the_rest():
     """The second case has the largest share: the scene is under it, and it states nothing."""
     cases = [{"force_v_direction": 200.0}, {}, {"force_v_direction": 0.0}, {"force_v_direction": 100.0}]
     loads = pulled(u_coordinate_on_shaft=END, force_v_direction=100.0, force_w_direction=5.0, cases=cases)
@@ -168,7 +162,7 @@ def test_a_load_case_sets_what_it_states_and_keeps_the_rest() -> None:
     ]
 
 
-def test_the_answer_and_the_verb_show_the_forces_that_differ(tmp_path: Path) -> None:
+def test_the_answer_and_the_verb_show_the_forces_that_differ(tmp_path):
     cases = [{"force_v_direction": 200.0}, {}]
     document = two_stages(**pulled(u_coordinate_on_shaft=END, force_w_direction=5.0, cases=cases))
     answer = UnitBody.model_validate(unit_json(OpenedUnit.of(document)))
@@ -178,12 +172,12 @@ def test_the_answer_and_the_verb_show_the_forces_that_differ(tmp_path: Path) -> 
     assert "external_load 44 [0.0, 5.0, 0.0] N and [0.0, 0.0, 0.0] N m in x, y, z" in shown.stdout
 
 
-def test_a_force_of_other_cases_alone_is_zero_in_the_scene() -> None:
+def test_a_force_of_other_cases_alone_is_zero_in_the_scene():
     loads = pulled(u_coordinate_on_shaft=END, cases=[{}, {"force_v_direction": 200.0}])
     assert forces_of(two_stages(**loads)) == {"external_load 44": ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))}
 
 
-def test_every_component_of_a_force_is_accounted_for_in_every_case() -> None:
+def test_every_component_of_a_force_is_accounted_for_in_every_case():
     loads = pulled(
         u_coordinate_on_shaft=END,
         width_of_external_load=30.0,
@@ -196,7 +190,7 @@ def test_every_component_of_a_force_is_accounted_for_in_every_case() -> None:
     assert lines["width_of_external_load"][0][0] == "ignored"
 
 
-def test_a_force_that_no_scene_can_have_is_refused_with_its_reason() -> None:
+def test_a_force_that_no_scene_can_have_is_refused_with_its_reason():
     nowhere = {**pulled(**VALUES, cases=[VALUES]), "further": []}
     apart = pulled(6, **VALUES)
     apart["more"] |= BEVEL
@@ -209,7 +203,7 @@ def test_a_force_that_no_scene_can_have_is_refused_with_its_reason() -> None:
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), 2e9])
-def test_a_force_that_is_no_size_is_refused_by_its_component(value: float) -> None:
+def test_a_force_that_is_no_size_is_refused_by_its_component(value):
     loads = pulled(u_coordinate_on_shaft=END, cases=[{"force_v_direction": value}])
     with pytest.raises(BadInput, match=r"load case 1.*44.*force_v_direction"):
         OpenedUnit.of(two_stages(**loads))
@@ -218,7 +212,7 @@ def test_a_force_that_is_no_size_is_refused_by_its_component(value: float) -> No
 @pytest.mark.parametrize(
     ("shaft", "taken"), [(SUN, True), (RING, True), (CARRIER, True), (PLANETS[0], False)]
 )
-def test_forces_on_a_planetary_set_act_on_its_axis_alone(shaft: int, taken: bool) -> None:
+def test_forces_on_a_planetary_set_act_on_its_axis_alone(shaft, taken):
     model, load = planetary().model, {"u_coordinate_on_shaft": 10.0, **VALUES}
     components = (*model.components, component(BELT, "external_load", load))
     relations = (*model.relations, relation(2900, "assembly", assembly=shaft, part=BELT))

@@ -1,7 +1,5 @@
 """Cases of the cylindrical stages of a REXS model: macro geometry, driver and load levels."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -38,7 +36,7 @@ SHIFTED: Values = {
 }
 
 
-def test_the_macro_geometry_is_that_of_the_file() -> None:
+def test_the_macro_geometry_is_that_of_the_file():
     unit = stage_unit({PINION: {"tip_diameter": 44.2, "root_diameter": 35.2, "inner_diameter": 15.0}})
     stage = only(unit)
     pair = stage.case.pair
@@ -51,7 +49,7 @@ def test_the_macro_geometry_is_that_of_the_file() -> None:
     assert stage.center_distance == pytest.approx(0.08, rel=1e-15)
 
 
-def test_a_missing_shift_follows_from_the_center_distance_and_the_mate() -> None:
+def test_a_missing_shift_follows_from_the_center_distance_and_the_mate():
     # x_1 + x_2 = (z_1 + z_2) (inv alpha_wt - inv alpha_t) / (2 tan alpha_n), a = 80.9 mm
     working = math.acos(80.0 * math.cos(math.radians(20.0)) / 80.9)
     involutes = [math.tan(angle) - angle for angle in (working, math.radians(20.0))]
@@ -63,7 +61,7 @@ def test_a_missing_shift_follows_from_the_center_distance_and_the_mate() -> None
     assert said(unit, WHEEL, "addendum_modification_coefficient")[0] == "derived"
 
 
-def test_without_any_shift_there_is_no_case_and_the_account_says_why() -> None:
+def test_without_any_shift_there_is_no_case_and_the_account_says_why():
     both = (PINION_LEFT, PINION_RIGHT, WHEEL_LEFT, WHEEL_RIGHT)
     unit = stage_unit({flank: {"addendum_modification_coefficient": None} for flank in both})
     assert StageCase.all_of(unit, {}) == ()
@@ -72,7 +70,7 @@ def test_without_any_shift_there_is_no_case_and_the_account_says_why() -> None:
     assert "addendum_modification_coefficient" in words
 
 
-def test_a_tip_of_one_millimeter_is_none() -> None:
+def test_a_tip_of_one_millimeter_is_none():
     unit = stage_unit({PINION: {"tip_diameter": 1.0}})
     assert only(unit).case.pair.pinion.tip_diameter_mm == pytest.approx(44.0, rel=1e-12)
     fate, words = said(unit, PINION, "tip_diameter")
@@ -80,13 +78,13 @@ def test_a_tip_of_one_millimeter_is_none() -> None:
     assert words.startswith("1 mm is no tip diameter")
 
 
-def test_both_tips_are_cut_by_what_the_shifts_bring_the_gears_closer() -> None:
+def test_both_tips_are_cut_by_what_the_shifts_bring_the_gears_closer():
     pair = gear_pair(only(stage_unit(SHIFTED)).case)
     # With k = (a - a_d)/m_n - (x_1 + x_2) both clearances are that of the basic rack, 0.25 m_n.
     assert pair.tip_clearances == pytest.approx((0.5e-3, 0.5e-3), rel=1e-9)
 
 
-def test_the_mean_deviation_of_the_span_is_the_allowance_and_the_backlash() -> None:
+def test_the_mean_deviation_of_the_span_is_the_allowance_and_the_backlash():
     span = "{}_backlash_allowance_referenced_to_span"
     unit = stage_unit({PINION: {span.format("upper"): -20.0, span.format("lower"): -60.0}})
     pair = gear_pair(only(unit).case)
@@ -98,7 +96,7 @@ def test_the_mean_deviation_of_the_span_is_the_allowance_and_the_backlash() -> N
     assert said(thick, PINION, span.format("upper"))[0] == "refused"
 
 
-def test_the_tool_makes_the_root() -> None:
+def test_the_tool_makes_the_root():
     tool = {"addendum_coefficient_reference_profile": 1.4, "tip_corner_radius_factor_reference_profile": 0.3}
     unit = stage_unit(
         {40: tool},
@@ -127,7 +125,7 @@ def with_root(diameter: float | None, addendum: float | None) -> GearUnit:
     )
 
 
-def test_the_tool_stands_deeper_for_the_deviation_of_the_span() -> None:
+def test_the_tool_stands_deeper_for_the_deviation_of_the_span():
     pinion = gear_pair(only(with_root(None, 1.4)).case).pinion
     assert pinion.tooth_thinning == "generating"
     assert pinion.dedendum_coefficient == 1.4
@@ -135,7 +133,7 @@ def test_the_tool_stands_deeper_for_the_deviation_of_the_span() -> None:
 
 
 @pytest.mark.parametrize("addendum", [None, 1.4])
-def test_a_stated_root_diameter_is_that_of_the_thinned_teeth(addendum: float | None) -> None:
+def test_a_stated_root_diameter_is_that_of_the_thinned_teeth(addendum):
     """It wins over the tool, whatever the allowance, as far as the tool does not say that it was not cut."""
     unit = with_root(34.6, addendum)
     pinion = gear_pair(only(unit).case).pinion
@@ -145,7 +143,7 @@ def test_a_stated_root_diameter_is_that_of_the_thinned_teeth(addendum: float | N
     assert "x - A_s / (2 m_n tan alpha_n)" in said(unit, PINION, "root_diameter")[1]
 
 
-def test_a_root_that_the_tool_reaches_without_the_allowance_says_that_the_flanks_are_ground() -> None:
+def test_a_root_that_the_tool_reaches_without_the_allowance_says_that_the_flanks_are_ground():
     unit = with_root(34.4, 1.4)
     pinion = gear_pair(only(unit).case).pinion
     assert pinion.tooth_thinning == "flank"
@@ -158,7 +156,7 @@ def test_a_root_that_the_tool_reaches_without_the_allowance_says_that_the_flanks
 
 
 @pytest.mark.parametrize("hand", [1, -1])
-def test_the_helix_hand_is_that_of_the_driving_gear(hand: int) -> None:
+def test_the_helix_hand_is_that_of_the_driving_gear(hand):
     changes: dict[int, dict[str, Any]] = {
         PINION: {"helix_angle_reference_diameter": hand * 15.0},
         WHEEL: {"helix_angle_reference_diameter": -hand * 15.0},
@@ -170,7 +168,7 @@ def test_the_helix_hand_is_that_of_the_driving_gear(hand: int) -> None:
     assert (turned.driver, turned.case.pair.pinion.teeth) == (WHEEL, 60)
 
 
-def test_external_gears_of_one_hand_do_not_mate() -> None:
+def test_external_gears_of_one_hand_do_not_mate():
     helix = {"helix_angle_reference_diameter": 15.0}
     unit = stage_unit({PINION: helix, WHEEL: helix})
     assert StageCase.all_of(unit, {}) == ()
@@ -192,33 +190,33 @@ def ring_unit(sign: int = 1) -> GearUnit:
 
 
 @pytest.mark.parametrize("sign", [1, -1])
-def test_a_ring_gear_is_the_wheel_whatever_the_sign_of_its_teeth(sign: int) -> None:
+def test_a_ring_gear_is_the_wheel_whatever_the_sign_of_its_teeth(sign):
     stage = only(ring_unit(sign))
     assert stage.case.pair.wheel.internal
     assert stage.case.pair.wheel.teeth == 60
     assert stage.case.pair.center_distance_mm == 40.0
 
 
-def test_a_driving_ring_gear_stays_the_wheel_and_its_torque_is_counted_on_the_pinion() -> None:
+def test_a_driving_ring_gear_stays_the_wheel_and_its_torque_is_counted_on_the_pinion():
     stage = only(ring_unit(), drivers={STAGE: WHEEL}, torques={STAGE: (90.0, 30.0)})
     assert stage.wheel_drives
     assert (stage.driver, stage.driven) == (WHEEL, PINION)
     assert stage.case.load.torque_n_m == (10.0, 30.0)
 
 
-def test_torques_are_load_levels_and_their_sign_is_no_load() -> None:
+def test_torques_are_load_levels_and_their_sign_is_no_load():
     stage = only(stage_unit(), torques={STAGE: (-50.0, -20.0, -50.0)})
     assert stage.case.load.torque_n_m == (20.0, 50.0)
 
 
-def test_without_torques_the_load_levels_are_stated() -> None:
+def test_without_torques_the_load_levels_are_stated():
     unit = stage_unit()
     # F_t / (b m_n) = 5, 15, 30 N/mm^2 on b = 20, m_n = 2, d = 40 mm: T = 4, 12, 24 N m
     assert only(unit).case.load.torque_n_m == (4.0, 12.0, 24.0)
     assert said(unit, STAGE, "torque")[0] == "defaulted"
 
 
-def test_a_value_out_of_bounds_leaves_the_other_stages() -> None:
+def test_a_value_out_of_bounds_leaves_the_other_stages():
     unit = stage_unit(
         {PINION: {"face_width": 60e3}, 13: GEARS[PINION], 14: GEARS[WHEEL], 21: GEARS[STAGE]}
         | {35: GEARS[PINION_LEFT], 36: GEARS[WHEEL_LEFT]},
@@ -237,7 +235,7 @@ def test_a_value_out_of_bounds_leaves_the_other_stages() -> None:
     assert "50000" in words
 
 
-def test_other_stages_are_refused() -> None:
+def test_other_stages_are_refused():
     unit = stage_unit(types={22: "bevel_stage"})
     only(unit)
     assert said(unit, 22, "")[0] == "refused"

@@ -1,7 +1,5 @@
 """Gears drawn within a class are within it, and service and client state what `loa measured` does."""
 
-from __future__ import annotations
-
 import pickle
 
 import numpy as np
@@ -33,7 +31,7 @@ def helical(pinion: int = 23, wheel: int = 67, angle: float = 20.0) -> Case:
 @pytest.mark.law
 @pytest.mark.parametrize("tolerance_class", [1, 6, 11])
 @pytest.mark.parametrize("seed", range(4))
-def test_drawn_gears_are_within_their_class(tolerance_class: int, seed: int) -> None:
+def test_drawn_gears_are_within_their_class(tolerance_class, seed):
     pair = gear_pair(drawn_case(helical(), tolerance_class, seed))
     for gear in (pair.pinion, pair.wheel):
         turn = 2.0 * np.pi * np.arange(gear.teeth) / gear.teeth
@@ -54,20 +52,20 @@ def test_drawn_gears_are_within_their_class(tolerance_class: int, seed: int) -> 
             assert 0.0 < value <= tolerance(gear, tolerance_class) + ROUNDING, tolerance.__name__
 
 
-def test_equal_seeds_draw_equal_gears_and_a_spur_pair_stays_plane() -> None:
+def test_equal_seeds_draw_equal_gears_and_a_spur_pair_stays_plane():
     first, again, other = (drawn_case(helical(angle=0.0), 6, seed) for seed in (1, 1, 2))
     assert first == again != other
     assert all(flank.helix_slope == 0.0 for flank in gear_pair(first).pinion.tooth_flanks)
     assert first.pair.pinion.pitch_deviation_um != first.pair.wheel.pitch_deviation_um
 
 
-def test_a_gear_beyond_the_standard_is_refused_by_its_field() -> None:
+def test_a_gear_beyond_the_standard_is_refused_by_its_field():
     with pytest.raises(BadInput) as caught:
         drawn_case(helical(4, 86), 6)
     assert "teeth" in str(caught.value)
 
 
-def test_what_a_drawn_gear_measures_is_what_was_drawn() -> None:
+def test_what_a_drawn_gear_measures_is_what_was_drawn():
     drawn = drawn_case(helical(), 6)
     of = Inspected("wheel", "left", None)
     again, found = measured_case(helical(), sheet_text(inspected(of.chart(drawn))), "wheel.csv", of)
@@ -79,7 +77,7 @@ def test_what_a_drawn_gear_measures_is_what_was_drawn() -> None:
     assert measured == pytest.approx(slopes, abs=0.05)
 
 
-def test_measured_pitches_replace_those_of_either_kind() -> None:
+def test_measured_pitches_replace_those_of_either_kind():
     content = case_json(helical())
     content["pair"]["pinion"]["single_pitch_deviation_um"] = [0.0] * 23
     rows = "\n".join(f"{tooth},right,pitch,{tooth % 2}" for tooth in range(1, 24))
@@ -89,7 +87,7 @@ def test_measured_pitches_replace_those_of_either_kind() -> None:
     assert made.pair.pinion.single_pitch_deviation_um == ()
 
 
-def test_a_drawn_case_is_pickled_with_its_parts() -> None:
+def test_a_drawn_case_is_pickled_with_its_parts():
     """Workers of a cluster get cases by pickle."""
     made = drawn_case(helical(), 6, 1)
     assert pickle.loads(pickle.dumps(made)) == made

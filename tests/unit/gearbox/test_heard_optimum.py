@@ -1,7 +1,5 @@
 """Flanks that are heard least in a scene: laws of levels, their derivatives and the search."""
 
-from __future__ import annotations
-
 import copy
 from collections import Counter
 from dataclasses import replace
@@ -12,9 +10,9 @@ import numpy as np
 import pytest
 from small_inputs import small_inputs
 
+from fe_contact import Limits
 from fe_contact.microgeometry.design_problem import PENALTY
 from fe_contact.microgeometry.linearized_table import tabled_loads
-from fe_contact.microgeometry.objective import Limits
 from fe_contact.microgeometry.scatter import ScatterNodes
 from fe_contact.types import FloatArray
 from host.directories import cache_home
@@ -80,7 +78,7 @@ def problems() -> tuple[HeardProblem, HeardProblem]:
 
 
 @pytest.mark.law
-def test_a_design_is_as_loud_as_its_table_in_a_scene_assembled_anew() -> None:
+def test_a_design_is_as_loud_as_its_table_in_a_scene_assembled_anew():
     own = problems()[0]
     tabled_at = own.tables_of(list(tabled_loads(own.evaluator, DESIGN, (0,))))
     subject = tabled(scene())
@@ -99,7 +97,7 @@ def level(own: HeardProblem, values: dict[str, float]) -> float:
 
 
 @pytest.mark.law
-def test_the_derivative_of_a_level_is_that_of_solved_contacts() -> None:
+def test_the_derivative_of_a_level_is_that_of_solved_contacts():
     """Of the power over speeds and loads, central differences of 20 nm: no contact changes on the way."""
     own = replace(problems()[0], scale=level(problems()[0], DESIGN))
     assessed, merit = own.linearize(place(own), InProcess())
@@ -113,7 +111,7 @@ def test_the_derivative_of_a_level_is_that_of_solved_contacts() -> None:
     np.testing.assert_allclose(slope, differences, atol=1e-4 * np.abs(differences).max())
 
 
-def test_moved_tables_made_at_once_are_those_made_one_by_one() -> None:
+def test_moved_tables_made_at_once_are_those_made_one_by_one():
     own = problems()[0]
     tabled_at = list(tabled_loads(own.evaluator, DESIGN, (0,), own.names))[-1]
     steps = 1e-9 * np.eye(len(own.names))
@@ -127,7 +125,7 @@ def test_moved_tables_made_at_once_are_those_made_one_by_one() -> None:
             np.testing.assert_allclose(getattr(moved, name), getattr(alone, name), rtol=1e-12, err_msg=name)
 
 
-def test_a_mean_over_loads_or_speeds_is_no_louder_than_the_worst() -> None:
+def test_a_mean_over_loads_or_speeds_is_no_louder_than_the_worst():
     means, worst = level(problems()[0], DESIGN), level(problems()[1], DESIGN)
     assert means < worst
 
@@ -143,7 +141,7 @@ def found() -> HeardOptimization:
     return searched(inputs())
 
 
-def test_the_optimum_is_no_louder_than_the_start_and_stays_in_its_bounds() -> None:
+def test_the_optimum_is_no_louder_than_the_start_and_stays_in_its_bounds():
     own = found()
     assert own.outcome == "improved" and own.gain.value > own.gain.error
     assert own.optimum.objective.value < own.start.objective.value
@@ -151,7 +149,7 @@ def test_the_optimum_is_no_louder_than_the_start_and_stays_in_its_bounds() -> No
         assert variable.low <= own.optimum.values[variable.name] <= variable.high
 
 
-def test_start_and_optimum_are_as_loud_as_a_comparison_of_their_flanks_says() -> None:
+def test_start_and_optimum_are_as_loud_as_a_comparison_of_their_flanks_says():
     """The study of a change takes tables of all loads of the case, not of those that are heard."""
     own = found()
     case = copy.deepcopy(scene()["meshes"][0]["case"])
@@ -165,20 +163,18 @@ def test_start_and_optimum_are_as_loud_as_a_comparison_of_their_flanks_says() ->
 
 
 def predicted(**heard: Any) -> dict[str, list[Work]]:
-    """Return the parts of the predicted cost by name."""
     question = inputs(**heard)
     subject = SceneInput.model_validate(scene())
     cost = RUN.predicted(subject, Inputs.model_validate(question), None)
-    assert cost is not None
     return {part.name: [own for own in cost.parts if own.name == part.name] for part in cost.parts}
 
 
 @pytest.mark.law
-def test_a_usual_search_takes_the_contacts_that_are_predicted(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_usual_search_takes_the_contacts_that_are_predicted(monkeypatch):
     """Counted at few positions and at all, a design with its slopes as often as it costs; within 2."""
     solved: Counter[int] = Counter()
 
-    def counted(evaluator: Any, values: Any, nodes: Any, *slopes: Any) -> Any:
+    def counted(evaluator, values, nodes, *slopes):
         solved[evaluator.position.size] += LINEARIZED if slopes else 1.0
         return tabled_loads(evaluator, values, nodes, *slopes)
 
@@ -190,7 +186,7 @@ def test_a_usual_search_takes_the_contacts_that_are_predicted(monkeypatch: pytes
     assert solved[FEW["positions"]] / 2.0 < full.pieces < 2.0 * solved[FEW["positions"]]
 
 
-def test_a_prediction_grows_with_speeds_orders_loads_and_pairs() -> None:
+def test_a_prediction_grows_with_speeds_orders_loads_and_pairs():
     own = predicted()
     speeds = list(np.linspace(300.0, 9000.0, 30))
     (few,), (many,), (high,) = (
@@ -205,7 +201,7 @@ def test_a_prediction_grows_with_speeds_orders_loads_and_pairs() -> None:
     assert spread["pairs"][0].pieces == 16
 
 
-def test_limits_are_held_or_said_to_be_exceeded() -> None:
+def test_limits_are_held_or_said_to_be_exceeded():
     before = found().start.pressure.max() / 1e6
     asked = inputs() | {"limits": {"max_pressure_mpa": 1.002 * before, "edge_load_share": 0.05}}
     own = searched(asked)
@@ -216,7 +212,7 @@ def test_limits_are_held_or_said_to_be_exceeded() -> None:
 
 
 @pytest.mark.law
-def test_a_pair_within_tolerances_is_as_loud_as_its_flanks() -> None:
+def test_a_pair_within_tolerances_is_as_loud_as_its_flanks():
     """At the same position in the sample as a design whose amounts are those of the pair."""
     own = replace(problems()[1], quantile=0.75)
     deviation = 1e-6 * np.array([[0.0], [0.4], [-0.3], [1.0]])
@@ -232,7 +228,7 @@ def test_a_pair_within_tolerances_is_as_loud_as_its_flanks() -> None:
     assert merit.amplitudes(np.zeros(3)).max() == pytest.approx(1.0)  # of the start, as of every objective
 
 
-def test_the_flanks_are_told_within_the_tolerance_class() -> None:
+def test_the_flanks_are_told_within_the_tolerance_class():
     own = found()
     assert own.pairs.shape == (2, 32) and "Within class 6: " in own.within_tolerances()
     low, median, high = own.bands[2]
@@ -242,7 +238,7 @@ def test_the_flanks_are_told_within_the_tolerance_class() -> None:
     assert not replace(own, pairs=np.zeros((2, 0))).within_tolerances()
 
 
-def test_a_quantile_of_the_pairs_is_minimized() -> None:
+def test_a_quantile_of_the_pairs_is_minimized():
     """Of those that are told: the same sample at as many positions, so no pair of it is left out."""
     few: Json = {"search": FEW | {"positions": 16}, "heard": HEARD | {"load_cases": [{"name": "whole"}]}}
     few["heard"] |= {"tolerances": {"samples": 8, "tolerance_class": 4}, "orders": 1}
@@ -253,7 +249,7 @@ def test_a_quantile_of_the_pairs_is_minimized() -> None:
     assert levels[1] < levels[0]
 
 
-def test_a_mesh_that_states_its_misalignment_is_heard_at_it() -> None:
+def test_a_mesh_that_states_its_misalignment_is_heard_at_it():
     """It would be deflected twice: the misalignment stated is part of what a deflection finds."""
     study, subject = Inputs.model_validate(inputs()), tabled(scene())
     mesh = flank_mesh(subject.inputs, None)
@@ -273,7 +269,7 @@ def test_a_mesh_that_states_its_misalignment_is_heard_at_it() -> None:
     [{"quantity": "surface_velocity"}, {"microphone_mm": [10.0, 10.0, 400.0]}],
     ids=["velocity", "pressure"],
 )
-def test_velocity_and_pressure_are_heard_as_the_comparison_has_them(heard: Json) -> None:
+def test_velocity_and_pressure_are_heard_as_the_comparison_has_them(heard):
     """And all orders together follow from the orders, so that the right lines are counted."""
     sounding: Json = small_inputs("noise")["scene"]
     sounding["meshes"][0]["case"] = scene()["meshes"][0]["case"]
@@ -291,7 +287,7 @@ def test_velocity_and_pressure_are_heard_as_the_comparison_has_them(heard: Json)
         np.testing.assert_allclose(design.level[loud], side.nominal[loud], atol=0.3)
 
 
-def test_levels_are_drawn_as_bars_with_their_errors_from_a_floor_below_all() -> None:
+def test_levels_are_drawn_as_bars_with_their_errors_from_a_floor_below_all():
     result = found()
     for load, panel in enumerate(PAGE.figure(result).content):
         before, first, after, second = panel.bars
@@ -305,7 +301,7 @@ def test_levels_are_drawn_as_bars_with_their_errors_from_a_floor_below_all() -> 
         assert before.x[0] + 0.5 * before.width == pytest.approx(after.x[0] - 0.5 * after.width)
 
 
-def test_what_gets_worse_is_said_first() -> None:
+def test_what_gets_worse_is_said_first():
     own = found()
     louder = replace(own, start=own.optimum, optimum=own.start)
     assert "Gets worse: all orders" in louder.costs() and louder.outcome == "not_improved"
@@ -326,8 +322,8 @@ def test_what_gets_worse_is_said_first() -> None:
         ({"heard": HEARD, "variables": {"pinion": {"helix_crowning_um": [0.0, 9.0]}}}, "helix_crowning_um"),
     ],
 )
-def test_a_scene_without_what_is_heard_is_refused_by_its_field(question: Json, field: str) -> None:
-    def predicted() -> object:
+def test_a_scene_without_what_is_heard_is_refused_by_its_field(question, field):
+    def predicted():
         return RUN.predicted(SceneInput.model_validate(scene()), validated(Inputs, question), None)
 
     for refused in (lambda: optimize(scene(), question), predicted):
@@ -353,7 +349,7 @@ def merit_at(merit: HeardMerit, step: FloatArray) -> float:
 
 @pytest.mark.parametrize("sizes", [(1, 2), (5, 3), (40, 4)])
 @pytest.mark.parametrize("seed", [0, 1])
-def test_no_step_of_many_has_less_merit_than_the_least(sizes: tuple[int, int], seed: int) -> None:
+def test_no_step_of_many_has_less_merit_than_the_least(sizes, seed):
     merit, reach = bowl(sizes, seed), np.full(sizes[1], 0.4)
     step, promised = merit.minimum(-reach, reach)
     assert promised == pytest.approx(merit_at(merit, step))
@@ -361,7 +357,7 @@ def test_no_step_of_many_has_less_merit_than_the_least(sizes: tuple[int, int], s
     assert promised <= min(merit_at(merit, trial) for trial in trials) * (1.0 + 2e-3)
 
 
-def test_a_limit_of_pressure_is_a_row_of_the_merit() -> None:
+def test_a_limit_of_pressure_is_a_row_of_the_merit():
     own = replace(problems()[0], limits=Limits(max_pressure=1e9), scale=level(problems()[0], DESIGN))
     _, merit = own.linearize(place(own), InProcess())
     ((value, by),) = merit.limits
@@ -369,11 +365,11 @@ def test_a_limit_of_pressure_is_a_row_of_the_merit() -> None:
 
 
 @pytest.mark.law
-def test_a_limit_of_ripple_is_rows_of_the_merit_with_their_slopes() -> None:
+def test_a_limit_of_ripple_is_rows_of_the_merit_with_their_slopes():
     """The largest row is the peak-to-peak of the worst load, and moves as that of solved contacts does."""
     own = replace(problems()[0], limits=Limits(peak_to_peak=2e-7), scale=level(problems()[0], DESIGN))
 
-    def ripple(values: dict[str, float]) -> float:
+    def ripple(values):
         return float(own.evaluator.evaluate(values).peak_to_peak.max())
 
     assessed, merit = own.linearize(place(own), InProcess())
@@ -386,7 +382,7 @@ def test_a_limit_of_ripple_is_rows_of_the_merit_with_their_slopes() -> None:
         assert slope == pytest.approx((above - below) / (2.0 * step), abs=2e-3)
 
 
-def test_a_search_that_is_cancelled_tells_its_best_without_the_pairs() -> None:
+def test_a_search_that_is_cancelled_tells_its_best_without_the_pairs():
     own = RUN.compute(
         tabled(scene()),
         Inputs.model_validate(inputs()),

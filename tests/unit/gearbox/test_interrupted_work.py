@@ -1,36 +1,32 @@
 """Ctrl-C in Python keeps what is done: the draft of a table, the run so far, finished tasks."""
 
-from __future__ import annotations
-
 import signal
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from repository import EXAMPLES
 from small_table import small_table
 
 import lineofaction as loa
 from dynamics.types import RunStatus
 from lineofaction.gearbox.registry import STUDIES
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 CASE, SCENE = EXAMPLES / "palermo_spur_20_20.toml", EXAMPLES / "jeffcott_scene.toml"
 
 
 @pytest.fixture(autouse=True)
-def heeded(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
+def heeded(monkeypatch, tmp_path):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
 
 
-def test_an_interrupted_table_is_its_last_draft(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_interrupted_table_is_its_last_draft(monkeypatch):
     draft = small_table()
 
-    def interrupted(_case: Any, _home: Any, _report: Any, _workers: Any, on_draft: Any) -> Any:
+    def interrupted(_case, _home, _report, _workers, on_draft):
         on_draft(draft, "finer slices")
         raise KeyboardInterrupt
 
@@ -41,8 +37,8 @@ def test_an_interrupted_table_is_its_last_draft(monkeypatch: pytest.MonkeyPatch)
     assert seen == ["finer slices"]
 
 
-def test_without_a_draft_the_interrupt_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
-    def interrupted(*_request: Any) -> Any:
+def test_without_a_draft_the_interrupt_goes_on(monkeypatch):
+    def interrupted(*_request):
         raise KeyboardInterrupt
 
     monkeypatch.setattr("lineofaction.gearbox.workbench.database_of", interrupted)
@@ -50,10 +46,10 @@ def test_without_a_draft_the_interrupt_goes_on(monkeypatch: pytest.MonkeyPatch) 
         loa.analyze(CASE)
 
 
-def test_an_interrupted_run_ends_there() -> None:
+def test_an_interrupted_run_ends_there():
     stages: list[str] = []
 
-    def interrupting(stage: str, fraction: float) -> None:
+    def interrupting(stage, fraction):
         stages.append(stage)
         if stages.count("integration") == 1 and 0.0 < fraction < 1.0:
             signal.raise_signal(signal.SIGINT)
@@ -67,8 +63,8 @@ def test_an_interrupted_run_ends_there() -> None:
     assert np.array_equal(run.displacement[..., :half], whole.displacement[..., :half])
 
 
-def test_a_second_interrupt_ends_the_work(monkeypatch: pytest.MonkeyPatch) -> None:
-    def twice(_stage: str, _fraction: float) -> None:
+def test_a_second_interrupt_ends_the_work(monkeypatch):
+    def twice(_stage, _fraction):
         signal.raise_signal(signal.SIGINT)
         signal.raise_signal(signal.SIGINT)
 
@@ -81,10 +77,10 @@ def _replace_work(monkeypatch: pytest.MonkeyPatch, study: str, compute: Any) -> 
         monkeypatch.setattr(STUDIES[study].run, name, function)
 
 
-def test_a_search_ends_with_the_best_so_far(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_search_ends_with_the_best_so_far(monkeypatch):
     best = object()
 
-    def compute(_case: Any, _inputs: Any, means: Any) -> object:
+    def compute(_case, _inputs, means):
         assert not means.cancel()
         signal.raise_signal(signal.SIGINT)
         assert means.cancel()
@@ -104,10 +100,10 @@ def _task(_shared: int, item: int) -> int:
     return item
 
 
-def test_finished_tasks_of_a_study_are_kept_for_the_same_call(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_finished_tasks_of_a_study_are_kept_for_the_same_call(monkeypatch):
     ends = [2, 4, 4]  # number of tasks that each call does before it ends
 
-    def compute(_case: Any, _inputs: Any, means: Any) -> list[int]:
+    def compute(_case, _inputs, means):
         end, results = ends.pop(0), []
         for result in means.workers.run(_task, 0, range(4)):
             results.append(result)

@@ -1,10 +1,7 @@
 """A live answer of teeth that differ is what its schema declares, with the loads of each tooth."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -35,7 +32,7 @@ CASE = {
 
 
 @pytest.mark.parametrize("count", [1, 2, 40])
-def test_columns_of_a_passage_are_interpolated_as_each_by_itself(count: int) -> None:
+def test_columns_of_a_passage_are_interpolated_as_each_by_itself(count):
     random = np.random.default_rng(3)
     knots = np.sort(random.uniform(0.0, 1.0, count))
     values = random.normal(size=(count, 7))
@@ -45,7 +42,7 @@ def test_columns_of_a_passage_are_interpolated_as_each_by_itself(count: int) -> 
 
 
 @pytest.mark.usefixtures("coarse_sectors")
-def test_a_live_answer_names_the_tooth_that_is_early(tmp_path: Path) -> None:
+def test_a_live_answer_names_the_tooth_that_is_early(tmp_path):
     case = Case.model_validate_json(json.dumps(CASE))
     table = analyze(
         gear_pair(case), torques=[2.0], level="draft", positions=8, receipt="minimal", cache=tmp_path
@@ -61,7 +58,7 @@ def test_a_live_answer_names_the_tooth_that_is_early(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("coarse_sectors")
-def test_an_answer_at_a_load_of_the_table_states_the_numbers_of_the_table(tmp_path: Path) -> None:
+def test_an_answer_at_a_load_of_the_table_states_the_numbers_of_the_table(tmp_path):
     gear = {"teeth": 20, "face_width_mm": 4.0, "bore_diameter_mm": 10.0}
     content = {
         "pair": {"normal_module_mm": 1.0, "center_distance_mm": 20.0, "pinion": gear, "wheel": gear},

@@ -1,9 +1,5 @@
 """Curve files of measuring machines say the same of a gear as its sheet; every line has its fate."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import numpy as np
 import pytest
 from command_line import printed
@@ -15,7 +11,7 @@ from lineofaction.gearbox.inspection.machine_file import OTHER_TRACE, OUTSIDE, U
 from lineofaction.gearbox.inspection.machine_heading import STATEMENTS
 from lineofaction.gearbox.inspection.measured_gear import Chart, MeasuredGear, inspected, measured_gear
 from lineofaction.gearbox.inspection.reading import read_sheet
-from lineofaction.gearbox.inspection.sheet import Flank, sheet_text
+from lineofaction.gearbox.inspection.sheet import sheet_text
 from lineofaction.gearbox.problems import BadInput
 
 
@@ -27,7 +23,7 @@ def taken(text: str, chart: Chart) -> MeasuredGear:
 @pytest.mark.parametrize("loaded", ["left", "right"])
 @pytest.mark.parametrize("separate", [True, False], ids=["titles above", "titles beside"])
 @pytest.mark.parametrize("counting", [0, 1], ids=["clockwise", "counterclockwise"])
-def test_a_machine_says_the_same_of_a_gear_as_its_sheet(loaded: Flank, separate: bool, counting: int) -> None:
+def test_a_machine_says_the_same_of_a_gear_as_its_sheet(loaded, separate, counting):
     chart = Chart(GEAR, loaded, True)
     points = list(inspected(chart))
     of_sheet = taken(sheet_text(points), chart)
@@ -54,7 +50,7 @@ def test_a_machine_says_the_same_of_a_gear_as_its_sheet(loaded: Flank, separate:
     assert of_machine.omitted == []
 
 
-def test_what_else_a_machine_writes_is_accounted_for() -> None:
+def test_what_else_a_machine_writes_is_accounted_for():
     text = machine_text(CHART)
     before = taken(text, CHART).account
     # tooth 19 clockwise is the third that a machine meets
@@ -81,7 +77,7 @@ def test_what_else_a_machine_writes_is_accounted_for() -> None:
     assert len(done.omitted) == 3
 
 
-def test_points_beyond_the_evaluated_range_are_left_to_the_probe() -> None:
+def test_points_beyond_the_evaluated_range_are_left_to_the_probe():
     """A tenth of 61 points at either end of two profiles and two helices; slopes stay whole-width."""
     whole, part = (taken(machine_text(CHART, part=part), CHART) for part in (0.0, 0.1))
     assert part.account[OUTSIDE] == 4 * 2 * 6
@@ -129,7 +125,7 @@ def test_points_beyond_the_evaluated_range_are_left_to_the_probe() -> None:
         ("UNDEFINED -2147483.648", "UNDEFINED -", "a file with UNDEFINED and a number"),
     ],
 )
-def test_a_file_is_refused_by_what_is_wrong(of: str, by: str, said: str) -> None:
+def test_a_file_is_refused_by_what_is_wrong(of, by, said):
     text = machine_text(CHART)
     assert of in text
     with pytest.raises(BadInput) as caught:
@@ -138,7 +134,7 @@ def test_a_file_is_refused_by_what_is_wrong(of: str, by: str, said: str) -> None
 
 
 @pytest.mark.parametrize("name", STATEMENTS)
-def test_a_heading_without_one_of_its_conventions_is_refused_by_its_name(name: str) -> None:
+def test_a_heading_without_one_of_its_conventions_is_refused_by_its_name(name):
     """Nothing is assumed: each convention that decides how values are read must stand in the file."""
     lines = [line for line in machine_text(CHART).splitlines() if f":{name}:" not in line]
     lines = [line for line in lines if not line.startswith((f"{name} ", f"{name}:"))]
@@ -147,9 +143,7 @@ def test_a_heading_without_one_of_its_conventions_is_refused_by_its_name(name: s
 
 
 @pytest.mark.parametrize("separate", [True, False], ids=["titles above", "titles beside"])
-def test_a_hundred_damaged_files_are_refused_once_or_accounted_for(
-    separate: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_hundred_damaged_files_are_refused_once_or_accounted_for(separate, monkeypatch):
     fates = fates_of_a_hundred(machine_text(CHART, separate), lambda text: taken(text, CHART), monkeypatch)
     assert min(fates["taken"], fates["refused"]) >= 10, fates
 
@@ -168,12 +162,12 @@ def test_a_hundred_damaged_files_are_refused_once_or_accounted_for(
     ],
     ids=["titles", "traces", "blanks", "label", "digits", "symbols", "names", "rows"],
 )
-def test_a_hostile_file_is_one_error(attack: str) -> None:
+def test_a_hostile_file_is_one_error(attack):
     with pytest.raises(BadInput):
         taken(attack, CHART)
 
 
-def test_the_verb_takes_the_file_of_a_machine(tmp_path: Path) -> None:
+def test_the_verb_takes_the_file_of_a_machine(tmp_path):
     case, file = tmp_path / "case.toml", tmp_path / "gear.mka"
     case.write_text(spur_case(torques=[100.0]), encoding="utf-8")
     file.write_text(machine_text(CHART), encoding="utf-8")

@@ -1,7 +1,5 @@
 """Files of measuring machines judge how they are read: by printed values, or by their tips."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
@@ -32,14 +30,14 @@ CURVES, VALUES = wave_texts(WAVES)
 
 
 @pytest.mark.law
-def test_printed_slopes_and_forms_are_recomputed_with_their_signs() -> None:
+def test_printed_slopes_and_forms_are_recomputed_with_their_signs():
     """A straight line and a wave of whole periods: slope and form in closed form."""
     sheet = read_sheet(CURVES, GEAR, "gear.mka", VALUES)
     assert (sheet.recomputed, sheet.differences) == (2 * len(WAVES), ())
 
 
 @pytest.mark.parametrize("line", range(2 * len(WAVES)))
-def test_a_printed_value_that_differs_is_named(line: int) -> None:
+def test_a_printed_value_that_differs_is_named(line):
     lines = VALUES.splitlines()
     row = len(lines) - 2 * len(WAVES) + line
     label, _, value = lines[row].rpartition(":")
@@ -53,7 +51,7 @@ def test_a_printed_value_that_differs_is_named(line: int) -> None:
     )
 
 
-def test_values_of_another_gear_are_refused() -> None:
+def test_values_of_another_gear_are_refused():
     with pytest.raises(BadInput, match="of the same gear"):
         read_sheet(CURVES, GEAR, "gear.mka", VALUES.replace("10:15", "10:16"))
 
@@ -69,7 +67,7 @@ def tips(left: float, right: float) -> str:
     return "\n".join(lines) + "\n"
 
 
-def test_without_printed_values_both_tips_must_fall_off() -> None:
+def test_without_printed_values_both_tips_must_fall_off():
     sheet = read_sheet(tips(-40.0, -40.0), GEAR, "gear.mka")
     assert (sheet.recomputed, sheet.differences) == (0, ())
     for left, right, flank in ((40.0, -40.0, "left"), (-40.0, 40.0, "right"), (40.0, 40.0, "left")):
@@ -80,7 +78,7 @@ def test_without_printed_values_both_tips_must_fall_off() -> None:
     assert doubt.startswith("the sign of left profiles")
 
 
-def test_single_pitches_that_are_no_steps_of_the_cumulative_ones_are_named() -> None:
+def test_single_pitches_that_are_no_steps_of_the_cumulative_ones_are_named():
     rows = [f"{k} {1.0 if k % 2 else -1.0} {1.0 if k % 2 else 0.0} .1" for k in range(1, 21)]
     rows[6] = "7 1.5 1.0 .1"
     text = "\n".join((CURVES + "linke Zahnflanke", *rows))
@@ -88,7 +86,7 @@ def test_single_pitches_that_are_no_steps_of_the_cumulative_ones_are_named() -> 
     assert difference.startswith("f_p of tooth 7 left: 1.5 µm printed, 1.0 µm by F_p")
 
 
-def test_the_verb_judges_by_the_file_beside_and_stops_if_asked(tmp_path: Path) -> None:
+def test_the_verb_judges_by_the_file_beside_and_stops_if_asked(tmp_path):
     case, curves, out = (tmp_path / name for name in ("case.toml", "gear.mka", "out.toml"))
     case.write_text(spur_case(torques=[100.0]), encoding="utf-8")
     curves.write_text(CURVES, encoding="utf-8")
@@ -106,7 +104,7 @@ def test_the_verb_judges_by_the_file_beside_and_stops_if_asked(tmp_path: Path) -
     assert "7 of 8 recomputed" in done.stdout
 
 
-def test_a_service_says_first_what_differs() -> None:
+def test_a_service_says_first_what_differs():
     """Its text has the printed results behind the curves."""
     case = tomllib.loads(spur_case(torques=[100.0]))
     text = CURVES + "20111 : fHa links 3 : 12.4\n20121 : fHa rechts 3 : -7.0\n"
@@ -116,7 +114,7 @@ def test_a_service_says_first_what_differs() -> None:
 
 
 @pytest.mark.law
-def test_waves_of_a_pitch_table_are_ghost_orders_of_the_gear(tmp_path: Path) -> None:
+def test_waves_of_a_pitch_table_are_ghost_orders_of_the_gear(tmp_path):
     """Three waves of pitches in a turn, over 6.7 teeth each: the load shares less than a tenth of them."""
     case, curves, made, table = (tmp_path / name for name in ("case.toml", "a.mka", "made.toml", "ste.nc"))
     case.write_text(spur_case(torques=[300.0], model="plane_strain"), encoding="utf-8")
@@ -145,9 +143,7 @@ def taken_with(curves: bool) -> Callable[[str], object]:
 
 
 @pytest.mark.parametrize("curves", [True, False], ids=["curves", "values"])
-def test_a_hundred_damaged_files_of_a_pair_are_refused_or_judged(
-    curves: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_hundred_damaged_files_of_a_pair_are_refused_or_judged(curves, monkeypatch):
     fates = fates_of_a_hundred(CURVES if curves else VALUES, taken_with(curves), monkeypatch)
     assert min(fates["taken"], fates["refused"]) >= 5, fates
 
@@ -167,9 +163,7 @@ def reference(name: str) -> str:
 @needs_fzg_reference
 @pytest.mark.law
 @pytest.mark.parametrize(("curves", "values", "gear", "number"), FILES, ids=["wheel", "pinion"])
-def test_all_results_of_measured_gears_are_recomputed(
-    curves: str, values: str, gear: Gear, number: int
-) -> None:
+def test_all_results_of_measured_gears_are_recomputed(curves, values, gear, number):
     file = machine_file(reference(curves), gear)
     judgement = judged(file, gear, value_file(reference(values)).printed)
     assert (judgement.recomputed, judgement.differences) == (number, ())
@@ -193,7 +187,7 @@ def touched(text: str, side: str, teeth: int) -> list[float]:
 @pytest.mark.parametrize(
     ("curves", "gear"), [(FILES[0][0], WHEEL), (FILES[1][0], PINION)], ids=["wheel", "pinion"]
 )
-def test_teeth_stand_where_the_probe_touched_them(curves: str, gear: Gear) -> None:
+def test_teeth_stand_where_the_probe_touched_them(curves, gear):
     """*Teilung* runs clockwise; a tooth ahead of its place clockwise has a larger pitch of the sheet."""
     text = reference(curves)
     sheet = machine_sheet(machine_file(text, gear), gear)
@@ -213,7 +207,7 @@ def test_teeth_stand_where_the_probe_touched_them(curves: str, gear: Gear) -> No
 
 
 @needs_fzg_reference
-def test_traces_are_numbered_like_the_tables_of_pitches() -> None:
+def test_traces_are_numbered_like_the_tables_of_pitches():
     """The pinion runs out by 11.8 um: its slopes of profiles follow, largest on the side that stands out.
 
     A flank whose tooth stands at an angle from that side has the slope of the eccentricity times the roll

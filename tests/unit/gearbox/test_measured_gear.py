@@ -1,12 +1,9 @@
 """Sheets of an inspection: every line has its fate, and what a case holds comes back from its sheet."""
 
-from __future__ import annotations
-
 import json
 import math
 import tomllib
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,7 +12,6 @@ from damaged_text import fates_of_a_hundred
 from spur_case import spur_case
 
 from fe_contact.geometry import Gear, PitchDeviation, RingGear, ToothFlank, Toothing
-from fe_contact.types import FloatArray
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.inspection.as_made import Inspected, measured_case
 from lineofaction.gearbox.inspection.evaluation import gaussian, split
@@ -50,7 +46,7 @@ def refused(text: str) -> str:
 @pytest.mark.parametrize("gear", [PINION, RING], ids=["external", "internal"])
 @pytest.mark.parametrize("loaded", ["left", "right"])
 @pytest.mark.parametrize("drives", [True, False], ids=["drives", "driven"])
-def test_an_inspection_gives_back_what_it_measured(gear: Toothing, loaded: Flank, drives: bool) -> None:
+def test_an_inspection_gives_back_what_it_measured(gear, loaded, drives):
     chart = Chart(gear, loaded, drives)
     found = taken(sheet_text(inspected(chart)), gear, loaded, drives)
     cumulative = 1e6 * np.array(gear.pitch_deviation.cumulative)
@@ -72,16 +68,14 @@ def test_an_inspection_gives_back_what_it_measured(gear: Toothing, loaded: Flank
         (RING, "left", False, (1, 2, 3), 1),
     ],
 )
-def test_teeth_come_in_the_order_in_which_the_loaded_flanks_mesh(
-    gear: Toothing, loaded: Flank, drives: bool, order: tuple[int, ...], sign: int
-) -> None:
+def test_teeth_come_in_the_order_in_which_the_loaded_flanks_mesh(gear, loaded, drives, order, sign):
     """Clockwise on the sheet; a gear that drives by its right flanks turns clockwise, the next behind."""
     rows = [f"{tooth},{loaded},cumulative_pitch,,,{tooth}" for tooth in range(1, gear.teeth + 1)]
     found = taken("\n".join((HEAD, *rows)), gear, loaded, drives)
     assert found.fields["pitch_deviation_um"][:3] == [float(sign * tooth) for tooth in order]
 
 
-def test_single_pitches_of_a_sheet_are_summed_clockwise() -> None:
+def test_single_pitches_of_a_sheet_are_summed_clockwise():
     rows = [f"{tooth},right,pitch,,,{3 if tooth == 2 else 0}" for tooth in range(1, 21)]
     found = taken("\n".join((HEAD, *rows))).fields["pitch_deviation_um"]
     assert found[0] == pytest.approx(-0.15)  # tooth 1: the mean of all pitches is taken out
@@ -89,7 +83,7 @@ def test_single_pitches_of_a_sheet_are_summed_clockwise() -> None:
     assert found[1] == pytest.approx(0.0)  # tooth 20 closes the circle
 
 
-def test_the_filter_keeps_half_a_wave_of_its_cut_off_and_all_of_a_line() -> None:
+def test_the_filter_keeps_half_a_wave_of_its_cut_off_and_all_of_a_line():
     place = np.linspace(0.0, 20e-3, 2001)
     at = np.linspace(0.0, 20e-3, 41)
     line = 3e-6 + 2e-4 * place
@@ -98,7 +92,7 @@ def test_the_filter_keeps_half_a_wave_of_its_cut_off_and_all_of_a_line() -> None
     assert gaussian(place, wave, at, 0.5e-3)[2:-2] == pytest.approx(0.5 * wave[::50][2:-2], abs=1e-6)
 
 
-def test_a_trace_is_split_into_its_line_and_the_height_of_the_rest() -> None:
+def test_a_trace_is_split_into_its_line_and_the_height_of_the_rest():
     place = np.linspace(2e-3, 20e-3, 901)
     u = (place - 11e-3) / 9e-3
     found = split(place, 1e-6 + 2e-6 * u + 0.75e-6 * np.cos(2.0 * math.pi * u))
@@ -107,7 +101,7 @@ def test_a_trace_is_split_into_its_line_and_the_height_of_the_rest() -> None:
     assert found.cutoff == pytest.approx(18e-3 / 30)
 
 
-def test_places_are_taken_as_they_are_typed() -> None:
+def test_places_are_taken_as_they_are_typed():
     """Roll angle, diameter and distance from the datum face are the same points by closed form."""
     radius, half = PINION.base_radius, 12.5
     rolls = np.linspace(4.0, 14.0, 61)
@@ -127,7 +121,7 @@ def test_places_are_taken_as_they_are_typed() -> None:
     assert far.splits[1, "helix"].slope == pytest.approx(near.splits[1, "helix"].slope, rel=1e-9)
 
 
-def test_a_topography_is_taken_whole_and_its_tooth_has_no_other_trace() -> None:
+def test_a_topography_is_taken_whole_and_its_tooth_has_no_other_trace():
     nodes = [(roll, face) for roll in (4, 9, 14) for face in (-10, 0, 10)]
     rows = [f"5,right,topography,{roll},{face},{roll * face / 100}" for roll, face in nodes]
     found = taken("\n".join((HEAD, "# measured", "", *rows, "5,right,profile,5,,1", "5,left,profile,5,,1")))
@@ -143,7 +137,7 @@ def test_a_topography_is_taken_whole_and_its_tooth_has_no_other_trace() -> None:
 
 
 @pytest.mark.law
-def test_other_teeth_are_the_mean_of_the_measured_ones() -> None:
+def test_other_teeth_are_the_mean_of_the_measured_ones():
     """Figures of the gear and flanks of its teeth together: measured teeth keep their surface."""
     content = validated(Case, tomllib.loads(spur_case(torques=[100.0])))
     sheet = sheet_text(inspected(Chart(PINION, "right", True)))
@@ -158,7 +152,7 @@ def test_other_teeth_are_the_mean_of_the_measured_ones() -> None:
         indexing="ij",
     )
 
-    def surface(gear: Toothing, tooth: int) -> FloatArray:
+    def surface(gear, tooth):
         flanks = [flank.excess(gear, *place) for flank in gear.tooth_flanks if flank.tooth == tooth]
         return np.asarray(sum(flanks, -gear.modification.removed(gear, *place)))
 
@@ -170,7 +164,7 @@ def test_other_teeth_are_the_mean_of_the_measured_ones() -> None:
     assert surface(alone, 7) == pytest.approx(0.0, abs=1e-12)
 
 
-def test_a_mean_needs_traces_of_the_same_kinds() -> None:
+def test_a_mean_needs_traces_of_the_same_kinds():
     rows = [f"{tooth},right,{kind}" for tooth, kind in ((1, "profile"), (2, "profile"), (2, "helix"))]
     places = {
         "profile": [f"{4 + 0.1 * k:.3f}," for k in range(100)],
@@ -208,17 +202,17 @@ PROFILE = [f"1,right,profile,{4 + 0.1 * k:.3f},,{k % 3}" for k in range(100)]
         ([HEAD, '1,right,profile,5,,"' + 200_000 * "9"], "CSV"),
     ],
 )
-def test_a_sheet_is_refused_by_what_is_wrong(lines: list[str], said: str) -> None:
+def test_a_sheet_is_refused_by_what_is_wrong(lines, said):
     assert said in refused("\n".join(lines))
 
 
-def test_a_hundred_damaged_sheets_are_refused_once_or_accounted_for(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_hundred_damaged_sheets_are_refused_once_or_accounted_for(monkeypatch):
     sound = sheet_text(inspected(Chart(replace(PINION, tooth_flanks=FLANKS[:1]), "right", True)))
     fates = fates_of_a_hundred(sound, taken, monkeypatch)
     assert min(fates["taken"], fates["refused"]) >= 10, fates
 
 
-def test_the_verb_writes_a_sheet_and_takes_it_back(tmp_path: Path) -> None:
+def test_the_verb_writes_a_sheet_and_takes_it_back(tmp_path):
     pitches = [float(value) for value in range(20)]
     case, sheet, out = (tmp_path / name for name in ("case.toml", "sheet.csv", "out.toml"))
     tables = "\n[[pair.pinion.tooth_flanks]]\ntooth = 3\nprofile_slope_um = 4.0\n"
@@ -238,7 +232,7 @@ def test_the_verb_writes_a_sheet_and_takes_it_back(tmp_path: Path) -> None:
     assert "cumulative_pitch" in said.stdout and "cut-off" in said.stdout
 
 
-def test_what_a_sheet_leaves_out_comes_first_and_decides_the_exit_code_if_asked(tmp_path: Path) -> None:
+def test_what_a_sheet_leaves_out_comes_first_and_decides_the_exit_code_if_asked(tmp_path):
     """Points of the loaded flank; those of the other one are of no use to the case."""
     case, sheet = tmp_path / "case.toml", tmp_path / "sheet.csv"
     case.write_text(spur_case(torques=[100.0]), encoding="utf-8")
@@ -252,7 +246,7 @@ def test_what_a_sheet_leaves_out_comes_first_and_decides_the_exit_code_if_asked(
         assert done.stdout.startswith(said) == bool(code)
 
 
-def test_the_verb_names_a_sheet_that_is_not_there(tmp_path: Path) -> None:
+def test_the_verb_names_a_sheet_that_is_not_there(tmp_path):
     case = tmp_path / "case.toml"
     case.write_text(spur_case(torques=[100.0]), encoding="utf-8")
     done = loa("measured", case, tmp_path / "none.csv", "--gear", "pinion", "--loaded", "left", "--json")

@@ -1,7 +1,5 @@
 """Frequency responses of a universal file: the modal answer back, senses and units by hand, attacks."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -46,7 +44,7 @@ def exported(folder: Path, kind: str, **changed: Any) -> Path:
 
 
 @pytest.mark.parametrize(("kind", "binary"), [("displacement", 0), ("velocity", 1), ("acceleration", 0)])
-def test_an_export_of_a_modal_housing_gives_its_vibration_back(kind: str, binary: int, tmp_path: Path):
+def test_an_export_of_a_modal_housing_gives_its_vibration_back(kind, binary, tmp_path):
     """Within 0.1 dB at the lines; not within 0.1 dB of its mirror image, so that it is no accident."""
     draw = np.random.default_rng(5)
     force = draw.normal(size=(4, 3, 5, 6)) + 1j * draw.normal(size=(4, 3, 5, 6))
@@ -74,7 +72,7 @@ def test_an_export_of_a_modal_housing_gives_its_vibration_back(kind: str, binary
 
 @pytest.mark.parametrize("towards", [1, -2, 3])
 @pytest.mark.parametrize("pushed", [-1, 2, -3])
-def test_a_direction_below_zero_is_against_its_axis(towards: int, pushed: int, tmp_path: Path):
+def test_a_direction_below_zero_is_against_its_axis(towards, pushed, tmp_path):
     """2 m/s^2 per N towards -y and a push along y: -2 along y, a mobility of -2 / (2 pi i f)."""
     file = universal_file(tmp_path / "a.uff", [function(LINES, 2.0 + 0.0 * LINES, (11, towards, 1, pushed))])
     found = read(file)
@@ -84,7 +82,7 @@ def test_a_direction_below_zero_is_against_its_axis(towards: int, pushed: int, t
     np.testing.assert_allclose(found.mobility[:, 0, 0], sense * 2.0 / (2j * np.pi * LINES), rtol=1e-5)
 
 
-def test_reciprocity_is_not_assumed(tmp_path: Path):
+def test_reciprocity_is_not_assumed(tmp_path):
     """Both nodes are seat and point, their two functions differ: each stays where it was measured."""
     sets = [
         function(LINES, size + 0.0 * LINES, ends, "velocity")
@@ -112,7 +110,7 @@ def test_reciprocity_is_not_assumed(tmp_path: Path):
         (("m/s^2", "N"), (1.0, 1.0), 1.0),
     ],
 )
-def test_units_are_those_of_labels_or_of_the_file(labels, units, factor, tmp_path: Path):
+def test_units_are_those_of_labels_or_of_the_file(labels, units, factor, tmp_path):
     names = dict(zip(("ordinate_axis_units_lab", "orddenom_axis_units_lab"), labels, strict=True))
     sets = [function(LINES, 1.0 + 0.0 * LINES, **names)]
     if units is not None:
@@ -121,7 +119,7 @@ def test_units_are_those_of_labels_or_of_the_file(labels, units, factor, tmp_pat
     np.testing.assert_allclose(found.mobility[:, 0, 0] * 2j * np.pi * LINES, factor, rtol=1e-5)
 
 
-def test_other_functions_and_a_line_at_rest_are_passed_over(tmp_path: Path):
+def test_other_functions_and_a_line_at_rest_are_passed_over(tmp_path):
     lines = np.arange(0.0, 101.0)
     sets = [
         function(lines, 1.0 + 0.0 * lines),
@@ -166,14 +164,14 @@ ATTACKS = {
 
 
 @pytest.mark.parametrize("name", ATTACKS)
-def test_a_file_that_cannot_be_used_is_refused_by_name(name: str, tmp_path: Path):
+def test_a_file_that_cannot_be_used_is_refused_by_name(name, tmp_path):
     sets, message = ATTACKS[name]
     with pytest.raises(BadInput, match=message) as refused:
         read(universal_file(tmp_path / "a.uff", sets))
     assert str(refused.value).startswith("file = ")
 
 
-def test_a_function_that_is_cut_off_and_a_foreign_file_are_refused(tmp_path: Path):
+def test_a_function_that_is_cut_off_and_a_foreign_file_are_refused(tmp_path):
     file = universal_file(tmp_path / "a.uff", attack())
     text = file.read_text().splitlines(keepends=True)
     file.write_text("".join(text[:40] + text[-1:]))
@@ -189,7 +187,7 @@ def test_a_function_that_is_cut_off_and_a_foreign_file_are_refused(tmp_path: Pat
 
 
 @pytest.mark.parametrize("value", ["nan", "inf"])
-def test_a_value_that_is_no_number_is_refused_with_its_line(value: str, tmp_path: Path):
+def test_a_value_that_is_no_number_is_refused_with_its_line(value, tmp_path):
     file = universal_file(tmp_path / "a.uff", attack())
     text = file.read_text()
     line = "  6.75000e+01   1.00000000000e+00"
@@ -199,7 +197,7 @@ def test_a_value_that_is_no_number_is_refused_with_its_line(value: str, tmp_path
         read(file)
 
 
-def test_real_values_are_no_frequency_response(tmp_path: Path):
+def test_real_values_are_no_frequency_response(tmp_path):
     part = attack()[0] | {"data": np.ones(LINES.size)}
     with pytest.raises(BadInput, match="complex values"):
         read(universal_file(tmp_path / "a.uff", [part]))

@@ -1,7 +1,5 @@
 """Measured housings of scene files: their fields, their files, and what they leave as it is."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
@@ -43,13 +41,12 @@ def housing(folder: Path, **fields: Any) -> dict[str, Any]:
     return {"name": "gearcase", "frf_file": content(folder), **NODES} | fields
 
 
-def test_a_scene_file_names_the_file_and_a_request_holds_it(tmp_path: Path) -> None:
+def test_a_scene_file_names_the_file_and_a_request_holds_it(tmp_path):
     """Both are the same scene; files beside it are written again under their names."""
     file = measured_scene(tmp_path)
     scene, _ = scene_of(file)
     (part,) = scene.housings
     assert part.bushings == ("left",)
-    assert part.frf_file is not None
     assert part.frf_file.unpacked() == (tmp_path / "gearcase.uff").read_bytes()
     again = validated(SceneInput, scene.model_dump(mode="json"))
     assert again == scene
@@ -62,7 +59,7 @@ def test_a_scene_file_names_the_file_and_a_request_holds_it(tmp_path: Path) -> N
     assert validated(SceneInput, written_out(table, in_folder(folder), READERS)).housings == scene.housings
 
 
-def test_a_text_with_its_files_is_read_as_beside_it_on_disk(tmp_path: Path) -> None:
+def test_a_text_with_its_files_is_read_as_beside_it_on_disk(tmp_path):
     file = measured_scene(tmp_path)
     sent = [FileContentInput.of(tmp_path / "gearcase.uff").model_dump(mode="json")]
     empty = tmp_path / "empty"
@@ -73,7 +70,7 @@ def test_a_text_with_its_files_is_read_as_beside_it_on_disk(tmp_path: Path) -> N
 
 
 @pytest.mark.law
-def test_a_measured_housing_moves_no_shaft(tmp_path: Path) -> None:
+def test_a_measured_housing_moves_no_shaft(tmp_path):
     """The scene of dynamics is the one without it; matrices of other housings keep their bearings."""
     table = {"mesh": small_table()}
     scene, _ = scene_of(measured_scene(tmp_path))
@@ -85,7 +82,7 @@ def test_a_measured_housing_moves_no_shaft(tmp_path: Path) -> None:
     assert frame.name == "frame"
 
 
-def test_errors_of_dynamics_count_housings_as_the_file_does(tmp_path: Path) -> None:
+def test_errors_of_dynamics_count_housings_as_the_file_does(tmp_path):
     """The second and third housing of the file are the first and second of dynamics."""
     scene, _ = scene_of(measured_scene(tmp_path))
     same = {"bushings": ["left"], "stiffness_matrix": MATRIX}
@@ -97,7 +94,7 @@ def test_errors_of_dynamics_count_housings_as_the_file_does(tmp_path: Path) -> N
         raise InputError("meshes[0]", 1, "as it is")
 
 
-def test_the_axes_of_the_file_are_turned_into_the_scene(tmp_path: Path) -> None:
+def test_the_axes_of_the_file_are_turned_into_the_scene(tmp_path):
     """The file's x is the scene's z, its z the scene's y: so its y is the scene's x."""
     given = housing(tmp_path, x_axis=[0.0, 0.0, 0.5], z_axis=[0.0, 1.0, 0.0])
     found = housing_mobility(HousingInput.model_validate(given))
@@ -105,7 +102,7 @@ def test_the_axes_of_the_file_are_turned_into_the_scene(tmp_path: Path) -> None:
     np.testing.assert_allclose(found.mobility[:, 0, 0] * 2j * np.pi * LINES * MASS, 1.0, rtol=1e-5)
 
 
-def test_a_file_is_read_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_file_is_read_once(tmp_path, monkeypatch):
     given = housing(tmp_path, name="once")
     first = housing_mobility(HousingInput.model_validate(given))
     monkeypatch.setattr(measured_housings, "read_frequency_responses", lambda *_: pytest.fail("read again"))
@@ -130,7 +127,7 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
 
 
 @pytest.mark.parametrize("name", REFUSED)
-def test_fields_that_do_not_fit_are_refused(name: str, tmp_path: Path) -> None:
+def test_fields_that_do_not_fit_are_refused(name, tmp_path):
     fields, message = REFUSED[name]
     with pytest.raises(BadInput, match=message):
         validated(HousingInput, housing(tmp_path, **fields))
@@ -177,7 +174,7 @@ FAULTS: dict[str, tuple[Callable[[Path], dict[str, Any]], str]] = {
 
 
 @pytest.mark.parametrize("name", FAULTS)
-def test_a_file_that_cannot_be_used_is_named_by_the_field_of_the_scene(name: str, tmp_path: Path) -> None:
+def test_a_file_that_cannot_be_used_is_named_by_the_field_of_the_scene(name, tmp_path):
     change, message = FAULTS[name]
     scene = tomllib.loads(measured_scene(tmp_path).read_text("utf-8"))
     scene["housings"] = [housing(tmp_path) | change(tmp_path)]
@@ -187,7 +184,7 @@ def test_a_file_that_cannot_be_used_is_named_by_the_field_of_the_scene(name: str
         read_responses(inputs)
 
 
-def test_a_file_that_is_not_beside_the_scene_is_refused(tmp_path: Path) -> None:
+def test_a_file_that_is_not_beside_the_scene_is_refused(tmp_path):
     file = measured_scene(tmp_path)
     (tmp_path / "gearcase.uff").unlink()
     with pytest.raises(

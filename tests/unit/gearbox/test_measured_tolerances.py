@@ -1,9 +1,6 @@
 """Tolerance studies of measured gears: a population equal to a class gives the pairs of that class."""
 
-from __future__ import annotations
-
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -27,7 +24,7 @@ def measured(correlation: float = 0.0) -> MeasuredTolerances:
     )
 
 
-def test_measured_figures_have_their_mean_spread_and_correlation() -> None:
+def test_measured_figures_have_their_mean_spread_and_correlation():
     names, sample = list(measured().widths), measured(0.8).sample(4096, 1)
     one, other = (sample[:, names.index(name)] for name in ("wheel.profile_slope", "wheel.helix_slope"))
     assert (one.mean(), other.mean()) == pytest.approx((5e-6, -2e-6), abs=0.02e-6)
@@ -41,7 +38,7 @@ def test_measured_figures_have_their_mean_spread_and_correlation() -> None:
     assert center["pinion.profile_slope"] == pytest.approx(0.0, abs=1e-12)
 
 
-def test_correlations_that_no_gears_have_are_refused() -> None:
+def test_correlations_that_no_gears_have_are_refused():
     mean = dict.fromkeys(("a", "b", "c"), 0.0)
     names = dict(zip(mean, ("pinion.profile_slope", "wheel.profile_slope", "wheel.helix_slope"), strict=True))
     pairs = {(names["a"], names["b"]): 0.9, (names["b"], names["c"]): 0.9, (names["a"], names["c"]): -0.9}
@@ -59,14 +56,14 @@ OF = (*SAMPLE, "--limit", "1=0.5um")
 
 
 @pytest.fixture(scope="module")
-def case(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def case(tmp_path_factory):
     file = tmp_path_factory.mktemp("measured") / "case.toml"
     file.write_text(spur_case(torques=[100.0], model="plane_strain"), encoding="utf-8")
     return file
 
 
 @pytest.mark.law
-def test_a_population_equal_to_its_class_has_the_same_pairs(case: Path) -> None:
+def test_a_population_equal_to_its_class_has_the_same_pairs(case):
     done = printed("scatter", case, *OF)
     widths = done["asked"]["tolerances"]
     rows = [f"{name}={0.0}/{width / 3.0!r}" for name, width in widths.items() if name.startswith("wheel.")]
@@ -82,7 +79,7 @@ def test_a_population_equal_to_its_class_has_the_same_pairs(case: Path) -> None:
     }
 
 
-def test_a_study_of_measured_gears_says_how_the_class_errs(case: Path) -> None:
+def test_a_study_of_measured_gears_says_how_the_class_errs(case):
     row = (
         "--limit",
         "1=2um",
@@ -110,7 +107,7 @@ def test_a_study_of_measured_gears_says_how_the_class_errs(case: Path) -> None:
         ("=", "pinion or wheel, a dot"),
     ],
 )
-def test_a_row_is_refused_by_what_is_wrong(case: Path, row: str, said: str) -> None:
+def test_a_row_is_refused_by_what_is_wrong(case, row, said):
     done = loa("scatter", case, *OF, "--population", row, "--json")
     assert done.exit_code == 2
     assert said in json.dumps(done.output) or said in done.stderr

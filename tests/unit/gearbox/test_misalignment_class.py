@@ -1,7 +1,5 @@
 """Misalignments of a table by a class: the axis of the request, its refusals, the sentence about it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest
@@ -20,7 +18,7 @@ def case(errors: dict[str, Any], **pinion: Any) -> Case:
     return validated(Case, {"pair": pair, "load": {"torque_n_m": [100.0]}, "errors": errors})
 
 
-def test_a_class_makes_the_axis_and_says_how() -> None:
+def test_a_class_makes_the_axis_and_says_how():
     made = case({"misalignment_class": 7})
     assert [1e6 * value for value in table_axes(made).misalignments] == pytest.approx([-20, -10, 0, 10, 20])
     allowed = allowed_misalignment(made)
@@ -28,7 +26,7 @@ def test_a_class_makes_the_axis_and_says_how() -> None:
     assert allowed_misalignment(case({"misalignment_um": [0.0, 30.0]})) is None
 
 
-def test_a_clearance_widens_the_axis_over_the_bearings_of_the_shaft() -> None:
+def test_a_clearance_widens_the_axis_over_the_bearings_of_the_shaft():
     """50 µm over 100 mm are 10 µm over the face: the root of 19.94^2 + 10^2 is 22.3, rounded 22."""
     errors = {"misalignment_class": 7, "bearing_clearance_um": [50.0, 0.0]}
     assert 1e6 * table_axes(case(errors, shaft=SHAFT)).misalignments[-1] == pytest.approx(22.0)
@@ -45,13 +43,11 @@ def test_a_clearance_widens_the_axis_over_the_bearings_of_the_shaft() -> None:
         ({"misalignment_class": 12}, "misalignment_class"),
     ],
 )
-def test_a_class_beside_values_and_a_clearance_without_one_are_refused(
-    errors: dict[str, Any], field: str
-) -> None:
+def test_a_class_beside_values_and_a_clearance_without_one_are_refused(errors, field):
     with pytest.raises(BadInput) as caught:
         case(errors)
     assert caught.value.faults[0].field.endswith(field)
 
 
-def test_a_case_without_a_class_is_stored_as_before() -> None:
+def test_a_case_without_a_class_is_stored_as_before():
     assert set(case_json(case({}))["errors"]) == {"misalignment_um", "center_distance_change_mm"}

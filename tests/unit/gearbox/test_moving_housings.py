@@ -1,14 +1,12 @@
 """The surface of a housing by the freedoms of a system: what it does in a mode is what its reduction says."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from housed_tubes import OFF, mount_of, subject_of, tube_on
 from scipy.spatial import cKDTree
 
 from dynamics.assembly.assemble import assemble
-from dynamics.housings import ReducedHousing, receptance
+from dynamics.housings import receptance
 from dynamics.housings.rigid_body import rigid_motions
 from dynamics.mechanism.bodies import modal_housing
 from lineofaction.gearbox.convert.scene import TabledScene
@@ -28,22 +26,19 @@ def amplitudes_move(subject: TabledScene) -> tuple[Hull, np.ndarray]:
 
 
 @pytest.fixture(scope="module")
-def mounted() -> ReducedHousing:
+def mounted():
     return tube_on(mount_of(2e8))
 
 
 @pytest.mark.law
 @pytest.mark.parametrize("maximum", [2000, 60])
-def test_the_surface_by_its_amplitudes_is_that_of_the_reduction(
-    mounted: ReducedHousing, maximum: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_surface_by_its_amplitudes_is_that_of_the_reduction(mounted, maximum, monkeypatch):
     """Under forces on the seats, static and beyond the first mode; also where few points are drawn."""
     monkeypatch.setattr(unit_bodies, "MAX_FACETS", maximum)
     subject = subject_of(mounted)
     hull, moved = amplitudes_move(subject)
     assert len(hull.facets) <= maximum
     surface, modal = mounted.surface, modal_housing(subject.scene.housings[0])
-    assert surface is not None
     distance, node = cKDTree(surface.points).query(hull.points)
     assert distance.max() < 1e-7, "points that are drawn are points of the mesh"
     over = np.diag([1.0] * 5 + [1.0, -1.0, -1.0, 1.0, -1.0])  # its y and z are turned over
@@ -58,7 +53,7 @@ def test_the_surface_by_its_amplitudes_is_that_of_the_reduction(
 
 
 @pytest.mark.law
-def test_a_housing_on_soft_mounts_moves_rigidly_and_a_bolted_one_bends() -> None:
+def test_a_housing_on_soft_mounts_moves_rigidly_and_a_bolted_one_bends():
     """Six motions on soft mounts are those of a rigid body; in others walls bend; a bolted foot stands."""
     bent = {}
     for name, mount in {"soft": mount_of(1e4), "bolted": None}.items():
@@ -77,6 +72,6 @@ def test_a_housing_on_soft_mounts_moves_rigidly_and_a_bolted_one_bends() -> None
 
 
 @pytest.mark.law
-def test_a_housing_whose_modes_are_neglected_has_no_motion(mounted: ReducedHousing) -> None:
+def test_a_housing_whose_modes_are_neglected_has_no_motion(mounted):
     subject = subject_of(mounted, OFF)
     assert surface_motion(subject, assemble(subject.scene).freedoms.name).shape == (0, 3, 0)

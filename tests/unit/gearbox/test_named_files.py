@@ -1,7 +1,5 @@
 """Texts with the files that they name: read as beside one another on disk, and nothing else is read."""
 
-from __future__ import annotations
-
 import base64
 import tomllib
 import zlib
@@ -10,6 +8,7 @@ from pathlib import Path
 import h5py
 import pytest
 from reduced_housings import random_housing
+from repository import ROOT
 
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, SceneInput, read_model
@@ -18,7 +17,6 @@ from lineofaction.gearbox.schemas.files import side_files
 from lineofaction.gearbox.schemas.toml import toml_text
 from service.reading.texts import case_of_toml, scene_of_toml
 
-ROOT = Path(__file__).parents[3]
 SCENE = ROOT / "examples" / "palermo_scene.toml"
 CASE = SCENE.with_name("palermo_spur_20_20.toml")
 BOX = """

@@ -1,7 +1,5 @@
 """Bands and sensitivities of a scene with a solid housing: guesses, flanks, and what is left out."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -72,20 +70,18 @@ def made_from(folder: Path, **pair: Any) -> TabledScene:
 
 
 @pytest.fixture(scope="module")
-def subject(tmp_path_factory: pytest.TempPathFactory) -> TabledScene:
+def subject(tmp_path_factory):
     return made_from(tmp_path_factory.mktemp("scene"))
 
 
 @pytest.fixture(scope="module")
-def model(subject: TabledScene) -> SoundModel:
+def model(subject):
     (housing,) = subject.housings.values()
     radiation = housing_radiation(housing, EquivalentRadiatedPower(), (50.0, 10e3))
     return SoundModel(subject.scene, subject.housings, {"case": radiation})
 
 
-def test_flanks_and_guesses_are_ranked_by_what_they_change(
-    subject: TabledScene, model: SoundModel, tmp_path: Path
-) -> None:
+def test_flanks_and_guesses_are_ranked_by_what_they_change(subject, model, tmp_path):
     rows, left_out = _sensitivities_of(subject, model, SPEED, 3, Means(tmp_path, quiet))
     names = [row.figure.name for row in rows]
     assert {"housing_damping", "bearing_stiffness", "mesh_damping", "housing_frequency"} <= set(names)
@@ -103,9 +99,7 @@ def test_flanks_and_guesses_are_ranked_by_what_they_change(
 
 
 @pytest.mark.law
-def test_a_step_of_a_relief_changes_the_level_as_a_scene_with_that_relief_does(
-    subject: TabledScene, model: SoundModel, tmp_path: Path
-) -> None:
+def test_a_step_of_a_relief_changes_the_level_as_a_scene_with_that_relief_does(subject, model, tmp_path):
     """Between two tables solved from the start, and between those on the compliance of the first."""
     scenes = _flank_scenes(subject, RELIEF, tmp_path)
     other = made_from(tmp_path, pinion=RELIEVED | {"tip_relief_um": 40.0})
@@ -123,9 +117,7 @@ def test_a_step_of_a_relief_changes_the_level_as_a_scene_with_that_relief_does(
 
 
 @pytest.mark.law
-def test_sensitivities_to_flanks_are_those_of_whole_responses(
-    subject: TabledScene, model: SoundModel, tmp_path: Path
-) -> None:
+def test_sensitivities_to_flanks_are_those_of_whole_responses(subject, model, tmp_path):
     scenes = _flank_scenes(subject, RELIEF, tmp_path)
     figure = DesignFigure(RELIEF, "um", 10.0, 15.0)
     rows, left_out = sound_sensitivities(
@@ -140,7 +132,7 @@ def test_sensitivities_to_flanks_are_those_of_whole_responses(
     assert (row.change, row.change_of_two) == pytest.approx((once - own, twice - own), abs=1e-6)
 
 
-def test_bands_go_to_json(subject: TabledScene, model: SoundModel) -> None:
+def test_bands_go_to_json(subject, model):
     band = sound_band(model, SPEED, 2, spans_of(NoiseRanges(housing_damping=(0.4, 2.0))))
     known = {"damping_source": GUESSED.source, "damping_range": GUESSED.factors}
     told = json.loads(json.dumps(figures_of(SoundBandFigures, band, **known), allow_nan=False))
@@ -151,7 +143,7 @@ def test_bands_go_to_json(subject: TabledScene, model: SoundModel) -> None:
         assert "mount_stiffness" not in level["above_db"]
 
 
-def test_an_order_that_varying_stiffness_alone_excites_has_the_widest_band(model: SoundModel) -> None:
+def test_an_order_that_varying_stiffness_alone_excites_has_the_widest_band(model):
     """The ranges were run with the mean stiffness, of which a table can lack an order."""
     band = sound_band(model, SPEED, 2, {}, cases=1)
     order, power = forced_power(model, SPEED, 3)
@@ -165,7 +157,7 @@ def test_an_order_that_varying_stiffness_alone_excites_has_the_widest_band(model
     assert about.total[0].nominal == pytest.approx(sound_power_level(power.total_weighted_power)[0])
 
 
-def test_a_stated_and_a_measured_damping_narrow_its_range(subject: TabledScene) -> None:
+def test_a_stated_and_a_measured_damping_narrow_its_range(subject):
     (housing,) = subject.inputs.housings
     known = {
         damping: damping_of(
@@ -183,7 +175,7 @@ def test_a_stated_and_a_measured_damping_narrow_its_range(subject: TabledScene) 
     assert spans == sorted(spans, reverse=True)
 
 
-def test_measured_ratios_of_modes_are_those_of_the_reduced_housing(tmp_path: Path) -> None:
+def test_measured_ratios_of_modes_are_those_of_the_reduced_housing(tmp_path):
     write_block(tmp_path / "block.step")
     scene = housed_scene(tmp_path)
     scene["housings"][0].pop("loss_factor", None)
@@ -199,7 +191,7 @@ def test_measured_ratios_of_modes_are_those_of_the_reduced_housing(tmp_path: Pat
         scene_of(file)
 
 
-def test_ranges_are_those_of_the_library_and_hold_what_the_scene_states() -> None:
+def test_ranges_are_those_of_the_library_and_hold_what_the_scene_states():
     assert tuple(GUESSES) == RANGES
     for name, guess in GUESSES.items():
         stated = GUESSED.factors if name == "housing_damping" else getattr(NoiseRanges(), name)

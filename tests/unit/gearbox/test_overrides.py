@@ -1,13 +1,12 @@
 """``--set`` and its shorthands: a value on the command line does what it does in the file."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 
 import pytest
 import typer
 from command_line import loa, printed
+from repository import EXAMPLES
 
 from lineofaction.cli.commands import app
 from lineofaction.gearbox.input_file import InputFile, Override
@@ -16,7 +15,6 @@ from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas import Case, read_model, read_table
 from lineofaction.gearbox.schemas.scene import SceneInput
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 SPUR, SCENE = EXAMPLES / "palermo_spur_20_20.toml", EXAMPLES / "palermo_scene.toml"
 TAKES_FILES = ("analyze", "geometry", "export", "plan", "simulate", "submit", *STUDIES.keys() - {"listen"})
 
@@ -54,20 +52,18 @@ def changed(old: str, new: str, tmp_path: Path) -> Case:
         ),
     ],
 )
-def test_a_value_that_is_set_is_one_in_the_file(
-    settings: tuple[str, ...], old: str, new: str, tmp_path: Path
-) -> None:
+def test_a_value_that_is_set_is_one_in_the_file(settings, old, new, tmp_path):
     assert read(*settings) == changed(old, new, tmp_path)
     assert read(*settings) != read()
 
 
-def test_a_later_value_prevails_and_the_file_stays_as_it_is() -> None:
+def test_a_later_value_prevails_and_the_file_stays_as_it_is():
     before = SPUR.read_bytes()
     assert read("pair.pinion.teeth=21", "pair.pinion.teeth=22").pair.pinion.teeth == 22
     assert SPUR.read_bytes() == before
 
 
-def test_parts_of_a_scene_are_named_as_in_a_study() -> None:
+def test_parts_of_a_scene_are_named_as_in_a_study():
     table = read_table(SCENE)
     name = table["shafts"][1]["name"]
     one = read(f"shafts.{name}.diameter_mm=45", file=SCENE, model=SceneInput)
@@ -93,25 +89,25 @@ def test_parts_of_a_scene_are_named_as_in_a_study() -> None:
         ("pair..teeth=20", "of the form PATH=VALUE"),
     ],
 )
-def test_one_error_names_field_bound_and_what_to_try(setting: str, words: str) -> None:
+def test_one_error_names_field_bound_and_what_to_try(setting, words):
     done = loa("plan", SPUR, "--set", setting)
     assert done.exit_code == 2
     assert words in done.stderr
     assert done.stderr.count("error:") == 1
 
 
-def test_a_part_that_is_not_in_the_scene_is_refused_with_those_that_are() -> None:
+def test_a_part_that_is_not_in_the_scene_is_refused_with_those_that_are():
     with pytest.raises(BadInput, match=r'there is no "nope". Known here: '):
         read("shafts.nope.diameter_mm=45", file=SCENE, model=SceneInput)
 
 
 @pytest.mark.parametrize("value", ["1\nteeth = 5", "[[a]]", "{a = 1", '"open'])
-def test_what_is_no_toml_value_is_a_text(value: str) -> None:
+def test_what_is_no_toml_value_is_a_text(value):
     assert Override.of(f"a.b={value}").value == value.strip()
 
 
-def test_shorthands_take_the_place_of_what_they_exclude() -> None:
-    def planned(*options: object) -> Any:
+def test_shorthands_take_the_place_of_what_they_exclude():
+    def planned(*options):
         return printed("plan", SPUR, *options)
 
     assert planned("--level", "fine")["choice"]["level"] == "fine"
@@ -131,7 +127,7 @@ def commands() -> dict[str, Any]:
     return {name: group.get_command(context, name) for name in group.list_commands(context)}
 
 
-def test_every_verb_that_takes_a_case_or_a_scene_has_the_option_once() -> None:
+def test_every_verb_that_takes_a_case_or_a_scene_has_the_option_once():
     found = commands()
     assert set(TAKES_FILES) <= set(found)
     for name in TAKES_FILES:
@@ -140,7 +136,7 @@ def test_every_verb_that_takes_a_case_or_a_scene_has_the_option_once() -> None:
         assert len(spellings) == len(set(spellings)), name
 
 
-def test_a_file_that_is_no_case_takes_no_values(tmp_path: Path) -> None:
+def test_a_file_that_is_no_case_takes_no_values(tmp_path):
     done = loa("export", tmp_path / "ste.nc", "-o", tmp_path / "x.fmu", "--set", "pair.pinion.teeth=21")
     assert done.exit_code == 2
     assert "only a case or a scene file takes values" in done.stderr

@@ -1,7 +1,5 @@
 """Nonsense cases and scenes are refused or warned of by name; ordinary ones pass without a word."""
 
-from __future__ import annotations
-
 import math
 import re
 import tomllib
@@ -10,6 +8,7 @@ from typing import Any
 
 import pytest
 from changed_scenes import By, changed
+from repository import EXAMPLES
 
 from bounds import engineering
 from dynamics.plausibility import CHECKS as SCENE_CHECKS
@@ -25,7 +24,6 @@ from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.units import DEGREE, GPA, MM, UM
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 CASE_FILES = [file for file in sorted(EXAMPLES.rglob("*.toml")) if "[pair]" in file.read_text("utf-8")]
 SPUR = {
     "pair": {
@@ -223,9 +221,7 @@ def warnings_of_scene(content: dict[str, Any]) -> list[dict[str, Any]]:
 
 
 @pytest.mark.parametrize(("example", "field", "check", "asked", "value"), EVERY, ids=NAMES)
-def test_nonsense_is_refused_or_warned_of_by_name(
-    example: dict[str, Any], field: str, check: str | None, asked: str, value: Any
-) -> None:
+def test_nonsense_is_refused_or_warned_of_by_name(example, field, check, asked, value):
     """By the caller's field, in the caller's unit, with the unit that was most likely meant."""
     place = field.removesuffix("[0]").removesuffix("[1]")
     content = changed(example, value if isinstance(value, By) else {place: value})
@@ -243,23 +239,23 @@ def test_nonsense_is_refused_or_warned_of_by_name(
     assert question.startswith(asked) if asked else not question
 
 
-def test_much_is_nonsense() -> None:
+def test_much_is_nonsense():
     assert len(NONSENSE_CASES) >= 25 and len(NONSENSE_SCENES) >= 15
 
 
-def test_a_case_in_meters_is_one_warning_for_all_its_lengths() -> None:
+def test_a_case_in_meters_is_one_warning_for_all_its_lengths():
     """Loads and faces follow from the lengths: they would hide the cause."""
     (warning,) = case_warnings(CheckedCase(validated(Case, changed(SPUR, METRES))))
     assert warning["message"].endswith("Did you give meters, here and in all other lengths?")
     assert (warning["value"], warning["unit"]) == (0.004, "mm")
 
 
-def test_the_spur_pair_itself_is_plausible() -> None:
+def test_the_spur_pair_itself_is_plausible():
     assert warnings_of(SPUR) == []
 
 
 @pytest.mark.parametrize("file", CASE_FILES, ids=lambda file: file.stem)
-def test_examples_are_plausible(file: Path) -> None:
+def test_examples_are_plausible(file):
     assert case_warnings(CheckedCase(read_model(Case, file))) == []
 
 
@@ -300,7 +296,7 @@ def ordinary(
 
 @pytest.mark.parametrize("module", [0.3, 0.5, 1.0, 2.5, 6.0, 12.0, 25.0])
 @pytest.mark.parametrize("stress", [0.2, 10.0, 150.0, 300.0], ids=lambda value: f"{value} N/mm^2")
-def test_ordinary_pairs_are_plausible(module: float, stress: float) -> None:
+def test_ordinary_pairs_are_plausible(module, stress):
     """From module 0.3 to 25, spur and helical, nearly idle, rated and raced."""
     for helix, ratio in ((0.0, 10.0), (15.0, 20.0), (30.0, 35.0)):
         assert (
@@ -310,18 +306,18 @@ def test_ordinary_pairs_are_plausible(module: float, stress: float) -> None:
 
 
 @pytest.mark.parametrize(("modulus", "stress"), [(1.2, 4.0), (3.0, 12.0), (10.0, 20.0), (110.0, 40.0)])
-def test_plastics_and_bronze_are_plausible(modulus: float, stress: float) -> None:
+def test_plastics_and_bronze_are_plausible(modulus, stress):
     assert (
         case_warnings(CheckedCase(ordinary(1.0, (25, 40), ratio=8.0, stress=stress, modulus=modulus))) == []
     )
 
 
 @pytest.mark.parametrize("stress", [0.2, 100.0])
-def test_internal_pairs_are_plausible(stress: float) -> None:
+def test_internal_pairs_are_plausible(stress):
     assert case_warnings(CheckedCase(ordinary(2.0, (36, 96), ratio=10.0, stress=stress, internal=True))) == []
 
 
-def test_fine_modifications_and_deviations_are_plausible() -> None:
+def test_fine_modifications_and_deviations_are_plausible():
     """1 um of crowning on a small gear, 60 um of relief and 2 mrad on a large one."""
     small = ordinary(
         0.5, (23, 40), ratio=10.0, helix_crowning_um=1.0, tip_relief_um=2.0, tip_relief_length_mm=0.1
@@ -337,13 +333,13 @@ def test_fine_modifications_and_deviations_are_plausible() -> None:
     assert case_warnings(CheckedCase(small)) == case_warnings(CheckedCase(large)) == []
 
 
-def test_a_choice_holds_helical_gears() -> None:
+def test_a_choice_holds_helical_gears():
     """Who switches the axial freedom off says that something else holds the shafts."""
     loose = {f"bushings[{i}].axial_stiffness_n_per_m": 0.0 for i in range(4)}
     assert warnings_of_scene(changed(SCENE, loose | {"effects.axial": "off"} | HELICAL)) == []
 
 
-def test_the_end_of_a_shaft_is_on_it() -> None:
+def test_the_end_of_a_shaft_is_on_it():
     """To the rounding of added lengths: 0.1 + 0.2 is not 0.3."""
     at_end = {"shafts[0].length_mm": 0.3e3, "bushings[1].position_mm": (0.1 + 0.2) * 1e3}
     assert warnings_of_scene(changed(SCENE, at_end)) == []
@@ -353,7 +349,7 @@ def test_the_end_of_a_shaft_is_on_it() -> None:
     "name",
     ["palermo_scene", "flexible_shafts_scene", "planetary_scene", "wind_turbine_scene"],
 )
-def test_example_scenes_are_plausible(name: str) -> None:
+def test_example_scenes_are_plausible(name):
     file = EXAMPLES / f"{name}.toml"
     content = tomllib.loads(file.read_text(encoding="utf-8"))
     for mesh in content["meshes"]:
@@ -378,16 +374,16 @@ def limits(check: Any) -> str:
 @pytest.mark.parametrize(
     "check", [*PAIR_CHECKS.values(), *SCENE_CHECKS.values()], ids=lambda check: check.name
 )
-def test_every_check_is_on_the_page(check: Any) -> None:
+def test_every_check_is_on_the_page(check):
     assert f"`{check.name}`: {check.quantity} : {limits(check)}" in " ".join(PAGE.split())
 
 
-def test_the_page_has_no_check_that_is_gone() -> None:
+def test_the_page_has_no_check_that_is_gone():
     listed = re.findall(r"^`(\w+)`: ", PAGE, re.MULTILINE)
     assert sorted(listed) == sorted([*PAIR_CHECKS, *SCENE_CHECKS])
 
 
-def test_the_page_is_linked() -> None:
+def test_the_page_is_linked():
     assert "(plausibility.md)" in (DOCS / "cli.md").read_text(encoding="utf-8")
 
 

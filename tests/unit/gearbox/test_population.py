@@ -1,7 +1,5 @@
 """Populations of measured gears: a known one is read back, damaged files fall out one by one."""
 
-from __future__ import annotations
-
 import math
 import random
 from pathlib import Path
@@ -14,8 +12,7 @@ from fzg_reference import FOLDER, needs_fzg_reference
 from machine_texts import GEAR, Wave, heading, machine_text, wave_texts
 from spur_case import spur_case
 
-from fe_contact.flank.modification import FlankModification
-from fe_contact.geometry import Gear, ToothFlank
+from fe_contact import FlankModification, Gear, ToothFlank
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.inspection.measured_gear import Chart
 from lineofaction.gearbox.inspection.population import gear_files, inspected_gear, population, values_beside
@@ -51,14 +48,14 @@ def batch(folder: Path, count: int = GEARS, seed: int = 2) -> None:
 
 
 @pytest.mark.law
-def test_a_made_up_batch_is_read_back_within_its_sampling_error(tmp_path: Path) -> None:
+def test_a_made_up_batch_is_read_back_within_its_sampling_error(tmp_path):
     batch(tmp_path)
     people = population([inspected_gear(path, LOADED) for path in gear_files(tmp_path)], "batch")
     of_slopes = [people.names.index(name) for name in ("profile_slope", "helix_slope")]
     pick = np.ix_(of_slopes, of_slopes)
     of_means = BETWEEN + WITHIN / len(TEETH)
 
-    def errors(covariance: FloatArray, freedom: float) -> FloatArray:
+    def errors(covariance, freedom):
         """Return standard errors of the entries of a sample covariance of normal deviates."""
         variance = np.diag(covariance)
         return np.sqrt((np.outer(variance, variance) + covariance**2) / freedom)
@@ -76,7 +73,7 @@ def test_a_made_up_batch_is_read_back_within_its_sampling_error(tmp_path: Path) 
 
 
 @pytest.mark.law
-def test_stated_errors_of_small_batches_cover_what_they_say(tmp_path: Path) -> None:
+def test_stated_errors_of_small_batches_cover_what_they_say(tmp_path):
     """Of 40 batches of six gears two thirds lie within one standard error, nearly all within three."""
     true, off = np.sqrt(np.diag(BETWEEN)), []
     for seed in range(40):
@@ -94,7 +91,7 @@ def test_stated_errors_of_small_batches_cover_what_they_say(tmp_path: Path) -> N
 
 
 @pytest.mark.law
-def test_principal_components_are_the_shapes_that_traces_differ_by(tmp_path: Path) -> None:
+def test_principal_components_are_the_shapes_that_traces_differ_by(tmp_path):
     """Profiles of two shapes: a line of one variance and, orthogonal to it, a wave of another."""
     draw = np.random.default_rng(4)
     for number, (slope, height) in enumerate(draw.normal(0.0, (9.0, 6.0), (40, 2))):
@@ -117,7 +114,7 @@ def test_principal_components_are_the_shapes_that_traces_differ_by(tmp_path: Pat
     assert max(along) > 0.99
 
 
-def test_curves_and_values_of_a_gear_give_the_same_slopes(tmp_path: Path) -> None:
+def test_curves_and_values_of_a_gear_give_the_same_slopes(tmp_path):
     waves = [Wave(kind, 3, "left", slope, 2.0) for kind, slope in (("profile", 12.0), ("helix", 6.3))]
     curves, values = wave_texts(waves)
     for name, text in (("a.mka", curves), ("a.mew", values), ("b.mew", values), ("c.mka", curves)):
@@ -131,7 +128,7 @@ def test_curves_and_values_of_a_gear_give_the_same_slopes(tmp_path: Path) -> Non
         assert third.teeth[19][slope] == pytest.approx(second.teeth[19][slope], abs=0.05e-6)
 
 
-def test_a_form_is_the_height_of_a_parabola_over_the_evaluated_part(tmp_path: Path) -> None:
+def test_a_form_is_the_height_of_a_parabola_over_the_evaluated_part(tmp_path):
     lines = ["tooth,flank,trace,roll_length_mm,face_position_mm,deviation_um"]
     for face in np.linspace(-10.0, 10.0, 401):
         lines.append(f"3,left,helix,,{face:.3f},{4.0 * (1.0 - (face / 10.0) ** 2):.6f}")
@@ -159,7 +156,7 @@ def wrecked(text: str, seed: int) -> bytes:
             return damaged(text, seed).encode("utf-8", "surrogatepass")
 
 
-def test_a_hundred_damaged_files_of_a_folder_fall_out_one_by_one(tmp_path: Path) -> None:
+def test_a_hundred_damaged_files_of_a_folder_fall_out_one_by_one(tmp_path):
     case, folder = tmp_path / "case.toml", tmp_path / "gears"
     folder.mkdir()
     case.write_text(spur_case(torques=[100.0]), encoding="utf-8")
@@ -179,7 +176,7 @@ def test_a_hundred_damaged_files_of_a_folder_fall_out_one_by_one(tmp_path: Path)
     assert all(len(text) < 400 and "left out of the population: z" in text for text in omitted)
 
 
-def test_nothing_outside_of_the_folder_is_read(tmp_path: Path) -> None:
+def test_nothing_outside_of_the_folder_is_read(tmp_path):
     folder = tmp_path / "gears"
     folder.mkdir()
     batch(folder, 2)
@@ -194,7 +191,7 @@ def test_nothing_outside_of_the_folder_is_read(tmp_path: Path) -> None:
     assert values_beside(folder / "gear_000.mka") is not None
 
 
-def test_the_verb_prints_the_population_and_says_what_it_leaves_out(tmp_path: Path) -> None:
+def test_the_verb_prints_the_population_and_says_what_it_leaves_out(tmp_path):
     case, folder, out = tmp_path / "case.toml", tmp_path / "gears", tmp_path / "out.json"
     folder.mkdir()
     case.write_text(spur_case(torques=[100.0]), encoding="utf-8")
@@ -224,7 +221,7 @@ def test_the_verb_prints_the_population_and_says_what_it_leaves_out(tmp_path: Pa
         population([inspected_gear(gear_files(folder)[0], LOADED)], "gears")
 
 
-def test_the_rows_for_a_study_remove_what_measured_flanks_lack(tmp_path: Path) -> None:
+def test_the_rows_for_a_study_remove_what_measured_flanks_lack(tmp_path):
     """Figures of a case remove where deviations of a tooth are in excess: both surfaces cancel."""
     case, folder = tmp_path / "case.toml", tmp_path / "gears"
     folder.mkdir()
@@ -265,7 +262,7 @@ def test_the_rows_for_a_study_remove_what_measured_flanks_lack(tmp_path: Path) -
     ids=["wheels", "pinions"],
 )
 @pytest.mark.parametrize("loaded", ["left", "right"])
-def test_measured_gears_lie_among_those_drawn_from_them(pattern: str, gear: Gear, loaded: str) -> None:
+def test_measured_gears_lie_among_those_drawn_from_them(pattern, gear, loaded):
     chart = Chart(gear, "left" if loaded == "left" else "right", True)
     gears = [inspected_gear(path, chart) for path in sorted(FOLDER.glob(pattern))]
     people = population(gears, pattern)

@@ -1,10 +1,7 @@
 """Progress in notebooks and scripts: a bar where somebody sees it, else nothing."""
 
-from __future__ import annotations
-
 import io
 import sys
-from collections.abc import Iterator
 from types import ModuleType, SimpleNamespace
 
 import pytest
@@ -23,35 +20,33 @@ class Terminal(io.StringIO):
 
 
 @pytest.fixture
-def cell(monkeypatch: pytest.MonkeyPatch) -> Iterator[Shown]:
+def cell(monkeypatch):
     """Run in a notebook; what its cell shows, first and later."""
     shown: Shown = []
     handle = SimpleNamespace(update=lambda text: shown.append(("later", text)))
     ipython, display = ModuleType("IPython"), ModuleType("IPython.display")
-    ipython.get_ipython = lambda: SimpleNamespace(kernel=object())  # type: ignore[attr-defined]
-    display.HTML = str  # type: ignore[attr-defined]
+    ipython.get_ipython = lambda: SimpleNamespace(kernel=object())
+    display.HTML = str
 
-    def show(text: str, *, display_id: bool) -> SimpleNamespace:
+    def show(text, *, display_id):
         assert display_id
         shown.append(("first", text))
         return handle
 
-    display.display = show  # type: ignore[attr-defined]
+    display.display = show
     monkeypatch.setitem(sys.modules, "IPython", ipython)
     monkeypatch.setitem(sys.modules, "IPython.display", display)
     yield shown
 
 
 @pytest.fixture
-def clock(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
+def clock(monkeypatch):
     now = SimpleNamespace(s=100.0)
     monkeypatch.setattr("time.monotonic", lambda: now.s)
     return now
 
 
-def test_a_notebook_shows_a_bar_of_work_that_takes_longer_than_a_moment(
-    cell: Shown, clock: SimpleNamespace
-) -> None:
+def test_a_notebook_shows_a_bar_of_work_that_takes_longer_than_a_moment(cell, clock):
     with progress_display(None) as report:
         report("contact", 0.1)
         assert cell == []
@@ -67,7 +62,7 @@ def test_a_notebook_shows_a_bar_of_work_that_takes_longer_than_a_moment(
     assert "100 %" in cell[-1][1]
 
 
-def test_a_notebook_shows_it_at_once_if_told_and_never_if_not(cell: Shown, clock: SimpleNamespace) -> None:
+def test_a_notebook_shows_it_at_once_if_told_and_never_if_not(cell, clock):
     with progress_display(False) as report:
         clock.s += 60.0
         report("contact", 0.5)
@@ -77,7 +72,7 @@ def test_a_notebook_shows_it_at_once_if_told_and_never_if_not(cell: Shown, clock
     assert len(cell) == 1
 
 
-def test_a_script_shows_bars_on_a_terminal_if_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_script_shows_bars_on_a_terminal_if_told(monkeypatch):
     terminal = Terminal()
     monkeypatch.setattr(sys, "stderr", terminal)
     monkeypatch.setenv("TERM", "xterm")
@@ -91,7 +86,7 @@ def test_a_script_shows_bars_on_a_terminal_if_told(monkeypatch: pytest.MonkeyPat
         assert report is silent
 
 
-def test_a_function_of_the_caller_is_called(cell: Shown) -> None:
+def test_a_function_of_the_caller_is_called(cell):
     seen: list[tuple[str, float]] = []
     with progress_display(lambda *step: seen.append(step)) as report:
         report("contact", 0.5)

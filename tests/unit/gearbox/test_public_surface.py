@@ -1,7 +1,5 @@
 """`import lineofaction as loa`: its names, what they load, and that they compute without a server."""
 
-from __future__ import annotations
-
 import ast
 import json
 import re
@@ -11,26 +9,25 @@ from pathlib import Path
 
 import pytest
 from faulty_units import LEFT_OUT, TWO_STAGE
+from repository import ROOT
 
 import lineofaction as loa
 from bounds.brief import MAX_LINES, WIDTH
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas import Case, validated
 
-ROOT = Path(__file__).parents[3]
 EXAMPLES = ROOT / "examples"
 MAX_NAMES = 60
 FUNCTIONS = {study.package: study for study in STUDIES.values()}
 
 
 def blocks(page: Path) -> list[ast.Module]:
-    """Return the Python of a page."""
     return [
         ast.parse(block) for block in re.findall(r"```python\n(.*?)```", page.read_text("utf-8"), re.DOTALL)
     ]
 
 
-def test_every_name_is_there_and_they_are_few() -> None:
+def test_every_name_is_there_and_they_are_few():
     assert len(loa.__all__) == len(set(loa.__all__)) <= MAX_NAMES
     for name in loa.__all__:
         assert getattr(loa, name) is not None
@@ -38,27 +35,27 @@ def test_every_name_is_there_and_they_are_few() -> None:
         _ = loa.no_such
 
 
-def test_the_import_loads_nothing() -> None:
+def test_the_import_loads_nothing():
     code = "import json, sys, lineofaction; print(json.dumps(sorted(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
     loaded = {name.partition(".")[0] for name in json.loads(done.stdout)}
     assert not loaded & {"numpy", "scipy", "pydantic", "fe_contact", "dynamics", "service"}
 
 
-def test_every_study_is_a_function() -> None:
+def test_every_study_is_a_function():
     for study in STUDIES.values():
         function = getattr(loa, study.package)
         assert study.description in (function.__doc__ or "")
 
 
-def test_a_case_is_read_with_values_over_it_and_refused_by_field() -> None:
+def test_a_case_is_read_with_values_over_it_and_refused_by_field():
     case = loa.read(EXAMPLES / "palermo_spur_20_20.toml", {"pair.pinion.tip_relief_um": 7})
     assert isinstance(case, Case) and case.pair.pinion.tip_relief_um == 7
     with pytest.raises(loa.BadInput, match=r"pair\.pinion\.teeth"):
         loa.read(EXAMPLES / "palermo_spur_20_20.toml", {"pair.pinion.teeth": 2})
 
 
-def test_every_file_is_read_by_one_function(tmp_path: Path) -> None:
+def test_every_file_is_read_by_one_function(tmp_path):
     result = loa.modes(EXAMPLES / "jeffcott_scene.toml")
     loa.write(result, tmp_path / "modes.nc")
     again = loa.read(tmp_path / "modes.nc")
@@ -74,7 +71,7 @@ def test_every_file_is_read_by_one_function(tmp_path: Path) -> None:
         loa.read(tmp_path / "modes.nc", {"duration": 1})
 
 
-def test_a_folder_is_its_files_each_read_on_request(tmp_path: Path) -> None:
+def test_a_folder_is_its_files_each_read_on_request(tmp_path):
     unit = loa.read(EXAMPLES / "two_stage" / "two_stage.rexs")
     for name, text in unit.files().items():
         (tmp_path / name).write_text(text, encoding="utf-8")
@@ -96,7 +93,7 @@ def test_a_folder_is_its_files_each_read_on_request(tmp_path: Path) -> None:
         folder["notes.md"]
 
 
-def test_recordings_are_read_and_what_cannot_be_is_refused_by_name(tmp_path: Path) -> None:
+def test_recordings_are_read_and_what_cannot_be_is_refused_by_name(tmp_path):
     (tmp_path / "run.csv").write_text("time_s,force_n\n0,1\n0.1,2\n0.2,3\n", encoding="utf-8")
     recording = loa.read(tmp_path / "run.csv")
     assert [channel.name for channel in recording.channels] == ["force_n"]
@@ -113,7 +110,7 @@ SUBJECTS = sorted(
 
 
 @pytest.mark.parametrize("name", SUBJECTS)
-def test_cases_and_scenes_show_what_they_state_in_a_dozen_lines(name: str) -> None:
+def test_cases_and_scenes_show_what_they_state_in_a_dozen_lines(name):
     subject = loa.read(EXAMPLES / name)
     lines = str(subject).split("\n")
     assert lines[0] in ("Case", "Scene")
@@ -121,7 +118,7 @@ def test_cases_and_scenes_show_what_they_state_in_a_dozen_lines(name: str) -> No
     assert lines == repr(subject).split("\n") and "<table>" in subject._repr_html_()
 
 
-def test_results_show_the_main_figures_of_their_report() -> None:
+def test_results_show_the_main_figures_of_their_report():
     result = loa.modes(EXAMPLES / "jeffcott_scene.toml")
     lines = repr(result).split("\n")
     assert lines[0] == "ModalAnalysis: modes"
@@ -131,7 +128,7 @@ def test_results_show_the_main_figures_of_their_report() -> None:
     assert result.to_xarray()["natural_frequency"].attrs["units"] == "Hz"
 
 
-def test_the_text_of_a_gear_pair_is_its_call() -> None:
+def test_the_text_of_a_gear_pair_is_its_call():
     relief = loa.FlankModification(tip_relief=1e-5, tip_relief_length=1e-3)
     gear = loa.Gear(20, 4e-3, 0.025, 0.04, modification=relief)
     pair = loa.GearPair(gear, gear, 0.08)
@@ -139,7 +136,7 @@ def test_the_text_of_a_gear_pair_is_its_call() -> None:
     assert len(repr(pair)) < 400 and eval(repr(pair), names) == pair
 
 
-def test_modes_of_a_scene_equal_those_of_dynamics(tmp_path: Path) -> None:
+def test_modes_of_a_scene_equal_those_of_dynamics(tmp_path):
     """The function converts, checks and computes as the parts do one by one."""
     from dynamics.assembly.assemble import assemble  # noqa: PLC0415
     from dynamics.linearize import modal_analysis  # noqa: PLC0415
@@ -156,13 +153,13 @@ def test_modes_of_a_scene_equal_those_of_dynamics(tmp_path: Path) -> None:
         loa.write(found, tmp_path / "modes.xyz")
 
 
-def test_a_unit_without_a_scene_is_refused() -> None:
+def test_a_unit_without_a_scene_is_refused():
     unit = loa.Unit((), None, (), (), ())
     with pytest.raises(loa.BadInput, match="scene"):
         loa.modes(unit)
 
 
-def test_warnings_reach_a_caller_whose_code_has_no_name(tmp_path: Path) -> None:
+def test_warnings_reach_a_caller_whose_code_has_no_name(tmp_path):
     """Code that is executed in a table of its own, as in a template, is of no module."""
     file = tmp_path / "unit.rexs"
     file.write_text(LEFT_OUT["center distance"][1](TWO_STAGE), encoding="utf-8")
@@ -170,7 +167,7 @@ def test_warnings_reach_a_caller_whose_code_has_no_name(tmp_path: Path) -> None:
         exec("unit = open_unit(file)", {"open_unit": loa.open_unit, "file": file})
 
 
-def test_every_study_has_an_example_whose_inputs_are_accepted() -> None:
+def test_every_study_has_an_example_whose_inputs_are_accepted():
     called = set()
     for call in (node for block in blocks(ROOT / "docs/studies.md") for node in ast.walk(block)):
         if isinstance(call, ast.Call) and (name := ast.unparse(call.func).removeprefix("loa.")) in FUNCTIONS:

@@ -1,9 +1,6 @@
 """REXS files: every form gives the model back, upgrades rename and keep; the same bytes at every time."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 from small_rexs import small_document, small_model
@@ -18,24 +15,24 @@ FORMS_IN_TURN = ("a.rexs", "a.rexsj", "a.rexsz", "a.rexs")
 
 
 @pytest.mark.parametrize("name", FORMS)
-def test_every_form_gives_the_model_back(name: str) -> None:
+def test_every_form_gives_the_model_back(name):
     model = small_model()
     assert parsed(serialized(Document(model), name)).model == model
 
 
 @pytest.mark.parametrize("name", FORMS)
-def test_the_same_model_is_the_same_bytes(name: str) -> None:
+def test_the_same_model_is_the_same_bytes(name):
     assert serialized(Document(small_model()), name) == serialized(Document(small_model()), name)
 
 
-def test_the_forms_in_turn_give_the_model_back() -> None:
+def test_the_forms_in_turn_give_the_model_back():
     document = Document(small_model())
     for name in FORMS_IN_TURN:
         document = parsed(serialized(document, name))
     assert document == Document(small_model())
 
 
-def test_the_form_is_known_by_the_content_not_the_name(tmp_path: Path) -> None:
+def test_the_form_is_known_by_the_content_not_the_name(tmp_path):
     path = tmp_path / "model.txt"
     for name in FORMS:
         path.write_bytes(b"" if name.endswith(("z", "p")) else b"\xef\xbb\xbf")
@@ -44,14 +41,14 @@ def test_the_form_is_known_by_the_content_not_the_name(tmp_path: Path) -> None:
         assert read_rexs(path).model == small_model()
 
 
-def test_an_archive_keeps_the_files_beside_the_model() -> None:
+def test_an_archive_keeps_the_files_beside_the_model():
     document = small_document()
     assert parsed(serialized(document, "a.rexsz")) == document
     with pytest.raises(BadInput, match="archive"):
         serialized(document, "a.rexs")
 
 
-def test_json_holds_one_spectrum() -> None:
+def test_json_holds_one_spectrum():
     model = small_model()
     two = replace(model, spectra=(*model.spectra, replace(model.spectra[0], id=2)))
     assert parsed(serialized(Document(two), "a.rexs")).model == two
@@ -59,7 +56,7 @@ def test_json_holds_one_spectrum() -> None:
         serialized(Document(two), "a.rexsj")
 
 
-def test_a_load_case_of_json_has_the_types_of_the_components() -> None:
+def test_a_load_case_of_json_has_the_types_of_the_components():
     text = serialized(Document(small_model()), "a.rexsj").decode()
     head, mark, cases = text.partition('"load_spectrum"')
     shorter = head + mark + cases.replace('"type": "shaft",', "", 1)
@@ -95,7 +92,7 @@ OLD = (
 )
 
 
-def test_names_and_spellings_follow_the_changelogs() -> None:
+def test_names_and_spellings_follow_the_changelogs():
     model, _ = upgrade(model_of("1.0", *OLD))
     assert model.version == NEWEST
     bearing, material, _ = model.components
@@ -109,7 +106,7 @@ def test_names_and_spellings_follow_the_changelogs() -> None:
     assert (material.attributes[1].unit, material.attributes[1].value) == ("MPa", 2.06e5)
 
 
-def test_what_is_gone_is_kept_and_said() -> None:
+def test_what_is_gone_is_kept_and_said():
     model, changes = upgrade(model_of("1.0", *OLD))
     flank, angle = model.components[2], model.components[2].attributes[0]
     assert (flank.type, angle.id, angle.value, angle.unit) == (
@@ -124,7 +121,7 @@ def test_what_is_gone_is_kept_and_said() -> None:
 
 
 @pytest.mark.parametrize("start", VERSIONS)
-def test_in_steps_is_as_at_once_and_again_changes_nothing(start: str) -> None:
+def test_in_steps_is_as_at_once_and_again_changes_nothing(start):
     model = model_of(start, *OLD, *small_model().components)
     whole, changes = upgrade(model)
     stepped, collected = model, ()
@@ -135,7 +132,7 @@ def test_in_steps_is_as_at_once_and_again_changes_nothing(start: str) -> None:
     assert upgrade(whole) == (whole, ())
 
 
-def test_components_of_load_cases_are_upgraded_too() -> None:
+def test_components_of_load_cases_are_upgraded_too():
     part = Component(1, CATALOGUE, (Attribute("radial_backlash", "floating_point", 1.0, "mum"),))
     spectrum = LoadSpectrum(1, (LoadCase(1, (part,)),), (part,))
     model, changes = upgrade(Model("1.0", "a", "1", "d", spectra=(spectrum,)), "1.1")
@@ -146,21 +143,21 @@ def test_components_of_load_cases_are_upgraded_too() -> None:
     ]
 
 
-def test_a_value_of_an_enum_is_renamed() -> None:
+def test_a_value_of_an_enum_is_renamed():
     kept = Attribute("basis", "enum", "food-grade")
     attribute, changes = upgraded("1.7", "lubricant", kept, NEWEST)
     assert attribute.value == "food_grade"
     assert not changes[0].unchanged
 
 
-def test_a_unit_of_another_quantity_is_kept_and_said() -> None:
+def test_a_unit_of_another_quantity_is_kept_and_said():
     width = Attribute("load_distribution_along_face_width", "floating_point_array", (1.0,), "N")
     attribute, changes = upgraded("1.3", "cylindrical_stage", width, "1.4")
     assert attribute == width
     assert changes[0].unchanged and "N / mm" in changes[0].text
 
 
-def test_a_single_entry_becomes_a_value_and_several_are_kept() -> None:
+def test_a_single_entry_becomes_a_value_and_several_are_kept():
     name, old = "diameter_where_profile_slope_amount_is_specified", "floating_point_array"
     one, _ = upgraded("1.7", "profile_slope", Attribute(name, old, (50.0,), "mm", "float64"), NEWEST)
     assert (one.kind, one.value, one.code) == ("floating_point", 50.0, None)
@@ -168,7 +165,7 @@ def test_a_single_entry_becomes_a_value_and_several_are_kept() -> None:
     assert two.value == (50.0, 60.0) and changes[0].unchanged
 
 
-def test_a_name_that_is_taken_is_not_given_twice() -> None:
+def test_a_name_that_is_taken_is_not_given_twice():
     both = (
         Attribute("dynamic_capacity", "floating_point", 1.0, "kN"),
         Attribute("radial_dynamic_load_rating", "floating_point", 2.0, "kN"),
@@ -178,7 +175,7 @@ def test_a_name_that_is_taken_is_not_given_twice() -> None:
     assert changes[0].unchanged
 
 
-def test_2_0_is_2_0_0_and_others_are_refused() -> None:
+def test_2_0_is_2_0_0_and_others_are_refused():
     assert upgrade(model_of("2.0", *OLD)) == (model_of("2.0", *OLD), ())
     with pytest.raises(BadInput, match=r"1\.0, 1\.1"):
         upgrade(model_of("2.1", *OLD))

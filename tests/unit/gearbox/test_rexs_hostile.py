@@ -1,14 +1,12 @@
 """Damaged and hostile REXS files: opened, or one clear error in bounded time, and nothing else is read."""
 
-from __future__ import annotations
-
 import json
 import math
 import random
 import re
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -37,13 +35,13 @@ def _note(event: str, details: tuple[object, ...]) -> None:
 
 
 @pytest.fixture(scope="module")
-def watched() -> Callable[[], object]:
+def watched():
     for data in (XML, JSON, ZIP):
         parsed(data)
     sys.addaudithook(_note)
 
     @contextmanager
-    def watch() -> Iterator[None]:
+    def watch():
         _touched.clear()
         _watching.append(True)
         try:
@@ -55,25 +53,25 @@ def watched() -> Callable[[], object]:
     return watch
 
 
-def test_there_are_200_files() -> None:
+def test_there_are_200_files():
     assert len(HOSTILE) + len(list(damaged_files())) >= 200
 
 
 @pytest.mark.law
 @pytest.mark.parametrize("name", HOSTILE)
-def test_a_hostile_file_is_refused_with_one_error(name: str, watched: Callable[[], Iterator[None]]) -> None:
+def test_a_hostile_file_is_refused_with_one_error(name, watched):
     data, words = HOSTILE[name]
     start = time.process_time()
-    with watched(), pytest.raises(BadInput, match=words) as caught:  # type: ignore[attr-defined]
+    with watched(), pytest.raises(BadInput, match=words) as caught:
         parsed(data)
     assert time.process_time() - start < MAX_SECONDS
     assert len(str(caught.value)) < 2_000 and "Traceback" not in str(caught.value)
 
 
-def test_a_damaged_file_is_a_model_or_one_error(watched: Callable[[], Iterator[None]]) -> None:
+def test_a_damaged_file_is_a_model_or_one_error(watched):
     refusals = 0
     for _, data in damaged_files():
-        with watched():  # type: ignore[attr-defined]
+        with watched():
             try:
                 document = parsed(data)
             except BadInput:
@@ -98,7 +96,7 @@ def wrong_units(count: int) -> Iterator[bytes]:
 
 
 @pytest.mark.filterwarnings("ignore::bounds.PlausibilityWarning")
-def test_a_unit_with_a_wrong_number_is_opened_or_refused_with_one_error() -> None:
+def test_a_unit_with_a_wrong_number_is_opened_or_refused_with_one_error():
     """What is opened accounts for all; where it has no scene or lacks a case, a line says why."""
     ends = [_end(data) for data in wrong_units(40)]
     for unit in (end for end in ends if isinstance(end, OpenedUnit)):
@@ -115,7 +113,7 @@ def _end(data: bytes) -> OpenedUnit | str:
         return str(error)
 
 
-def test_a_file_that_breaks_off_is_refused_by_its_last_line() -> None:
+def test_a_file_that_breaks_off_is_refused_by_its_last_line():
     with pytest.raises(BadInput, match=r"which line 2 is not") as caught:
         parsed(b'<model version="2.0.0">\n  <relations>')
     (fault,) = caught.value.faults
@@ -148,7 +146,7 @@ def _without(document: Document, seed: int) -> Document:
 @pytest.mark.law
 @pytest.mark.parametrize("make", [two_stages, planetary])
 @pytest.mark.parametrize("seeds", [40, pytest.param(80, marks=pytest.mark.nightly)])
-def test_a_damaged_unit_is_opened_or_refused_with_one_error(make: Any, seeds: int) -> None:
+def test_a_damaged_unit_is_opened_or_refused_with_one_error(make, seeds):
     whole, refused, changed = OpenedUnit.of(make()), 0, 0
     for seed in range(seeds):
         try:
@@ -163,6 +161,6 @@ def test_a_damaged_unit_is_opened_or_refused_with_one_error(make: Any, seeds: in
 
 
 @pytest.mark.parametrize("stage", STAGES)
-def test_a_stage_without_a_gear_leaves_the_other(stage: int) -> None:
+def test_a_stage_without_a_gear_leaves_the_other(stage):
     unit = OpenedUnit.of(two_stages({11 if stage == STAGES[0] else 13: {"number_of_teeth": None}}))
     assert [case.stage for case in unit.cases] == [other for other in STAGES if other != stage]

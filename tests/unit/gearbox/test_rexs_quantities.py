@@ -1,7 +1,5 @@
 """Values of REXS in SI: mixed units read the same, other quantities and doubt are refused by name."""
 
-from __future__ import annotations
-
 import math
 
 import pytest
@@ -29,7 +27,7 @@ VALUES = [
 
 
 @pytest.mark.parametrize(("value", "unit", "expected", "si"), VALUES)
-def test_values_in_si(value: float, unit: str | None, expected: str, si: float) -> None:
+def test_values_in_si(value, unit, expected, si):
     assert si_value(value, unit, expected, "here") == pytest.approx(si, rel=1e-15)
 
 
@@ -44,7 +42,7 @@ OTHERS = [
 
 
 @pytest.mark.parametrize(("unit", "expected"), OTHERS)
-def test_a_unit_of_another_quantity_is_refused_by_name(unit: str | None, expected: str) -> None:
+def test_a_unit_of_another_quantity_is_refused_by_name(unit, expected):
     with pytest.raises(BadInput, match="component 4, face_width, unit"):
         si_value(1.0, unit, expected, "component 4, face_width")
 
@@ -54,25 +52,25 @@ def gear(name: str, value: Value, unit: str | None, *others: Attribute) -> Compo
 
 
 @pytest.mark.parametrize(("value", "unit"), [(20.0, "mm"), (20_000.0, "mum"), (20, "mm")])
-def test_units_of_a_length_may_be_mixed(value: float, unit: str) -> None:
+def test_units_of_a_length_may_be_mixed(value, unit):
     assert quantity(gear("face_width", value, unit), "face_width", "component 4") == pytest.approx(
         0.02, rel=1e-15
     )
 
 
-def test_both_spellings_of_a_degree_are_one() -> None:
+def test_both_spellings_of_a_degree_are_one():
     name = "helix_angle_reference_diameter"
     values = [quantity(gear(name, -21.0, unit), name, "component 4") for unit in ("°", "deg")]
     assert values == [math.radians(-21.0)] * 2
 
 
-def test_what_the_file_does_not_give_is_none() -> None:
+def test_what_the_file_does_not_give_is_none():
     assert quantity(gear("face_width", None, "mm"), "face_width", "component 4") is None
     assert quantity(gear("face_width", 1.0, "mm"), "tip_diameter", "component 4") is None
     assert quantities(gear("face_width", 1.0, "mm"), "support_vector", "component 4") is None
 
 
-def test_an_array_is_in_si() -> None:
+def test_an_array_is_in_si():
     part = gear("support_vector", (1.0, 0.0, -2.0), "mm")
     assert quantities(part, "support_vector", "component 4") == (1e-3, 0.0, -2e-3)
 
@@ -81,18 +79,18 @@ def test_an_array_is_in_si() -> None:
     ("value", "unit", "words"),
     [(20.0, "N", "unit"), (20.0, None, "unit"), ("wide", "mm", "a number"), (True, "mm", "a number")],
 )
-def test_doubt_is_refused_by_name(value: Value, unit: str | None, words: str) -> None:
+def test_doubt_is_refused_by_name(value, unit, words):
     with pytest.raises(BadInput, match=f"component 4, face_width.*{words}"):
         quantity(gear("face_width", value, unit), "face_width", "component 4")
 
 
-def test_a_value_given_twice_is_refused() -> None:
+def test_a_value_given_twice_is_refused():
     part = gear("face_width", 20.0, "mm", Attribute("face_width", "floating_point", 21.0, "mm"))
     with pytest.raises(BadInput, match="given once"):
         quantity(part, "face_width", "component 4")
 
 
-def test_an_array_is_no_number_and_a_number_no_array() -> None:
+def test_an_array_is_no_number_and_a_number_no_array():
     with pytest.raises(BadInput, match="a number"):
         quantity(gear("face_width", (1.0,), "mm"), "face_width", "component 4")
     with pytest.raises(BadInput, match="an array"):

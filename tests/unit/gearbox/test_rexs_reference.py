@@ -1,13 +1,10 @@
 """Tables, example files and written files against what REXS publishes, and cases of the examples."""
 
-from __future__ import annotations
-
 import json
 import math
 import re
 import time
 import tomllib
-from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -68,20 +65,20 @@ FORMS_IN_TURN = ("a.rexs", "a.rexsj", "a.rexsz", "a.rexs")
 
 
 @pytest.mark.parametrize(("old", "new"), STEPS)
-def test_a_step_says_what_the_changelog_says(old: str, new: str) -> None:
+def test_a_step_says_what_the_changelog_says(old, new):
     stored = tomllib.loads((PACKAGE / "steps" / f"{old}_to_{new}.toml").read_text("utf-8"))
     assert stored == step_of(old, new)
     assert not other_changes(old, new)
 
 
 @pytest.mark.parametrize("version", SCHEMAS)
-def test_the_changelogs_lead_from_the_first_schema_to_each(version: str) -> None:
+def test_the_changelogs_lead_from_the_first_schema_to_each(version):
     listed = parsed_schema(version).iterfind("attributes/attribute")
     assert names_at(version) == {entry.get("numericId"): entry.get("attributeId") for entry in listed}
 
 
 @pytest.mark.parametrize("version", SCHEMAS)
-def test_the_kind_of_every_attribute_follows_from_its_text(version: str) -> None:
+def test_the_kind_of_every_attribute_follows_from_its_text(version):
     examples_of = {
         "floating_point": ["1.5"],
         "boolean": ["true"],
@@ -102,13 +99,13 @@ def test_the_kind_of_every_attribute_follows_from_its_text(version: str) -> None
     assert {(name, kind) for name, kind, _ in wrong} <= known
 
 
-def test_the_kinds_are_those_of_the_schemas() -> None:
+def test_the_kinds_are_those_of_the_schemas():
     stored = tomllib.loads((PACKAGE / "kinds.toml").read_text("utf-8"))
     assert {kind: set(names) for kind, names in stored.items()} == kinds_to_list()
     assert set(stored) <= set(KINDS)
 
 
-def test_the_words_are_those_of_the_schemas() -> None:
+def test_the_words_are_those_of_the_schemas():
     types = {
         str(part.get("componentId"))
         for version in SCHEMAS
@@ -118,14 +115,14 @@ def test_the_words_are_those_of_the_schemas() -> None:
     assert terms("bearing_types") == set(attributes_of("2.0.0")["bearing_type"][2])
 
 
-def test_the_units_are_those_of_the_schemas() -> None:
+def test_the_units_are_those_of_the_schemas():
     named = {
         unit.get("name") for version in SCHEMAS for unit in parsed_schema(version).iterfind("units/unit")
     }
     assert set(units()) - {""} == named
 
 
-def test_the_quantities_are_those_of_the_newest_schema() -> None:
+def test_the_quantities_are_those_of_the_newest_schema():
     known = attributes_of("2.0.0")
     table = tomllib.loads((PACKAGE / "quantities.toml").read_text("utf-8"))
     steps = [tomllib.loads(path.read_text("utf-8")) for path in sorted((PACKAGE / "steps").glob("*.toml"))]
@@ -136,12 +133,12 @@ def test_the_quantities_are_those_of_the_newest_schema() -> None:
         assert {entry_kind(known[name][0]) for name in newest} <= {"floating_point", "integer"}
 
 
-def test_every_example_is_tried() -> None:
+def test_every_example_is_tried():
     assert [path.name for path in examples()] == sorted(COUNTS)
 
 
 @pytest.mark.parametrize("path", examples(), ids=lambda path: path.name)
-def test_an_example_is_read_whole_within_a_second(path: Path) -> None:
+def test_an_example_is_read_whole_within_a_second(path):
     start = time.process_time()
     document = read_rexs(path)
     upgraded, _ = upgrade(document.model)
@@ -151,7 +148,7 @@ def test_an_example_is_read_whole_within_a_second(path: Path) -> None:
 
 
 @pytest.mark.parametrize("path", examples(), ids=lambda path: path.name)
-def test_an_example_goes_through_all_forms(path: Path) -> None:
+def test_an_example_goes_through_all_forms(path):
     original = document = read_rexs(path)
     for name in FORMS_IN_TURN:
         document = parsed(serialized(document, name))
@@ -159,7 +156,7 @@ def test_an_example_goes_through_all_forms(path: Path) -> None:
 
 
 @pytest.mark.parametrize("path", examples(), ids=lambda path: path.name)
-def test_an_upgraded_example_has_names_of_the_newest_version(path: Path) -> None:
+def test_an_upgraded_example_has_names_of_the_newest_version(path):
     read = read_rexs(path).model
     model, changes = upgrade(read)
     newest, own = set(names_at("2.0.0").values()), set(names_at(read.version).values())
@@ -175,13 +172,13 @@ def test_an_upgraded_example_has_names_of_the_newest_version(path: Path) -> None
 
 
 @pytest.mark.parametrize("path", examples(), ids=lambda path: path.name)
-def test_what_is_written_of_an_example_is_valid(path: Path) -> None:
+def test_what_is_written_of_an_example_is_valid(path):
     document = read_rexs(path)
     assert_valid(document)
     assert_valid(Document(upgrade(document.model)[0]))
 
 
-def test_a_stage_with_results_is_valid() -> None:
+def test_a_stage_with_results_is_valid():
     document = Document(stage_unit().model)
     cases = StageCase.all_of(GearUnit(document.model), {})
     table = replace(small_table(), metadata=Metadata(case=case_json(cases[0].case)))
@@ -201,9 +198,7 @@ def with_load_case() -> Document:
 
 
 @pytest.mark.parametrize("make", [two_stages, with_load_case])
-def test_a_deflection_is_valid_and_its_attributes_belong_to_their_components(
-    make: Callable[[], Document],
-) -> None:
+def test_a_deflection_is_valid_and_its_attributes_belong_to_their_components(make):
     document = make()
     unit = OpenedUnit.of(document)
     written = deflected(document, unit, deflection_of_unit(unit))
@@ -219,14 +214,14 @@ def test_a_deflection_is_valid_and_its_attributes_belong_to_their_components(
     assert len(names) == 25 + 5 + 4  # of bearings, shafts, stages
 
 
-def test_every_kind_of_bearing_has_the_attributes_of_results() -> None:
+def test_every_kind_of_bearing_has_the_attributes_of_results():
     load = BearingLoad("", "", 0.0, np.ones(5), 1.0, np.ones(5), np.ones(5), np.ones(5))
     owned = owners("2.0.0")
     for entry in bearing_results(BearingPart(1, np.eye(3), shaft_inside=True), load):
         assert {*BEARINGS, *COUPLINGS} <= owned[entry.id]
 
 
-def test_what_is_written_of_every_form_is_valid() -> None:
+def test_what_is_written_of_every_form_is_valid():
     assert_valid(Document(small_model()))
     assert small_document().files
 
@@ -268,24 +263,24 @@ EXAMPLES = pytest.mark.parametrize("path", examples(), ids=lambda path: path.nam
 
 @cache
 def unit_of(path: object) -> tuple[GearUnit, tuple[StageCase, ...]]:
-    unit = GearUnit(upgrade(read_rexs(path).model)[0])  # type: ignore[arg-type]
+    unit = GearUnit(upgrade(read_rexs(path).model)[0])
     return unit, StageCase.all_of(unit, {})
 
 
 @EXAMPLES
-def test_every_stage_has_its_case(path: object) -> None:
+def test_every_stage_has_its_case(path):
     _, cases = unit_of(path)
     found = {
         (pair.pinion.teeth, pair.wheel.teeth, pair.helix_angle_deg): 1 + len(case.equal)
         for case in cases
         for pair in [case.case.pair]
     }
-    assert found == STAGES[path.name[:5]]  # type: ignore[attr-defined]
+    assert found == STAGES[path.name[:5]]
     assert len({case.name for case in cases}) == len(cases)
 
 
 @EXAMPLES
-def test_shifts_and_center_distances_of_a_file_agree(path: object) -> None:
+def test_shifts_and_center_distances_of_a_file_agree(path):
     # A shift of the wrong sign or a wrong mate would open or jam the flanks by some tenths of a module.
     for stage in unit_of(path)[1]:
         pair = gear_pair(stage.case)
@@ -293,7 +288,7 @@ def test_shifts_and_center_distances_of_a_file_agree(path: object) -> None:
 
 
 @EXAMPLES
-def test_the_contact_ratio_is_the_textbooks(path: object) -> None:
+def test_the_contact_ratio_is_the_textbooks(path):
     for stage in unit_of(path)[1]:
         ratio = gear_pair(stage.case).transverse_contact_ratio
         assert ratio == pytest.approx(contact_ratio(stage.case.pair), rel=1e-9)
@@ -317,7 +312,7 @@ def contact_ratio(pair: PairInput) -> float:
 
 
 @EXAMPLES
-def test_each_gear_stage_and_flank_is_used(path: object) -> None:
+def test_each_gear_stage_and_flank_is_used(path):
     unit, _ = unit_of(path)
     kinds = ("cylindrical_gear", "ring_gear", "cylindrical_stage", "cylindrical_gear_flank", "flank_geometry")
     fates = [line.fate for line in unit.account.lines() if line.kind in kinds and not line.item]

@@ -1,7 +1,5 @@
 """Cases: a ring gear as wheel, modifications over a part of the flank, and the light check of loads alone."""
 
-from __future__ import annotations
-
 import copy
 import math
 import tomllib
@@ -11,11 +9,8 @@ from typing import Any
 import pytest
 
 from bounds import Kind, PlausibilityWarning
-from fe_contact.analysis.analyze import analyze
+from fe_contact import FlankModification, InternalGearPair, Material, RingGear, analyze
 from fe_contact.compliance.rounding import LARGEST_ROUNDING, disc_rounding
-from fe_contact.flank.modification import FlankModification
-from fe_contact.geometry import InternalGearPair, RingGear
-from fe_contact.material import Material
 from lineofaction.gearbox.convert.case import THICK, case_json, gear_pair
 from lineofaction.gearbox.convert.checked_case import check_case, check_plain_case
 from lineofaction.gearbox.problems import BadInput
@@ -43,7 +38,7 @@ def ring_of(given: Case) -> RingGear:
     return pair.wheel
 
 
-def test_the_example_is_a_planet_in_its_ring() -> None:
+def test_the_example_is_a_planet_in_its_ring():
     pair = check_case(read_model(Case, EXAMPLE))
     assert isinstance(pair, InternalGearPair)
     assert (pair.pinion.teeth, pair.wheel.teeth) == (36, 96)
@@ -52,7 +47,7 @@ def test_the_example_is_a_planet_in_its_ring() -> None:
     assert (pair.wheel.cutter_teeth, pair.wheel.root_radius_coefficient) == (25, 0.2)
 
 
-def test_every_field_of_a_ring_gear_reaches_it() -> None:
+def test_every_field_of_a_ring_gear_reaches_it():
     plain = ring_of(case())
     changes = {
         "rim_diameter_mm": 215.0,
@@ -75,7 +70,7 @@ def test_every_field_of_a_ring_gear_reaches_it() -> None:
     assert ring_of(case(cutter_profile_shift_coefficient=0.1)).cutter_profile_shift_coefficient == 0.1
 
 
-def test_a_ring_has_the_hand_of_its_pinion_and_its_shaft() -> None:
+def test_a_ring_has_the_hand_of_its_pinion_and_its_shaft():
     shaft = {"length_mm": 100.0, "diameter_mm": 60.0, "position_mm": 40.0}
     width = {"helix_angle_deg": 10.0, "center_distance_mm": 60.925}
     pair = gear_pair(case(width, rim_diameter_mm=216.0, shaft=shaft))
@@ -84,7 +79,7 @@ def test_a_ring_has_the_hand_of_its_pinion_and_its_shaft() -> None:
     assert pair.shafts[1] is not None
 
 
-def test_the_echo_says_how_the_ring_is_made_and_is_its_own_fixed_point() -> None:
+def test_the_echo_says_how_the_ring_is_made_and_is_its_own_fixed_point():
     echo = case_json(case())
     wheel = echo["pair"]["wheel"]
     assert (wheel["cutter_teeth"], wheel["root_radius_coefficient"]) == (25, 0.2)
@@ -108,9 +103,7 @@ def test_the_echo_says_how_the_ring_is_made_and_is_its_own_fixed_point() -> None
         ({}, {"teeth": 38, "cutter_teeth": 20, "rim_diameter_mm": 90.0}, "", "interference"),
     ],
 )  # fmt: skip
-def test_rings_that_cannot_be_are_refused_by_field_in_the_users_units(
-    pair: dict[str, Any], wheel: dict[str, Any], field: str, said: str
-) -> None:
+def test_rings_that_cannot_be_are_refused_by_field_in_the_users_units(pair, wheel, field, said):
     with pytest.raises(BadInput) as refusal:
         check_case(case(pair, **wheel))
     (fault, *_) = refusal.value.faults
@@ -118,7 +111,7 @@ def test_rings_that_cannot_be_are_refused_by_field_in_the_users_units(
     assert said in fault.bound
 
 
-def test_a_table_of_a_ring_gear_is_known_again_by_its_report() -> None:
+def test_a_table_of_a_ring_gear_is_known_again_by_its_report():
     """From the case that a file gave, and from the request that Python made."""
     given = case()
     pair = gear_pair(given)
@@ -150,7 +143,7 @@ def taken(case: dict[str, Any]) -> bool:
     ("given", "whole"),
     [({"amount": 0.0}, True), ({"amount": 5.0}, False), ({"amount": 5.0, "length": 0.5}, True)],
 )
-def test_an_amount_is_taken_with_its_length(amount: str, given: dict[str, float], whole: bool) -> None:
+def test_an_amount_is_taken_with_its_length(amount, given, whole):
     case = tomllib.loads(HIGH_SPEED.read_text("utf-8"))
     names = {"amount": amount, "length": LENGTH_OF[amount]}
     case["pair"]["pinion"] |= {names[part]: value for part, value in given.items()}
@@ -179,7 +172,7 @@ def plain_case(
     ids=["thin", "thinner than its helix allows", "out of mesh"],
 )
 @pytest.mark.filterwarnings("ignore::bounds.PlausibilityWarning")
-def test_both_refuse_with_one_error(wrong: Case) -> None:
+def test_both_refuse_with_one_error(wrong):
     with pytest.raises(BadInput) as whole:
         check_case(wrong)
     with pytest.raises(BadInput) as light:
@@ -187,7 +180,7 @@ def test_both_refuse_with_one_error(wrong: Case) -> None:
     assert str(light.value) == str(whole.value)
 
 
-def test_both_warn_of_the_same_and_return_the_pair() -> None:
+def test_both_warn_of_the_same_and_return_the_pair():
     loaded = plain_case(torque=1e5)
     with pytest.warns(PlausibilityWarning) as whole:
         pair = check_case(loaded)
@@ -197,7 +190,7 @@ def test_both_warn_of_the_same_and_return_the_pair() -> None:
 
 
 @pytest.mark.parametrize("helix", [0.0, 20.0, 50.0])
-def test_a_disc_that_is_not_looked_at_is_far_from_the_limit(helix: float) -> None:
+def test_a_disc_that_is_not_looked_at_is_far_from_the_limit(helix):
     """For every material up to a Poisson's ratio of 0.49."""
     soft = Material(210e9, 0.49)
     left = [disc_rounding(THICK * share, math.radians(helix), MAX_LAYERS, soft) for share in (0.01, 0.1, 1.0)]
@@ -205,7 +198,7 @@ def test_a_disc_that_is_not_looked_at_is_far_from_the_limit(helix: float) -> Non
 
 
 @pytest.mark.parametrize("torque", [5e-324, 1e-200, 0.9e-9, 1.1e9])
-def test_a_load_is_neither_next_to_nothing_nor_beyond_all_gears(torque: float) -> None:
+def test_a_load_is_neither_next_to_nothing_nor_beyond_all_gears(torque):
     """Squared, the smallest are zero: their plan was an unexpected failure."""
     with pytest.raises(BadInput, match=r"load\.torque_n_m"):
         plain_case(torque=torque)
@@ -213,6 +206,6 @@ def test_a_load_is_neither_next_to_nothing_nor_beyond_all_gears(torque: float) -
 
 
 @pytest.mark.parametrize("point", [{"torque_n_m": 1e-152}, {"normal_force_n": 1e-152}])
-def test_a_flank_is_looked_at_under_a_load_that_a_case_may_have(point: dict[str, float]) -> None:
+def test_a_flank_is_looked_at_under_a_load_that_a_case_may_have(point):
     with pytest.raises(BadInput, match="from 1e-09 to 1e"):
         validated(FlankPoint, point)

@@ -1,7 +1,5 @@
 """Ring gears with the negative teeth, diameters and center distance of ISO 21771-1."""
 
-from __future__ import annotations
-
 import tomllib
 from pathlib import Path
 
@@ -22,13 +20,13 @@ def _negative(**wheel: object) -> dict[str, object]:
 
 
 @pytest.mark.law
-def test_a_ring_gear_of_negative_teeth_is_the_one_of_positive_teeth() -> None:
+def test_a_ring_gear_of_negative_teeth_is_the_one_of_positive_teeth():
     written = validated(Case, _negative())
     assert gear_pair(written) == gear_pair(validated(Case, CASE))
     assert written.pair.wheel.internal and written.pair.wheel.teeth == 96
 
 
-def test_a_pinion_has_no_negative_teeth() -> None:
+def test_a_pinion_has_no_negative_teeth():
     pair = CASE["pair"]
     with pytest.raises(BadInput, match="teeth"):
         validated(Case, {**CASE, "pair": {**pair, "pinion": {**pair["pinion"], "teeth": -36}}})

@@ -1,16 +1,14 @@
 """From a scene file and its tables to the scene of dynamics, planetary sets too; faults by name."""
 
-from __future__ import annotations
-
 import math
 import tomllib
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from changed_scenes import DROP, By, changed, changed_scene, check_refused
+from repository import ROOT
 from small_table import BASE_RADIUS, small_table
 
 from dynamics.assembly.assemble import assemble
@@ -23,7 +21,6 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 
-ROOT = Path(__file__).parents[3]
 EXAMPLE = tomllib.loads((ROOT / "examples" / "palermo_scene.toml").read_text())
 
 
@@ -31,7 +28,7 @@ def scene(changes: dict[str, Any] | None = None) -> Scene:
     return changed_scene(EXAMPLE, changes or {})
 
 
-def test_the_papers_scene_is_in_si() -> None:
+def test_the_papers_scene_is_in_si():
     found = scene()
     assert [shaft.length for shaft in found.shafts] == pytest.approx([0.2, 0.2])
     assert found.shafts[1].origin == pytest.approx((0.08, 0.0, 0.0))
@@ -43,7 +40,7 @@ def test_the_papers_scene_is_in_si() -> None:
     assert found.integration.tolerance == pytest.approx(1e-9)
 
 
-def test_effects_follow_a_tenth_of_a_decibel_and_runs_the_audio_band_unless_stated() -> None:
+def test_effects_follow_a_tenth_of_a_decibel_and_runs_the_audio_band_unless_stated():
     assert (scene().level_tolerance, scene().tolerance, scene().outputs.band) == (0.1, None, 20e3)
     stated = scene({"accuracy.level_tolerance_db": 0.25, "outputs.band_hz": 5e4})
     assert (stated.level_tolerance, stated.outputs.band) == (0.25, 5e4)
@@ -52,7 +49,7 @@ def test_effects_follow_a_tenth_of_a_decibel_and_runs_the_audio_band_unless_stat
     check_refused(EXAMPLE, "outputs.band_hz", 500.0)
 
 
-def test_gears_take_their_teeth_from_the_table() -> None:
+def test_gears_take_their_teeth_from_the_table():
     pinion, wheel = scene().gears
     assert (pinion.teeth, wheel.teeth) == (20, 20)
     assert pinion.base_radius == pytest.approx(BASE_RADIUS)
@@ -60,20 +57,20 @@ def test_gears_take_their_teeth_from_the_table() -> None:
     assert pinion.inertia.mass == pytest.approx(7850 * math.pi * (0.04**2 - 0.02**2) * 0.025, rel=1e-12)
 
 
-def test_the_mesh_uses_the_table_it_was_given() -> None:
+def test_the_mesh_uses_the_table_it_was_given():
     mesh = scene({"meshes[0].technique": "constant_torque", "meshes[0].misalignment_um": 0.0}).meshes[0]
     assert mesh.technique == "constant_torque"
     assert mesh.table.deflection.shape[-1] == mesh.table.level.size
 
 
-def test_given_inertia_is_used_as_it_is() -> None:
+def test_given_inertia_is_used_as_it_is():
     given = {"mass_kg": 1.0, "polar_kg_m2": 2.0, "transverse_kg_m2": 3.0}
     found = scene({"gears[0].inertia": given, "shafts[0].diameter_mm": DROP, "shafts[0].inertia": given})
     for inertia in (found.gears[0].inertia, found.shafts[0].inertia):
         assert (inertia.mass, inertia.polar, inertia.transverse) == (1.0, 2.0, 3.0)
 
 
-def test_facts_of_a_pair_have_its_hand_and_its_common_face() -> None:
+def test_facts_of_a_pair_have_its_hand_and_its_common_face():
     right = Gear(17, 4e-3, 25e-3, 20e-3, helix_angle=0.2)
     left = Gear(31, 4e-3, 20e-3, 20e-3, helix_angle=-0.2)
     geometry = PairGeometry.of(GearPair(right, left, axial_offset=5e-3))
@@ -97,7 +94,6 @@ WRONG: dict[str, tuple[str, Any]] = {
         "meshes[0].database_hash",
         By({"meshes[0].case_file": DROP, "meshes[0].database_hash": "abc"}),
     ),
-    "negative stiffness": ("bushings[0].radial_stiffness_n_per_m", -1.0),
     "stiffness no number": ("bushings[0].radial_stiffness_n_per_m", float("nan")),
     "times out of order": ("drives[0].time_s", [5.0, 0.0]),
     "curve of one point": (
@@ -119,7 +115,6 @@ WRONG: dict[str, tuple[str, Any]] = {
     "bore beyond the gear": ("gears[0].bore_diameter_mm", 90.0),
     "idle gear": ("gears[2].name", By({"gears[2]": {"name": "idle", "shaft": "input", "position_mm": 1.0}})),
     "two inertias": ("shafts[0].diameter_mm", By({"shafts[0].inertia": UNIT})),
-    "negative duration": ("run.duration_s", -1.0),
     "two drives": (
         "drives[1].shaft",
         By({"drives[1]": {"name": "second", "shaft": "output", "speed_rpm": [10.0]}}),
@@ -128,11 +123,11 @@ WRONG: dict[str, tuple[str, Any]] = {
 
 
 @pytest.mark.parametrize("name", WRONG)
-def test_a_scene_that_cannot_be_is_one_fault_by_name(name: str) -> None:
+def test_a_scene_that_cannot_be_is_one_fault_by_name(name):
     check_refused(EXAMPLE, *WRONG[name])
 
 
-def test_a_gear_in_two_meshes_must_be_the_same_in_both() -> None:
+def test_a_gear_in_two_meshes_must_be_the_same_in_both():
     third = {"name": "third", "shaft": "input", "position_mm": 50.0}
     mesh = EXAMPLE["meshes"][0] | {"name": "other", "driver": "third"}
     table, own = changed(EXAMPLE, {"gears[2]": third, "meshes[1]": mesh}), small_table()
@@ -141,7 +136,7 @@ def test_a_gear_in_two_meshes_must_be_the_same_in_both() -> None:
         dynamic_scene(validated(SceneInput, table), {"mesh": own, "other": other})
 
 
-def test_couplings_and_angle_tables_are_in_si() -> None:
+def test_couplings_and_angle_tables_are_in_si():
     joint = {"name": "joint", "first": "output", "second": "machine", "position_mm": 200.0}
     joint |= {"torsional_stiffness_n_m_per_rad": 5e4, "stiffness_matrix": np.eye(6).tolist()}
     found = scene(
@@ -160,7 +155,7 @@ def test_couplings_and_angle_tables_are_in_si() -> None:
     assert found.drives[0].speed(0.5) == pytest.approx(math.pi)
 
 
-def test_torques_by_speed_are_in_si() -> None:
+def test_torques_by_speed_are_in_si():
     fan = {"name": "fan", "shaft": "output", "kind": "quadratic", "speed_rpm": [1000.0], "torque_n_m": [40.0]}
     motor = {"name": "m", "shaft": "input", "kind": "table", "speed_rpm": [0, 1500], "torque_n_m": [-50, 0]}
     dry = {"name": "d", "shaft": "input", "kind": "constant", "speed_rpm": [1.0], "torque_n_m": [2.0]}
@@ -171,7 +166,7 @@ def test_torques_by_speed_are_in_si() -> None:
     assert found[2].curve(-3.0 * rpm) == pytest.approx(-2.0)
 
 
-def test_a_coast_flank_has_the_thickness_of_teeth_that_share_the_pitch() -> None:
+def test_a_coast_flank_has_the_thickness_of_teeth_that_share_the_pitch():
     """Against the drawn tooth: the angle between its flanks on the pitch circle, over the pitch."""
     gear = Gear(20, 4e-3, 25e-3, 40e-3, thickness_allowance=50e-6)
     pair = GearPair(gear, gear, 80.3e-3)
@@ -181,18 +176,16 @@ def test_a_coast_flank_has_the_thickness_of_teeth_that_share_the_pitch() -> None
 
     given = {"backlash_um": 1e6 * backlash}
     found = scene({"meshes[0].coast_flank": given}).meshes[0].coast
-    assert found is not None
     assert found.backlash == pytest.approx(backlash, rel=1e-12)
     assert found.thickness == pytest.approx(drawn, rel=1e-9)
 
     given = {"backlash_um": 80.0, "tooth_thickness": 0.4}
     told = scene({"meshes[0].coast_flank": given}).meshes[0].coast
-    assert told is not None
     assert told.thickness == 0.4
     assert scene().meshes[0].coast is None
 
 
-def test_a_coefficient_of_friction_goes_to_its_mesh() -> None:
+def test_a_coefficient_of_friction_goes_to_its_mesh():
     assert scene().meshes[0].friction is None
     assert scene({"meshes[0].friction": 0.05}).meshes[0].friction == 0.05
     with pytest.raises(BadInput, match="friction"):
@@ -241,7 +234,7 @@ def planetary(changes: dict[str, Any] | None = None) -> Scene:
     return changed_scene(PLANETARY, changes or {}, {"ring mesh": ring_table()})
 
 
-def test_a_planetary_set_has_all_its_planets() -> None:
+def test_a_planetary_set_has_all_its_planets():
     found = planetary()
     assert [gear.internal for gear in found.gears[:3]] == [False, False, True]
     assert len(found.meshes) == 8
@@ -267,11 +260,11 @@ def test_a_planetary_set_has_all_its_planets() -> None:
         ("free_rotations[0].sense", "-z"),
     ],
 )
-def test_planetary_sets_that_cannot_be_are_one_fault_by_name(field: str, value: Any) -> None:
+def test_planetary_sets_that_cannot_be_are_one_fault_by_name(field, value):
     check_refused(PLANETARY, field, value, {"ring mesh": ring_table()})
 
 
-def test_a_ring_gear_may_drive() -> None:
+def test_a_ring_gear_may_drive():
     """The wheel of its case then is the driver; an external wheel is told to be another case's pinion."""
     ring = {"name": "ring mesh", "case_file": "ring.toml", "driver": "ring", "driven": "planet"}
     turned = {
@@ -288,11 +281,11 @@ def test_a_ring_gear_may_drive() -> None:
         planetary({"meshes[0].wheel_drives": True})
 
 
-def test_the_planetary_example_is_a_system() -> None:
+def test_the_planetary_example_is_a_system():
     """On fake tables with the facts of its pairs: six meshes, all torques carried, planets that fit."""
     table = small_table()
 
-    def of(teeth: tuple[int, int], internal: bool) -> Any:
+    def of(teeth, internal):
         base = math.cos(math.radians(20.0)) * 1e-3
         radius = (base * teeth[0], base * teeth[1])
         geometry = replace(table.geometry, teeth=teeth, base_radius=radius, base_pitch=2.0 * math.pi * base)

@@ -1,7 +1,5 @@
 """Temperatures of a scene file: what they make, and attacks on their fields."""
 
-from __future__ import annotations
-
 import copy
 import math
 import tomllib
@@ -54,7 +52,7 @@ def warm(changes):
     )
 
 
-def test_temperatures_reach_the_scene_and_decide_the_preload() -> None:
+def test_temperatures_reach_the_scene_and_decide_the_preload():
     scene = changed_scene(EXAMPLE, warm({}))
     own = scene.temperatures
     assert (own.housing, own.reference, own.housing_material.thermal_expansion) == (60.0, 20.0, 21e-6)
@@ -64,7 +62,7 @@ def test_temperatures_reach_the_scene_and_decide_the_preload() -> None:
     assert all("preload 400 N to " in entry.reason for entry in entries)
 
 
-def test_a_file_without_temperatures_says_nothing_of_them() -> None:
+def test_a_file_without_temperatures_says_nothing_of_them():
     text = validated(SceneInput, EXAMPLE).model_dump_json()
     assert not any(word in text for word in ("degc", "temperature", "thermal", "fits"))
 
@@ -82,13 +80,13 @@ def test_a_file_without_temperatures_says_nothing_of_them() -> None:
         "rolling_bearings[2].seat_temperature_degc",
     ],
 )
-def test_a_temperature_is_one(field, value) -> None:
+def test_a_temperature_is_one(field, value):
     check_refused(EXAMPLE, field, warm({field: value}))
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -1e-6, 1e9, 0.0011, "steel"])
 @pytest.mark.parametrize("part", ["shafts[0]", "gears[0]", "rolling_bearings[0]"])
-def test_an_expansion_is_one(part, value) -> None:
+def test_an_expansion_is_one(part, value):
     field = f"{part}.thermal_expansion_per_k"
     check_refused(EXAMPLE, field, warm({field: value}))
 
@@ -139,5 +137,5 @@ def test_an_expansion_is_one(part, value) -> None:
         ),
     ],
 )
-def test_what_cannot_be_is_named(changes, field) -> None:
+def test_what_cannot_be_is_named(changes, field):
     check_refused(EXAMPLE, field, warm(changes))

@@ -1,10 +1,7 @@
 """Starts of reliefs as on a drawing: diameter, roll length and roll angle name one point of the flank."""
 
-from __future__ import annotations
-
 import json
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -61,7 +58,7 @@ def removed(pair: ParallelAxes, gear: str) -> np.ndarray:
 
 @pytest.mark.parametrize("relief", RELIEFS)
 @pytest.mark.parametrize(("pair", "gear"), [("spur", "pinion"), ("helical", "wheel"), ("ring gear", "wheel")])
-def test_three_ways_name_one_flank(pair: str, gear: str, relief: str) -> None:
+def test_three_ways_name_one_flank(pair, gear, relief):
     plain = getattr(gear_pair(case(PAIRS[pair])), gear)
     start = RELIEFS[relief]
     points = ways(plain, start)
@@ -80,7 +77,7 @@ def test_three_ways_name_one_flank(pair: str, gear: str, relief: str) -> None:
     assert (flanks[0][outwards < -1e-9] == 0.0).all() and (flanks[0][outwards > 1e-9] > 0.0).all()
 
 
-def test_it_is_the_roll_angle_of_the_tabled_involute() -> None:
+def test_it_is_the_roll_angle_of_the_tabled_involute():
     """At alpha_y = 28 deg: inv 0.043017 in the tables, xi = inv + alpha_y, d_y = d_b/cos(28 deg)."""
     roll_angle = math.radians(28.0) + 0.043017
     base = 4.0 * 20 * 0.9396926  # d_b in mm, cos 20 deg
@@ -97,7 +94,7 @@ def test_it_is_the_roll_angle_of_the_tabled_involute() -> None:
 
 @pytest.mark.parametrize("way", [DIAMETER, ROLL_LENGTH, ROLL_ANGLE])
 @pytest.mark.parametrize("suffix", ["toml", "json"])
-def test_a_file_keeps_what_was_typed(way: str, suffix: str, tmp_path: Path) -> None:
+def test_a_file_keeps_what_was_typed(way, suffix, tmp_path):
     typed = {DIAMETER: 85.3, ROLL_LENGTH: 20.1, ROLL_ANGLE: 30.7}[way]
     content = case_json(case({}, tip_relief_um=20.0, **{f"tip_relief_{way}": typed}))
     file = tmp_path / f"case.{suffix}"
@@ -109,7 +106,7 @@ def test_a_file_keeps_what_was_typed(way: str, suffix: str, tmp_path: Path) -> N
     assert [name for name in gear if "_start_" in name] == [f"tip_relief_{way}"]
 
 
-def test_results_of_cases_without_a_start_keep_their_addresses() -> None:
+def test_results_of_cases_without_a_start_keep_their_addresses():
     assert not [name for name in case_json(case({}))["pair"]["pinion"] if "_start_" in name]
 
 
@@ -156,7 +153,7 @@ TIP, ROOT = "tip_relief_", "root_relief_"
         ({TIP + DIAMETER: math.nan}, TIP + DIAMETER, "a finite number"),
     ],
 )
-def test_refusals_name_field_value_bound_and_advice(facts: dict[str, Any], field: str, bound: str) -> None:
+def test_refusals_name_field_value_bound_and_advice(facts, field, bound):
     depth = {"root_relief_um": 10.0} if any(ROOT in name for name in facts) else {"tip_relief_um": 20.0}
     with pytest.raises(BadInput) as refusal:
         gear_pair(case({}, **depth | facts))
@@ -167,12 +164,12 @@ def test_refusals_name_field_value_bound_and_advice(facts: dict[str, Any], field
     assert fault.value == value or (math.isnan(value) and fault.value is not None)
 
 
-def test_of_a_ring_gear_the_tip_diameter_is_the_smaller() -> None:
+def test_of_a_ring_gear_the_tip_diameter_is_the_smaller():
     with pytest.raises(BadInput, match="above the tip diameter 234 and at most the form diameter 24"):
         gear_pair(case(RING, "wheel", tip_relief_um=20.0, tip_relief_start_diameter_mm=230.0))
 
 
-def test_a_length_of_a_search_or_a_slider_replaces_the_start() -> None:
+def test_a_length_of_a_search_or_a_slider_replaces_the_start():
     plain = case({}, tip_relief_um=20.0, tip_relief_start_diameter_mm=85.0)
     gear = case_json(plain)["pair"]["pinion"] | {"root_relief_start_roll_angle_deg": 10.0}
     assert with_figures(gear, {"tip_relief_um": 8.0}) == gear | {"tip_relief_um": 8.0}

@@ -1,11 +1,8 @@
 """A housing from a STEP file: where it stands is found by its bores; seats, foot, and what is refused."""
 
-from __future__ import annotations
-
 import json
 import tomllib
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -61,7 +58,7 @@ def bolts() -> list[Bore]:
 
 @pytest.mark.law
 @pytest.mark.parametrize("seed", range(5))
-def test_a_file_that_is_turned_and_moved_is_put_back(seed: int) -> None:
+def test_a_file_that_is_turned_and_moved_is_put_back(seed):
     rng = np.random.default_rng(seed)
     stands = Placement(rotation(rng.uniform(-2.0, 2.0, 3)), rng.uniform(-1.0, 1.0, 3))
     held = best_seating(moved([*bores_of(list(AT.values())), *bolts()], stands), AT)
@@ -72,12 +69,12 @@ def test_a_file_that_is_turned_and_moved_is_put_back(seed: int) -> None:
         assert bore.position == pytest.approx(BEARINGS[name], abs=1e-9)
 
 
-def test_a_file_in_the_frame_of_the_scene_stays_there() -> None:
+def test_a_file_in_the_frame_of_the_scene_stays_there():
     held = best_seating(bores_of(list(AT.values())), AT)
     assert held.placement.fields == {}
 
 
-def test_the_bore_is_the_one_that_the_bearing_is_in() -> None:
+def test_the_bore_is_the_one_that_the_bearing_is_in():
     """Of a stepped one the step about the bearing; a wider one behind it is none of its business."""
     step, behind = (
         Bore((0.0, 0.0, 0.02), (0.0, 0.0, -1.0), 0.062, 0.02),
@@ -88,7 +85,7 @@ def test_the_bore_is_the_one_that_the_bearing_is_in() -> None:
 
 
 @pytest.mark.law
-def test_a_unit_that_fits_in_several_ways_is_refused_with_each_of_them() -> None:
+def test_a_unit_that_fits_in_several_ways_is_refused_with_each_of_them():
     """Two shafts with their bearings in two planes: each way that is offered seats all bearings."""
     two = {name: at for name, at in AT.items() if not name.startswith("output")}
     even = {name: np.array([at[0], 0.0, 0.0 if "left" in name else 0.2]) for name, at in two.items()}
@@ -115,7 +112,7 @@ def typed(way: str) -> Placement:
 
 
 @pytest.mark.parametrize("names", [(), ("input left", "input right"), ("input left", "output left")])
-def test_too_few_bores_place_nothing(names: tuple[str, ...]) -> None:
+def test_too_few_bores_place_nothing(names):
     bores = moved(bores_of([AT[name] for name in names]), Placement(np.eye(3), np.array([0.1, 0.0, 0.0])))
     with pytest.raises(BadInput, match="step_file") as caught:
         best_seating(bores, AT)
@@ -126,12 +123,12 @@ def test_too_few_bores_place_nothing(names: tuple[str, ...]) -> None:
 
 
 @pytest.fixture(scope="module")
-def block(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def block(tmp_path_factory):
     return write_block(tmp_path_factory.mktemp("block") / "block.step")
 
 
 @pytest.fixture
-def scene(tmp_path: Path) -> Path:
+def scene(tmp_path):
     """A scene file with a comment and without a housing."""
     table: dict[str, Any] = {k: v for k, v in housed_scene(tmp_path).items() if k != "housings"}
     file = tmp_path / "scene.toml"
@@ -139,7 +136,7 @@ def scene(tmp_path: Path) -> Path:
     return file
 
 
-def test_the_scene_has_the_housing_that_one_would_write(block: Path, scene: Path, tmp_path: Path) -> None:
+def test_the_scene_has_the_housing_that_one_would_write(block, scene, tmp_path):
     """Seats, foot and material as by hand; the file keeps its comment, and the STEP file goes along."""
     output = tmp_path / "housed.toml"
     ended = loa("housing", scene, block, "--material", "gray_cast_iron", "-o", output)
@@ -161,7 +158,7 @@ def test_the_scene_has_the_housing_that_one_would_write(block: Path, scene: Path
     assert (other.name, other.feet[0].normal) == ("housing", (0.0, 1.0, 0.0))
 
 
-def test_without_an_output_it_shows_and_writes_nothing(block: Path, scene: Path, tmp_path: Path) -> None:
+def test_without_an_output_it_shows_and_writes_nothing(block, scene, tmp_path):
     before = {path: path.read_bytes() for path in tmp_path.iterdir()}
     ended = loa("housing", scene, block, "--material", "gray_cast_iron", "--json")
     facts = json.loads(ended.stdout)
@@ -171,7 +168,7 @@ def test_without_an_output_it_shows_and_writes_nothing(block: Path, scene: Path,
     assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 
-def test_the_scene_of_a_folder_is_written_in_place(block: Path, scene: Path, tmp_path: Path) -> None:
+def test_the_scene_of_a_folder_is_written_in_place(block, scene, tmp_path):
     """It keeps comments and other parts, also where the housing is replaced; no other scene appears."""
     folder = InputFile(scene.parent)
     for material in ("gray_cast_iron", "cast_aluminum"):
@@ -187,9 +184,7 @@ def test_the_scene_of_a_folder_is_written_in_place(block: Path, scene: Path, tmp
     assert (tmp_path / "block.step").read_bytes() == block.read_bytes()
 
 
-def test_a_revision_takes_the_place_of_the_file_of_the_folder(
-    block: Path, scene: Path, tmp_path: Path
-) -> None:
+def test_a_revision_takes_the_place_of_the_file_of_the_folder(block, scene, tmp_path):
     revised = tmp_path / "sent" / "block.step"
     revised.parent.mkdir()
     revised.write_text(block.read_text() + "\n")
@@ -200,7 +195,7 @@ def test_a_revision_takes_the_place_of_the_file_of_the_folder(
         assert [part["step_file"] for part in tomllib.loads(scene.read_text())["housings"]] == ["block.step"]
 
 
-def test_a_bearing_in_no_bore_is_the_first_line(block: Path, scene: Path, tmp_path: Path) -> None:
+def test_a_bearing_in_no_bore_is_the_first_line(block, scene, tmp_path):
     table = tomllib.loads(scene.read_text())
     table["bushings"].append(table["bushings"][0] | {"name": "outboard", "position_mm": 150.0})
     scene.write_text(toml_text(table))
@@ -221,9 +216,7 @@ def test_a_bearing_in_no_bore_is_the_first_line(block: Path, scene: Path, tmp_pa
         (("--material", "gray_cast_iron", "-o", "absent/scene.toml"), "output"),
     ],
 )
-def test_what_is_typed_wrong_is_named(
-    block: Path, scene: Path, options: tuple[str, ...], complaint: str
-) -> None:
+def test_what_is_typed_wrong_is_named(block, scene, options, complaint):
     ended = loa("housing", scene, block, *options)
     assert ended.exit_code == 2
     assert f"error: {complaint}" in ended.output
@@ -240,7 +233,7 @@ HOSTILE = {
 
 
 @pytest.mark.parametrize("attack", HOSTILE)
-def test_a_hostile_file_is_one_error_and_writes_nothing(scene: Path, tmp_path: Path, attack: str) -> None:
+def test_a_hostile_file_is_one_error_and_writes_nothing(scene, tmp_path, attack):
     file, output = tmp_path / "in" / "case.step", tmp_path / "out.toml"
     file.parent.mkdir()
     file.write_bytes(HOSTILE[attack])
@@ -251,7 +244,7 @@ def test_a_hostile_file_is_one_error_and_writes_nothing(scene: Path, tmp_path: P
     assert not output.exists()
 
 
-def test_another_step_file_of_the_name_is_not_overwritten(block: Path, scene: Path, tmp_path: Path) -> None:
+def test_another_step_file_of_the_name_is_not_overwritten(block, scene, tmp_path):
     (tmp_path / "block.step").write_text("of somebody else")
     output = tmp_path / "housed.toml"
     ended = loa("housing", scene, block, "--material", "gray_cast_iron", "-o", output)

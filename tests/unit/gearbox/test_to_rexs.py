@@ -1,10 +1,7 @@
 """Results in REXS documents: they read back in the axes of the file, and leave the unit as it was."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -61,13 +58,11 @@ def table() -> SteDatabase:
 
 
 def of_stage(document: Document) -> dict[str, Attribute]:
-    """Return the calculated attributes of the stage by name."""
     stage = document.model.component(STAGE)
-    assert stage is not None
     return {entry.id: entry for entry in stage.attributes if entry.origin == "calculated"}
 
 
-def test_the_unit_stays_as_it_was_and_reads_back_to_the_same_case() -> None:
+def test_the_unit_stays_as_it_was_and_reads_back_to_the_same_case():
     document = Document(one_stage().model)
     written = exported(document, stages(), [table()])
     for name in ("a.rexs", "a.rexsj", "a.rexsz"):
@@ -78,14 +73,14 @@ def test_the_unit_stays_as_it_was_and_reads_back_to_the_same_case() -> None:
         assert [entry for entry in after.attributes if entry.origin is None] == list(before.attributes)
 
 
-def test_contact_ratios_are_those_of_the_pair() -> None:
+def test_contact_ratios_are_those_of_the_pair():
     found = of_stage(exported(Document(one_stage().model), stages(), [table()]))
     pair = gear_pair(stages()[0].case)
     assert found["radial_contact_ratio"].value == pair.transverse_contact_ratio
     assert found["total_contact_ratio"].value == pair.total_contact_ratio
 
 
-def test_the_stiffness_is_the_slope_of_force_over_transmission_error() -> None:
+def test_the_stiffness_is_the_slope_of_force_over_transmission_error():
     database, step = table(), 1e-4
     torque = float(0.7 * database.torque[-1])
     found = of_stage(exported(Document(one_stage().model), stages(), [database], torque))
@@ -97,7 +92,7 @@ def test_the_stiffness_is_the_slope_of_force_over_transmission_error() -> None:
     assert stiffness.unit == "N / mm"
 
 
-def test_the_transmission_error_is_the_curves() -> None:
+def test_the_transmission_error_is_the_curves():
     database = table()
     torque = float(database.torque[0])
     found = of_stage(exported(Document(one_stage().model), stages(), [database], torque))
@@ -109,7 +104,7 @@ def test_the_transmission_error_is_the_curves() -> None:
     assert found["custom_torque_on_driving_gear"].value == pytest.approx(torque)
 
 
-def test_a_result_takes_the_place_of_an_earlier_one() -> None:
+def test_a_result_takes_the_place_of_an_earlier_one():
     once = exported(Document(one_stage().model), stages(), [table()], float(table().torque[0]))
     twice = exported(once, stages(), [table()])
     (stage,) = [part for part in twice.model.components if part.id == STAGE]
@@ -118,7 +113,7 @@ def test_a_result_takes_the_place_of_an_earlier_one() -> None:
     assert twice == exported(Document(one_stage().model), stages(), [table()])
 
 
-def test_a_table_of_another_pair_is_refused() -> None:
+def test_a_table_of_another_pair_is_refused():
     (stage,) = stages()
     other = case_json(stage.case)
     other["pair"]["pinion"]["tip_relief_um"] = 20.0
@@ -127,7 +122,7 @@ def test_a_table_of_another_pair_is_refused() -> None:
         exported(Document(one_stage().model), stages(), [replace(table(), metadata=Metadata(case=other))])
 
 
-def test_equal_stages_have_equal_results() -> None:
+def test_equal_stages_have_equal_results():
     model = replace(
         one_stage().model, components=(*one_stage().model.components, Component(21, "cylindrical_stage"))
     )
@@ -135,11 +130,10 @@ def test_equal_stages_have_equal_results() -> None:
     written = exported(Document(model), [replace(stage, equal=(21,))], [table()])
     first, second = (written.model.component(number) for number in (STAGE, 21))
     assert first is not None
-    assert second is not None
     assert set(second.attributes) == set(of_stage(written).values()) != set()
 
 
-def test_the_verb_writes_what_it_names_of_a_table(tmp_path: Path) -> None:
+def test_the_verb_writes_what_it_names_of_a_table(tmp_path):
     unit_file, database, output = (tmp_path / name for name in ("one_stage.rexs", "ste.nc", "out.rexsj"))
     unit_file.write_bytes(serialized(Document(one_stage().model), unit_file.name))
     table().to_netcdf(database)
@@ -200,7 +194,7 @@ def results(document: Document, case: int | None = None) -> dict[int, Values]:
         part.id: {
             entry.id: np.array([si_value(float(v), entry.unit, str(entry.unit), "") for v in values])
             if isinstance(values := entry.value, tuple)
-            else si_value(float(values), entry.unit, str(entry.unit), "")  # type: ignore[arg-type]
+            else si_value(float(values), entry.unit, str(entry.unit), "")
             for entry in part.attributes
             if entry.origin == "calculated"
         }
@@ -213,13 +207,11 @@ def vector(values: Values, name: str) -> np.ndarray[Any, Any]:
 
 
 @pytest.fixture(scope="module")
-def deflected_unit() -> tuple[Document, GearboxDeflection]:
+def deflected_unit():
     return written(spectrum())
 
 
-def test_the_unit_reads_back_to_the_same_scene_and_cases(
-    deflected_unit: tuple[Document, GearboxDeflection],
-) -> None:
+def test_the_unit_reads_back_to_the_same_scene_and_cases(deflected_unit):
     document, before = deflected_unit[0], OpenedUnit.of(spectrum())
     for name in ("a.rexs", "a.rexsj", "a.rexsz"):
         read = parsed(serialized(document, name))
@@ -231,7 +223,7 @@ def test_the_unit_reads_back_to_the_same_scene_and_cases(
         assert own.components[: len(case.components)] == case.components
 
 
-def test_every_load_case_has_its_own_results(deflected_unit: tuple[Document, GearboxDeflection]) -> None:
+def test_every_load_case_has_its_own_results(deflected_unit):
     document, result = deflected_unit
     for number, case in enumerate(result.deflection.cases):
         found = results(document, number)
@@ -257,7 +249,7 @@ def test_every_load_case_has_its_own_results(deflected_unit: tuple[Document, Gea
 
 
 @pytest.mark.parametrize("exchanged", [None, 31, 34])
-def test_a_bearing_pulls_its_outer_side_after_the_inner(exchanged: int | None) -> None:
+def test_a_bearing_pulls_its_outer_side_after_the_inner(exchanged):
     plain = spectrum()
     document, _ = written(plain if exchanged is None else with_sides_exchanged(plain, exchanged))
     on_casing = np.zeros(3)
@@ -277,7 +269,7 @@ def test_a_bearing_pulls_its_outer_side_after_the_inner(exchanged: int | None) -
 
 
 @pytest.mark.parametrize("shaft", [INPUT, MIDDLE])
-def test_a_shaft_described_from_its_other_end_has_the_same_results_in_its_own_axes(shaft: int) -> None:
+def test_a_shaft_described_from_its_other_end_has_the_same_results_in_its_own_axes(shaft):
     plain, turned = (results(written(document)[0]) for document in (two_stages(), antiparallel(shaft, 150.0)))
     flipped = np.array([-1.0, -1.0, 1.0])  # u and v of an axis turned about w
     before, after = plain[shaft], turned[shaft]
@@ -306,7 +298,7 @@ def test_a_shaft_described_from_its_other_end_has_the_same_results_in_its_own_ax
         assert other["custom_misalignment"] == pytest.approx(step * own["custom_misalignment"], rel=1e-6)
 
 
-def test_the_mirrored_unit_has_the_mirrored_results() -> None:
+def test_the_mirrored_unit_has_the_mirrored_results():
     plain, image = (results(written(document)[0]) for document in (two_stages(), mirrored()))
     across_v = np.array([1.0, -1.0, 1.0])
     for bearing in BEARINGS:
@@ -332,7 +324,7 @@ UNITS = {
 
 @pytest.mark.parametrize("name", UNITS)
 @pytest.mark.parametrize("direction", ["drive", "coast"])
-def test_the_face_counts_as_dynamics_counts_it(name: str, direction: str) -> None:
+def test_the_face_counts_as_dynamics_counts_it(name, direction):
     unit = OpenedUnit.of(UNITS[name])
     scene = loaded_scene(scene_in_si(unit), LoadCase("load", direction=direction))
     system, turned = assemble(scene), 1 if direction == "drive" else -1
@@ -345,9 +337,7 @@ def test_the_face_counts_as_dynamics_counts_it(name: str, direction: str) -> Non
         assert turned * part.sense == -against_z * (-1 if reversed_shaft else 1)
 
 
-def test_the_load_along_the_face_carries_the_mesh_force(
-    deflected_unit: tuple[Document, GearboxDeflection],
-) -> None:
+def test_the_load_along_the_face_carries_the_mesh_force(deflected_unit):
     document, result = deflected_unit
     for number, case in enumerate(result.deflection.cases):
         for mesh in case.meshes:
@@ -362,7 +352,7 @@ def test_the_load_along_the_face_carries_the_mesh_force(
             assert np.all(np.diff(load) * np.diff(pattern[0]) > 0.0)  # both fall to the same end
 
 
-def test_without_a_spectrum_results_are_the_components_own() -> None:
+def test_without_a_spectrum_results_are_the_components_own():
     document, result = written(two_stages())
     assert {load.name for load in result.deflection.cases[0].bearings} == {
         f"concept_bearing {number}" for number in BEARINGS
@@ -373,7 +363,7 @@ def test_without_a_spectrum_results_are_the_components_own() -> None:
     assert not own & {*GEARS, CASING}
 
 
-def test_planets_copies_are_named_as_left_out() -> None:
+def test_planets_copies_are_named_as_left_out():
     unit = OpenedUnit.of(planetary())
     result = deflection_of_unit(unit)
     names = omissions(unit, result)
@@ -397,16 +387,14 @@ OTHER_TIP = {11: {"tip_diameter": 43.0}}
         ({INPUT: {"rotational_speed": 1501.0}}, "speed_rpm"),
     ],
 )
-def test_a_unit_of_another_scene_is_refused_with_the_first_difference(
-    changes: dict[int, dict[str, Any]], words: str
-) -> None:
+def test_a_unit_of_another_scene_is_refused_with_the_first_difference(changes, words):
     result = deflection_of_unit(OpenedUnit.of(two_stages()))
     other = two_stages(changes)
     with pytest.raises(BadInput, match=words):
         deflected(other, OpenedUnit.of(other), result)
 
 
-def test_settings_of_the_computation_may_differ() -> None:
+def test_settings_of_the_computation_may_differ():
     document = two_stages()
     unit = OpenedUnit.of(document)
     result = deflection_of_unit(unit)
@@ -414,12 +402,10 @@ def test_settings_of_the_computation_may_differ() -> None:
     assert deflected(document, unit, replace(result, scene=scene)) == deflected(document, unit, result)
 
 
-def test_other_load_cases_and_lost_ones_are_refused(
-    deflected_unit: tuple[Document, GearboxDeflection],
-) -> None:
+def test_other_load_cases_and_lost_ones_are_refused(deflected_unit):
     result, unit = deflected_unit[1], OpenedUnit.of(spectrum())
 
-    def with_case(**changes: Any) -> GearboxDeflection:
+    def with_case(**changes):
         first, *others = result.deflection.cases
         cases = (replace(first, **changes), *others)
         return replace(result, deflection=replace(result.deflection, cases=cases))
@@ -442,9 +428,7 @@ def test_other_load_cases_and_lost_ones_are_refused(
         deflected(spectrum(), unit, replace(result, scene={}))
 
 
-def test_the_verb_writes_what_it_names(
-    deflected_unit: tuple[Document, GearboxDeflection], tmp_path: Path
-) -> None:
+def test_the_verb_writes_what_it_names(deflected_unit, tmp_path):
     unit_file, deflection, output = (tmp_path / name for name in ("unit.rexs", "d.nc", "out.rexsj"))
     unit_file.write_bytes(serialized(spectrum(), unit_file.name))
     RUN.file.write(deflected_unit[1], deflection)

@@ -1,7 +1,5 @@
 """Phases of trains of scene files: thickness from the tables, stated angles, contradictions by field."""
 
-from __future__ import annotations
-
 import copy
 import math
 from typing import Any
@@ -54,7 +52,7 @@ def phases_of(scene: Scene) -> TrainPhases:
     return train_phases(scene, solve_kinematics(scene).mesh_sense)
 
 
-def test_a_chain_in_closed_form_shifts_by_half_a_pitch_and_by_what_its_coast_flank_says() -> None:
+def test_a_chain_in_closed_form_shifts_by_half_a_pitch_and_by_what_its_coast_flank_says():
     assert phases_of(scene_of(chain())).position == pytest.approx([0.0, 0.5], abs=1e-9)
     file = chain()
     file["meshes"][0]["coast_flank"] = {"backlash_um": 100.0, "tooth_thickness": 0.45}
@@ -63,7 +61,7 @@ def test_a_chain_in_closed_form_shifts_by_half_a_pitch_and_by_what_its_coast_fla
     assert phases_of(scene_of(file)).position == pytest.approx([0.0, driven], abs=1e-9)
 
 
-def test_a_position_off_the_geometry_is_refused_by_the_field_of_the_file() -> None:
+def test_a_position_off_the_geometry_is_refused_by_the_field_of_the_file():
     file = chain()
     file["meshes"][1]["position_offset"] = 0.48
     file["gears"].append({"name": "d", "shaft": "d", "position_mm": 50.0})
@@ -73,7 +71,7 @@ def test_a_position_off_the_geometry_is_refused_by_the_field_of_the_file() -> No
         scene_of(file)
 
 
-def test_angles_of_a_shaft_are_degrees_one_for_each_gear() -> None:
+def test_angles_of_a_shaft_are_degrees_one_for_each_gear():
     file = chain()
     file["gears"].append({"name": "b2", "shaft": "b", "position_mm": 80.0})
     file["gears"][2] |= {"position_mm": 80.0}

@@ -1,7 +1,5 @@
 """The types of a study, of its function and of the client's process follow from its row of the registry."""
 
-from __future__ import annotations
-
 from importlib import import_module
 from inspect import signature
 
@@ -11,14 +9,14 @@ from lineofaction.gearbox import computations, registry
 from lineofaction.gearbox.registry import STUDIES
 
 
-def test_every_row_has_its_own_computation() -> None:
+def test_every_row_has_its_own_computation():
     for row in STUDIES.values():
         computation = import_module(f"lineofaction.gearbox.studies.{row.package}.run").RUN
         assert row.run is computation
         assert type(computation).inputs is row.inputs
 
 
-def test_every_row_is_a_function() -> None:
+def test_every_row_is_a_function():
     assert registry.__all__ == sorted(row.package for row in STUDIES.values())
     assert computations.__all__ == [name.upper() for name in registry.__all__]
     for row in STUDIES.values():
@@ -28,7 +26,7 @@ def test_every_row_is_a_function() -> None:
         assert function.__doc__.startswith(row.description)
 
 
-def test_every_row_is_a_process_of_both_clients() -> None:
+def test_every_row_is_a_process_of_both_clients():
     blocking, awaited = LineOfActionClient(), AsyncLineOfActionClient()
     for row in STUDIES.values():
         assert isinstance(getattr(blocking, row.package), Process)
@@ -38,6 +36,6 @@ def test_every_row_is_a_process_of_both_clients() -> None:
         assert (row.takes.subject == "case or scene") == (row.argument == "subject")
 
 
-def test_what_a_file_of_inputs_is_called_and_whether_it_may_be_left_out_are_those_of_the_types() -> None:
+def test_what_a_file_of_inputs_is_called_and_whether_it_may_be_left_out_are_those_of_the_types():
     filed = {row.name: row.takes.bare for row in STUDIES.values() if row.takes.from_file}
     assert filed == {"optimize": True, "change": False, "deflect": True, "study": False}

@@ -1,7 +1,5 @@
 """The ending of a name states its unit, which one table knows."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import pytest
@@ -10,12 +8,12 @@ from lineofaction.gearbox.units import UNITS, ending_of, factor, unit_of
 from lineofaction.report.drawing.tables import settings_table
 
 
-def test_an_ending_stands_before_those_that_it_ends_with() -> None:
+def test_an_ending_stands_before_those_that_it_ends_with():
     assert all(ending_of(f"name{ending}") == ending for ending in UNITS)
     assert not [(first, second) for first, second in pairwise(UNITS) if second.endswith(first)]
 
 
-def test_only_units_beside_those_of_si_have_a_factor() -> None:
+def test_only_units_beside_those_of_si_have_a_factor():
     assert factor("housings[0].position_mm") == 1e-3 and factor("line.stiffness_n_per_m") == 1.0
     assert unit_of("torque_n_m") is None and unit_of("imbalance_g_mm") == UNITS["_g_mm"]
 
@@ -31,5 +29,5 @@ def test_only_units_beside_those_of_si_have_a_factor() -> None:
         ("name", "name"),
     ],
 )
-def test_a_fact_of_a_report_has_its_unit_after_its_words(name: str, words: str) -> None:
+def test_a_fact_of_a_report_has_its_unit_after_its_words(name, words):
     assert settings_table("", {name: 1.0}).rows == ((words, "1"),)

@@ -1,7 +1,5 @@
 """Scenes of a study: each is the scene of its own file to the last bit, and shares what its values leave."""
 
-from __future__ import annotations
-
 import json
 import math
 import sys
@@ -11,9 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.results import RunResult
-from dynamics.scene import Scene
-from dynamics.simulation import run_scene, simulate, undescribed
+from dynamics import RunResult, Scene, simulate
+from dynamics.simulation import run_scene, undescribed
 from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.studies.study.scenes import VariedScene, places_of, scene_of_json, with_value
@@ -132,7 +129,7 @@ def check_same_series(run: RunResult, other: RunResult) -> None:
 
 @pytest.mark.drawn
 @pytest.mark.parametrize("path", VARIED)
-def test_a_run_among_others_is_the_run_alone_to_the_last_bit(path: str) -> None:
+def test_a_run_among_others_is_the_run_alone_to_the_last_bit(path):
     scenes, (first, other) = varied(path), VARIED[path]
     runs = [run_scene(scenes.scene({path: at}), describe=undescribed) for at in (first, other, first)]
     assert not np.array_equal(runs[0].dynamic_transmission_error, runs[1].dynamic_transmission_error)
@@ -141,7 +138,7 @@ def test_a_run_among_others_is_the_run_alone_to_the_last_bit(path: str) -> None:
 
 
 @pytest.mark.parametrize("path", VARIED)
-def test_scenes_share_all_parts_but_those_of_other_values(path: str) -> None:
+def test_scenes_share_all_parts_but_those_of_other_values(path):
     scenes, own = varied(path), path.partition(".")[0]
     first, other = (scenes.scene({path: value}) for value in VARIED[path])
     assert [kind for kind in KINDS if getattr(first, kind) is not getattr(other, kind)] == (
@@ -149,14 +146,14 @@ def test_scenes_share_all_parts_but_those_of_other_values(path: str) -> None:
     )
 
 
-def test_values_that_stay_keep_their_parts() -> None:
+def test_values_that_stay_keep_their_parts():
     speed, ratio = "drives.motor.speed_rpm", "meshes.mesh.damping_ratio"
     scenes = varied(speed, ratio)
     first, other = (scenes.scene({speed: 900.0, ratio: value}) for value in (0.05, 0.1))
     assert first.drives is other.drives and first.meshes is not other.meshes
 
 
-def test_a_value_that_cannot_be_has_the_words_of_the_whole_file() -> None:
+def test_a_value_that_cannot_be_has_the_words_of_the_whole_file():
     path = "bushings.right.position_mm"
     scenes = varied(path)
     with pytest.raises(BadInput, match=r"bushings\[1\]\.position_mm"):

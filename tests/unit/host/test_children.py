@@ -1,12 +1,9 @@
 """Child processes: messages come as they were sent, whatever came before, and an end has its reason."""
 
-from __future__ import annotations
-
 import os
 import resource
 import signal
 import sys
-from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 
@@ -27,13 +24,13 @@ FRAMES = st.lists(st.builds(Frame, st.text(max_size=20), st.binary(max_size=300)
 
 
 @pytest.fixture(autouse=True)
-def fake_work(monkeypatch: pytest.MonkeyPatch) -> None:
+def fake_work(monkeypatch):
     """Let children find the module of their work."""
     monkeypatch.setenv("PYTHONPATH", str(Path(framed_fake_work.__file__).parent), prepend=os.pathsep)
 
 
 @pytest.fixture(params=["started anew", "forked"])
-def child(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Child]:
+def child(request, tmp_path):
     """A child that answers each order with the same."""
     launcher = Launcher(WORK, [], tmp_path / "warm.log", print)
     launch = partial(launcher.launch, warm_within=60.0)
@@ -54,7 +51,7 @@ def answers(child: Child, count: int) -> list[Frame]:
 
 
 @given(frames=FRAMES, size=st.integers(1, 64))
-def test_frames_come_whole_in_whatever_pieces(frames: list[Frame], size: int) -> None:
+def test_frames_come_whole_in_whatever_pieces(frames, size):
     sent = b"".join(frame.head + frame.body for frame in frames)
     buffer = FrameBuffer()
     pieces = [sent[start : start + size] for start in range(0, len(sent), size)]
@@ -63,7 +60,7 @@ def test_frames_come_whole_in_whatever_pieces(frames: list[Frame], size: int) ->
 
 
 @given(frame=st.builds(Frame, st.text(max_size=20), st.binary(max_size=50)), cut=st.integers(1, 40))
-def test_a_frame_that_breaks_off_is_none(frame: Frame, cut: int) -> None:
+def test_a_frame_that_breaks_off_is_none(frame, cut):
     sent = frame.head + frame.body
     buffer = FrameBuffer()
     assert buffer.take(sent[: max(len(sent) - cut, 1)]) == []
@@ -82,7 +79,7 @@ def test_a_frame_that_breaks_off_is_none(frame: Frame, cut: int) -> None:
         b" " * LONGEST_HEAD,
     ],
 )
-def test_nothing_is_read_behind_what_is_no_frame(sent: bytes) -> None:
+def test_nothing_is_read_behind_what_is_no_frame(sent):
     buffer = FrameBuffer()
     first = Frame("first", b"1")
     assert buffer.take(first.head + first.body + sent) == [first]
@@ -90,7 +87,7 @@ def test_nothing_is_read_behind_what_is_no_frame(sent: bytes) -> None:
     assert buffer.broken and buffer.partial
 
 
-def test_orders_and_answers_of_any_size_pass(child: Child) -> None:
+def test_orders_and_answers_of_any_size_pass(child):
     sent = [Frame("echo", bytes([number]) * size) for number, size in enumerate((0, 1, 5_000_000))]
     for order in sent:
         assert child.send(order)
@@ -98,48 +95,46 @@ def test_orders_and_answers_of_any_size_pass(child: Child) -> None:
     assert not child.partial
 
 
-def test_a_child_that_ends_by_itself_says_how(child: Child) -> None:
+def test_a_child_that_ends_by_itself_says_how(child):
     child.send(Frame("leave", b"3"))
     until(lambda: child.receive(0.1) == [] and child.closed)
-    assert child.has_exited(within_s=60.0)
+    assert child.exits_within(60.0)
     assert not child.send(Frame("echo"))
     ended = child.end()
     assert ended is not None and ended.code == 3
     assert not child.killed_from_outside
 
 
-def test_a_kill_from_outside_is_told_from_that_of_its_starter(child: Child) -> None:
+def test_a_kill_from_outside_is_told_from_that_of_its_starter(child):
     answers(child, 0)
     os.kill(child.pid, signal.SIGKILL)
-    assert child.has_exited(within_s=60.0)
+    assert child.exits_within(60.0)
     ended = child.end()
     assert ended is not None and ended.code == -signal.SIGKILL
     assert child.killed_from_outside == (memory_kills() is not None)
 
 
-def test_a_kill_by_its_starter_is_none_from_outside(child: Child) -> None:
+def test_a_kill_by_its_starter_is_none_from_outside(child):
     ended = child.end()
     assert ended is not None and ended.code == -signal.SIGKILL
     assert not child.killed_from_outside
 
 
 @pytest.mark.parametrize(("before", "after"), [(0, 1), (None, None)])
-def test_a_kill_that_may_be_for_memory_is_none_from_outside(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, before: int | None, after: int | None
-) -> None:
+def test_a_kill_that_may_be_for_memory_is_none_from_outside(tmp_path, monkeypatch, before, after):
     """The system has killed some process since the start, or does not count."""
     counts = iter([before, after])
     monkeypatch.setattr(child_module, "memory_kills", lambda: next(counts, after))
     with (tmp_path / "log").open("wb") as log:
         made = Child(partial(start_child, WORK), log.fileno(), tmp_path)
     os.kill(made.pid, signal.SIGKILL)
-    assert made.has_exited(within_s=60.0)
+    assert made.exits_within(60.0)
     assert made.end() is not None
     assert not made.killed_from_outside
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="descriptors beyond 1023 need a raised limit")
-def test_descriptors_beyond_those_of_select_are_heard(tmp_path: Path) -> None:
+def test_descriptors_beyond_those_of_select_are_heard(tmp_path):
     """A service with many connections has them."""
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     resource.setrlimit(resource.RLIMIT_NOFILE, (min(2048, hard), hard))
@@ -159,7 +154,7 @@ def test_descriptors_beyond_those_of_select_are_heard(tmp_path: Path) -> None:
         resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
 
 
-def test_memory_kills_are_those_of_the_own_group_or_of_the_machine(tmp_path: Path) -> None:
+def test_memory_kills_are_those_of_the_own_group_or_of_the_machine(tmp_path):
     proc, groups = tmp_path / "proc", tmp_path / "cgroup"
     assert memory_kills(proc, groups) is None
     (proc / "self").mkdir(parents=True)

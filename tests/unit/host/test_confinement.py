@@ -1,14 +1,11 @@
 """A confined process keeps its own folder and Python's files, and nothing else a reader could be led to."""
 
-from __future__ import annotations
-
 import json
 import platform
 import signal
 import subprocess
 import sys
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
@@ -184,15 +181,14 @@ Run = Callable[..., Ended]
 
 
 @pytest.fixture
-def confined(tmp_path: Path) -> Run:
-    """Run expressions in a confined child and return how it ended."""
+def confined(tmp_path):
     (tmp_path / "canary").write_text("canary")
     own = tmp_path / "own"
     own.mkdir()
     (own / "link").symlink_to(tmp_path / "canary")
     (own / "own").touch()
 
-    def run(tries: dict[str, str], **limits: int) -> Ended:
+    def run(tries, **limits):
         places = {"canary": str(tmp_path / "canary"), "outside": str(tmp_path)}
         expressions = {name: text.format(**places) for name, text in tries.items()}
         request = json.dumps([expressions, limits, PRELUDE])
@@ -210,24 +206,24 @@ def outcomes(ended: Ended) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("escapes", [FILES, PROCESSES, SYSTEM], ids=["files", "processes", "system"])
-def test_every_escape_is_refused(confined: Run, escapes: dict[str, str], tmp_path: Path) -> None:
+def test_every_escape_is_refused(confined, escapes, tmp_path):
     refusals = outcomes(confined(escapes))
     assert {name: outcome for name, outcome in refusals.items() if outcome != "PermissionError"} == {}
     assert len(refusals) == len(escapes)
     assert sorted(path.name for path in (tmp_path / "own").iterdir()) == ["link", "own"]
 
 
-def test_there_are_forty_escapes() -> None:
+def test_there_are_forty_escapes():
     assert len(FILES) + len(PROCESSES) + len(SYSTEM) >= 40
 
 
 @pytest.mark.skipif(platform.machine() != "x86_64", reason="a table of that processor")
-def test_calls_of_32_bits_are_refused(confined: Run) -> None:
+def test_calls_of_32_bits_are_refused(confined):
     ended = confined({"call": BY_32_BITS})
     assert ended.returncode == -signal.SIGSEGV or outcomes(ended) == {"call": "PermissionError"}
 
 
-def test_a_process_with_other_threads_is_not_confined() -> None:
+def test_a_process_with_other_threads_is_not_confined():
     """They would keep what the thread gives up that confines itself."""
     wait = "threading.Thread(target=threading.Event().wait, daemon=True).start()"
     code = f"import threading, pathlib, host; {wait}; host.confine(pathlib.Path.cwd())"
@@ -238,7 +234,7 @@ def test_a_process_with_other_threads_is_not_confined() -> None:
     assert "1 other threads of this process would not be confined" in done.stderr
 
 
-def test_its_own_folder_and_python_stay(confined: Run) -> None:
+def test_its_own_folder_and_python_stay(confined):
     own = {
         "writes": "open('made', 'w').write('x')",
         "reads": "open('made').read()",
@@ -250,13 +246,13 @@ def test_its_own_folder_and_python_stay(confined: Run) -> None:
     assert set(outcomes(confined(own)).values()) == {"done"}
 
 
-def test_memory_and_sizes_of_files_end(confined: Run) -> None:
+def test_memory_and_sizes_of_files_end(confined):
     tries = {"memory": "bytearray(200_000_000)", "file": "open('large', 'wb').write(bytes(2_000_000))"}
     ended = outcomes(confined(tries, memory_mb=150, file_bytes=1_000_000))
     assert ended == {"memory": "MemoryError", "file": "OSError"}
 
 
-def test_it_ends_with_whoever_started_it(tmp_path: Path) -> None:
+def test_it_ends_with_whoever_started_it(tmp_path):
     command = (sys.executable, "-c", STARTER, SLEEPER)
     with subprocess.Popen(command, cwd=tmp_path, env=child_environment(), **PIPES) as starter:
         pid = int(starter.stdout.readline())
@@ -267,7 +263,7 @@ def test_it_ends_with_whoever_started_it(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("statement", "cause"), WRITES.values(), ids=WRITES)
-def test_whoever_asks_ends_it_beyond_what_it_may_write(tmp_path: Path, statement: str, cause: str) -> None:
+def test_whoever_asks_ends_it_beyond_what_it_may_write(tmp_path, statement, cause):
     """Each file is within its limit; of those that it removes none is left to be counted."""
     limits = Limits(written_bytes=1_000_000, files=8)
     with pytest.raises(ChildFailed, match=cause):
@@ -275,11 +271,11 @@ def test_whoever_asks_ends_it_beyond_what_it_may_write(tmp_path: Path, statement
 
 
 @pytest.mark.law
-def test_cpu_time_ends_the_process_and_says_so(confined: Run) -> None:
+def test_cpu_time_ends_the_process_and_says_so(confined):
     assert confined({"loop": "[0 for _ in iter(int, 1)]"}, cpu_seconds=1).returncode == -24  # SIGXCPU
 
 
-def test_a_child_inherits_no_secret(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_child_inherits_no_secret(monkeypatch):
     for name in ("AWS_SECRET_ACCESS_KEY", "LOA_WEBHOOK_SECRET", "DATABASE_URL", "GITHUB_TOKEN"):
         monkeypatch.setenv(name, "canary")
     monkeypatch.setenv("NUMBA_DEBUG_CACHE", "0")

@@ -1,7 +1,5 @@
 """A table and a run are the same by loops of the family, of the processor by name, and by numba as it is."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys
@@ -12,8 +10,8 @@ import llvmlite.binding
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from repository import ROOT
 
-ROOT = Path(__file__).parents[3]
 VERBS = {"analyze": "palermo_spur_20_20.toml", "simulate": "palermo_scene.toml"}
 
 
@@ -46,7 +44,7 @@ def numbers(file: Path) -> dict[str, NDArray[np.float64]]:
 
 @pytest.mark.nightly
 @pytest.mark.parametrize("loops", ["of the processor", "of numba as it is"])
-def test_a_table_and_a_run_are_those_of_other_loops(tmp_path: Path, loops: str) -> None:
+def test_a_table_and_a_run_are_those_of_other_loops(tmp_path, loops):
     name = {"NUMBA_CPU_NAME": str(llvmlite.binding.get_host_cpu_name())}
     settings = {"of the processor": name, "of numba as it is": {"LOA_PLAIN_LOOPS": "1"}}
     family, other = results(tmp_path / "family", {}), results(tmp_path / "other", settings[loops])

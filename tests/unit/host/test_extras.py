@@ -1,35 +1,32 @@
 """Extras: what a base install does without, and what it is told."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys
 import tomllib
 import warnings
-from pathlib import Path
 
 import pytest
+from repository import ROOT
 from small_table import small_table
 from study_rows import ROWS
 
 import lineofaction as loa_names
 from host.extras import MODULES, MissingExtra, missing_extra, require
 
-ROOT = Path(__file__).parents[3]
 EXTRAS = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["optional-dependencies"]
 IMPORTED_AS = {"scikit-fem": "skfem", "opentelemetry-api": "opentelemetry"}
 ANALYSIS_ADVICE = "It comes with the extra analysis: pip install 'lineofaction[analysis]'"
 
 
 @pytest.mark.parametrize("extra", MODULES)
-def test_modules_of_an_extra_are_those_that_it_requires_everywhere(extra: str) -> None:
+def test_modules_of_an_extra_are_those_that_it_requires_everywhere(extra):
     everywhere = [line for line in EXTRAS[extra] if ";" not in line and not line.startswith("lineofaction")]
     names = [re.split(r"[^\w-]", line)[0] for line in everywhere]
     assert {IMPORTED_AS.get(name, name.replace("-", "_")) for name in names} == set(MODULES[extra])
 
 
-def test_a_missing_module_is_named_with_its_extra(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_module_is_named_with_its_extra(monkeypatch):
     require("analysis")
     monkeypatch.setitem(sys.modules, "skfem", None)
     require.cache_clear()
@@ -44,7 +41,6 @@ NO_ANALYSIS = f"gmsh is not installed. {ANALYSIS_ADVICE}"
 
 
 def in_the_base(code: str, *arguments: str) -> subprocess.CompletedProcess[str]:
-    """Run code where only the base is installed."""
     hidden = f"import importlib, sys\nsys.modules.update(dict.fromkeys({HIDDEN!r}))\n"  # importing fails now
     command = [sys.executable, "-c", hidden + code, *arguments]
     return subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT, timeout=900)
@@ -55,9 +51,7 @@ def loa(*arguments: str) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.law
-def test_every_module_of_the_libraries_is_imported_and_what_computes_says_what_it_needs(
-    tmp_path: Path,
-) -> None:
+def test_every_module_of_the_libraries_is_imported_and_what_computes_says_what_it_needs(tmp_path):
     small_table().to_netcdf(tmp_path / "table.nc")
     code = """
 import pkgutil
@@ -89,7 +83,7 @@ for compute in (
 
 
 @pytest.mark.law
-def test_the_base_reads_and_reports_tables(tmp_path: Path) -> None:
+def test_the_base_reads_and_reports_tables(tmp_path):
     table = small_table()
     table.to_netcdf(tmp_path / "table.nc")
     read = loa("ste", str(tmp_path / "table.nc"), "--torque", str(table.torque[-1]))
@@ -114,9 +108,7 @@ for name in sys.argv[1:]:
 
 
 @pytest.mark.nightly  # computes a result of each kind
-def test_the_base_reads_plots_and_reports_results_of_every_kind(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_base_reads_plots_and_reports_results_of_every_kind(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     files = []
     for row in ROWS:
@@ -135,7 +127,7 @@ def test_the_base_reads_plots_and_reports_results_of_every_kind(
 
 
 @pytest.mark.law
-def test_the_base_refuses_to_compute_and_to_serve(tmp_path: Path) -> None:
+def test_the_base_refuses_to_compute_and_to_serve(tmp_path):
     refused = loa("analyze", "examples/palermo_spur_20_20.toml", "-o", str(tmp_path / "ste.nc"))
     assert (refused.returncode, refused.stderr) == (1, f"error: {NO_ANALYSIS}\n")
     refused = loa("serve", "--data-directory", str(tmp_path / "data"))

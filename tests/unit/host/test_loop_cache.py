@@ -1,7 +1,5 @@
 """Compiled loops are found by the content of all that they call, also those that an installation brings."""
 
-from __future__ import annotations
-
 import importlib
 import os
 import pickle
@@ -39,13 +37,12 @@ def scaled(x):
 
 
 @pytest.fixture(autouse=True)
-def beside_the_source(monkeypatch: pytest.MonkeyPatch) -> None:
+def beside_the_source(monkeypatch):
     """Keep entries beside the source, also where the whole run of tests has a folder for them."""
     monkeypatch.setattr(config, "CACHE_DIR", "")
 
 
 def project(folder: Path) -> Path:
-    """Write a package of a loop, of the inner loop that it calls and of a constant."""
     package = folder / "gears"
     package.mkdir(parents=True)
     (package / "__init__.py").touch()
@@ -82,7 +79,7 @@ def edit(file: Path, before: str, after: str) -> None:
     os.utime(file, ns=(status.st_atime_ns, status.st_mtime_ns))
 
 
-def test_a_loop_is_renewed_with_the_inner_loop_and_the_constant_that_it_calls(tmp_path: Path) -> None:
+def test_a_loop_is_renewed_with_the_inner_loop_and_the_constant_that_it_calls(tmp_path):
     folder = project(tmp_path)
     assert [answer(folder), answer(folder)] == [(7.0, False), (7.0, True)]
     edit(folder / "gears" / "inner.py", "FACTOR * x", "FACTOR - x")
@@ -93,7 +90,7 @@ def test_a_loop_is_renewed_with_the_inner_loop_and_the_constant_that_it_calls(tm
     assert answer(folder) == (2.0, True)
 
 
-def test_clones_share_a_folder_by_content(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_clones_share_a_folder_by_content(tmp_path, monkeypatch):
     first, second = project(tmp_path / "a"), project(tmp_path / "b")
     monkeypatch.setattr(config, "CACHE_DIR", str(tmp_path / "kept"))
     answers = [answer(first), answer(second)]
@@ -102,9 +99,7 @@ def test_clones_share_a_folder_by_content(tmp_path: Path, monkeypatch: pytest.Mo
     assert answers == [(7.0, False), (7.0, True), (11.0, False), (7.0, True)]
 
 
-def test_what_an_installation_brings_is_read_and_nothing_is_written_there(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_an_installation_brings_is_read_and_nothing_is_written_there(tmp_path, monkeypatch):
     folder, shipped = project(tmp_path / "a"), tmp_path / "shipped"
     monkeypatch.setattr(config, "CACHE_DIR", str(shipped))
     assert answer(folder) == (7.0, False)
@@ -117,9 +112,7 @@ def test_what_an_installation_brings_is_read_and_nothing_is_written_there(
     assert sorted(shipped.rglob("*.nb?")) == files
 
 
-def test_an_entry_that_is_cut_off_or_of_other_versions_is_none(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_entry_that_is_cut_off_or_of_other_versions_is_none(tmp_path, monkeypatch):
     folder = project(tmp_path)
     kept = folder / "gears" / "__pycache__"
     answer(folder)
@@ -133,7 +126,7 @@ def test_an_entry_that_is_cut_off_or_of_other_versions_is_none(
     assert answer(folder) == (7.0, False)
 
 
-def test_few_versions_of_a_loop_are_kept(tmp_path: Path) -> None:
+def test_few_versions_of_a_loop_are_kept(tmp_path):
     folder = project(tmp_path)
     for factor in range(loop_cache.MAX_VERSIONS + 2):
         (folder / "gears" / "constants.py").write_text(f"FACTOR = {factor}.0\n")
@@ -142,7 +135,7 @@ def test_few_versions_of_a_loop_are_kept(tmp_path: Path) -> None:
     assert kept == [loop_cache.MAX_VERSIONS] * 2
 
 
-def test_keys_hold_all_files_that_the_statements_of_import_name() -> None:
+def test_keys_hold_all_files_that_the_statements_of_import_name():
     sources = Sources()
     for name in ("dynamics/meshes/flank_force.py", "fe_contact/contact/edge_strip.py"):
         for file in sources.files(name):
@@ -152,7 +145,7 @@ def test_keys_hold_all_files_that_the_statements_of_import_name() -> None:
     assert "dynamics/kernels/compiled.py" in sources.files("dynamics/meshes/flank_force.py")
 
 
-def test_keys_are_read_from_their_file_while_all_is_as_it_was(tmp_path: Path) -> None:
+def test_keys_are_read_from_their_file_while_all_is_as_it_was(tmp_path):
     root = project(tmp_path / "a")
     manifest = tmp_path / "keys.json"
     loop = root / "gears" / "loop.py"
@@ -168,7 +161,7 @@ def test_keys_are_read_from_their_file_while_all_is_as_it_was(tmp_path: Path) ->
     assert Sources(root).key(loop, manifest) != key
 
 
-def test_statements_of_import_are_found_in_all_their_forms(tmp_path: Path) -> None:
+def test_statements_of_import_are_found_in_all_their_forms(tmp_path):
     package = project(tmp_path) / "gears"
     (package / "sub").mkdir()
     shutil.copy(package / "constants.py", package / "sub" / "deep.py")
@@ -187,7 +180,7 @@ def test_statements_of_import_are_found_in_all_their_forms(tmp_path: Path) -> No
     assert all("gears/sub/deep.py" in sources.files(f"gears/form{n}.py") for n in range(len(forms)))
 
 
-def test_what_changed_while_a_process_ran_is_not_kept(tmp_path: Path) -> None:
+def test_what_changed_while_a_process_ran_is_not_kept(tmp_path):
     folder = project(tmp_path)
     outer = loop(folder)
     edit(folder / "gears" / "constants.py", "3.0", "9.0")
@@ -195,7 +188,7 @@ def test_what_changed_while_a_process_ran_is_not_kept(tmp_path: Path) -> None:
     assert not list(folder.rglob("*.nb?"))
 
 
-def test_a_processor_has_the_family_whose_features_it_has() -> None:
+def test_a_processor_has_the_family_whose_features_it_has():
     fourth = dict.fromkeys(FAMILIES["x86-64-v4"], True)
     assert family_of(fourth, "x86_64") == "x86-64-v4"
     assert family_of(fourth | {"avx512vl": False}, "AMD64") == "x86-64-v3"

@@ -1,7 +1,5 @@
 """Compiled loops: one process compiles for all, and inner loops become part of their callers."""
 
-from __future__ import annotations
-
 import gc
 import os
 import subprocess
@@ -13,7 +11,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numba.core.codegen import JITCodeLibrary
-from numpy.typing import NDArray
 
 from host import loops, shared_loops
 
@@ -55,7 +52,7 @@ if __name__ == "__main__":
 """
 
 
-def test_a_loop_that_is_read_loads_nothing_of_the_compiler_which_later_ones_get(tmp_path: Path) -> None:
+def test_a_loop_that_is_read_loads_nothing_of_the_compiler_which_later_ones_get(tmp_path):
     file = tmp_path / "loop.py"
     file.write_text(READ, encoding="utf-8")
     house = str(Path(loops.__file__).parents[1])
@@ -71,7 +68,7 @@ def test_a_loop_that_is_read_loads_nothing_of_the_compiler_which_later_ones_get(
     assert read[2:] == [compiled[2], "True", "True"]
 
 
-def test_processes_that_need_a_loop_at_once_compile_it_once(tmp_path: Path) -> None:
+def test_processes_that_need_a_loop_at_once_compile_it_once(tmp_path):
     file = tmp_path / "loop.py"
     file.write_text(LOOP, encoding="utf-8")
     house = str(Path(loops.__file__).parents[1])
@@ -86,27 +83,25 @@ def test_processes_that_need_a_loop_at_once_compile_it_once(tmp_path: Path) -> N
     with ExitStack() as stack:
         children = [stack.enter_context(command()) for _ in range(3)]
         for child in children:
-            assert child.stdout is not None
             assert child.stdout.readline() == "ready\n"
         for child in children:
-            assert child.stdin is not None
             child.stdin.write("\n")
             child.stdin.flush()
         compiled = [int(child.communicate()[0]) for child in children]
     assert sorted(compiled) == [0, 0, 1]
 
 
-def test_an_inner_loop_is_part_of_its_callers_and_python_may_call_it_too() -> None:
+def test_an_inner_loop_is_part_of_its_callers_and_python_may_call_it_too():
     @loops.inner(error_model="numpy")
-    def reciprocal(x: float) -> float:
+    def reciprocal(x):
         return 1.0 / x
 
     @loops.inner()
-    def twice(x: float) -> float:
+    def twice(x):
         return 2.0 * reciprocal(x)
 
     @loops.njit
-    def outer(x: float) -> float:
+    def outer(x):
         return twice(x) + reciprocal(x)
 
     assert outer(0.0) == float("inf")
@@ -117,18 +112,18 @@ def test_an_inner_loop_is_part_of_its_callers_and_python_may_call_it_too() -> No
         assert not any("cpython" in each.name for each in linked.library.get_defined_functions())
 
 
-def test_what_a_loop_takes_of_numba_becomes_part_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_a_loop_takes_of_numba_becomes_part_of_it(monkeypatch):
     made: list[str] = []
     finalize = JITCodeLibrary._finalize_final_module
 
-    def counted(library: JITCodeLibrary) -> None:
+    def counted(library):
         made.append(library.name)
         finalize(library)
 
     monkeypatch.setattr(JITCodeLibrary, "_finalize_final_module", counted)
 
     @loops.njit
-    def spread(values: NDArray[np.float64], count: int) -> NDArray[np.float64]:
+    def spread(values, count):
         spread = np.zeros((count, 2))
         spread[:, 0] = np.cumsum(np.repeat(values, 2))
         return spread
@@ -139,13 +134,13 @@ def test_what_a_loop_takes_of_numba_becomes_part_of_it(monkeypatch: pytest.Monke
         spread(np.array([1.0]), 4)
 
 
-def test_the_collector_goes_on_after_compiling() -> None:
+def test_the_collector_goes_on_after_compiling():
     with shared_loops._nothing_collected(), shared_loops._nothing_collected():
         assert not gc.isenabled()
     assert gc.isenabled()
 
 
-def test_numba_as_it_is_gives_the_same() -> None:
+def test_numba_as_it_is_gives_the_same():
     code = """
 import numba
 from host import loops

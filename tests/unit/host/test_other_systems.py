@@ -1,10 +1,7 @@
 """What systems that the tests do not run on are requested, and what they are told."""
 
-from __future__ import annotations
-
 import pickle
 import sys
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -14,7 +11,7 @@ import host
 from host import windows
 
 
-def test_windows_is_asked_through_psutil(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_windows_is_asked_through_psutil(monkeypatch):
     process = SimpleNamespace(memory_info=lambda: SimpleNamespace(peak_wset=7))
     memory = SimpleNamespace(total=9)
     asked = SimpleNamespace(Process=lambda: process, virtual_memory=lambda: memory)
@@ -23,12 +20,10 @@ def test_windows_is_asked_through_psutil(monkeypatch: pytest.MonkeyPatch) -> Non
     assert (windows.children_peak_memory(), windows.children_cpu_seconds()) == (0, 0.0)
 
 
-def test_a_lock_that_another_has_on_windows_is_the_error_of_posix(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_lock_that_another_has_on_windows_is_the_error_of_posix(tmp_path, monkeypatch):
     held: list[Any] = []
 
-    def locking(*file: int) -> None:
+    def locking(*file):
         if held:
             raise PermissionError(13, "Permission denied")
         held.append(file)
@@ -62,20 +57,20 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("platform", REFUSED)
-def test_what_a_system_has_not_is_refused_by_name(platform: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_a_system_has_not_is_refused_by_name(platform, monkeypatch):
     monkeypatch.setattr("sys.platform", platform)
     for act in REFUSED[platform]:
         with pytest.raises(host.Unavailable, match=rf"^[A-Z].* are not available on {platform}\. .*Linux"):
             act()
 
 
-def test_without_proc_no_process_is_listed_and_no_figure_known(tmp_path: Path) -> None:
+def test_without_proc_no_process_is_listed_and_no_figure_known(tmp_path):
     with pytest.raises(host.Unavailable, match="/proc"):
         host.processes_in(tmp_path, proc=tmp_path / "proc")
     assert host.memory_figure("VmHWM", proc=tmp_path / "proc") is None
 
 
-def test_the_error_survives_a_process() -> None:
+def test_the_error_survives_a_process():
     error = host.Unavailable("Limits on memory")
     again = pickle.loads(pickle.dumps(error))
     assert (str(again), again.what) == (str(error), "Limits on memory")

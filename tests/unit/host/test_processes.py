@@ -1,7 +1,5 @@
 """Costs, locks, limits and ends of processes, by laws that hold on every POSIX system."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess
@@ -17,7 +15,7 @@ PYTHON = (sys.executable, "-I", "-S", "-c")
 
 
 @pytest.mark.law
-def test_the_peak_follows_what_is_held_in_bytes() -> None:
+def test_the_peak_follows_what_is_held_in_bytes():
     """256 MiB that are written show as that, in bytes: not as KiB, nor a thousandfold.
 
     And not as what the process that started it holds: here twice as much.
@@ -50,7 +48,7 @@ print(pages())
     ("setting", "blocks", "mib"),
     [("host.keep_freed_memory()", 8, 1), ("host.keep_freed_memory(to_the_end=True)", 1, 40)],
 )
-def test_memory_that_is_kept_is_there_again(setting: str, blocks: int, mib: int) -> None:
+def test_memory_that_is_kept_is_there_again(setting, blocks, mib):
     kept, given_back = (
         int(
             subprocess.run(
@@ -64,7 +62,7 @@ def test_memory_that_is_kept_is_there_again(setting: str, blocks: int, mib: int)
     assert kept < 0.1 * given_back
 
 
-def test_children_count_once_they_have_ended() -> None:
+def test_children_count_once_they_have_ended():
     before, whole = host.children_cpu_seconds(), host.cpu_seconds()
     code = "import time\nwhile time.process_time() < 0.2: pass"
     subprocess.run([*PYTHON, code], check=True)
@@ -73,7 +71,7 @@ def test_children_count_once_they_have_ended() -> None:
     assert host.children_peak_memory() > 2**20
 
 
-def test_a_lock_lasts_until_its_file_is_closed(tmp_path: Path) -> None:
+def test_a_lock_lasts_until_its_file_is_closed(tmp_path):
     first, second = (os.open(tmp_path / "lock", os.O_RDWR | os.O_CREAT) for _ in range(2))
     host.lock(first)
     with pytest.raises(BlockingIOError):
@@ -84,12 +82,11 @@ def test_a_lock_lasts_until_its_file_is_closed(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("waitid", [True, False])
-def test_an_ended_child_is_seen_before_it_is_reaped(waitid: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_ended_child_is_seen_before_it_is_reaped(waitid, monkeypatch):
     """Also as macOS sees it before Python 3.13."""
     if not waitid:
         monkeypatch.delattr("os.waitid")
     child = subprocess.Popen([*PYTHON, "input()"], stdin=subprocess.PIPE)
-    assert child.stdin is not None
     assert not host.has_exited(child.pid)
     child.stdin.close()
     latest = time.monotonic() + 10.0
@@ -101,7 +98,7 @@ def test_an_ended_child_is_seen_before_it_is_reaped(waitid: bool, monkeypatch: p
     assert ended.code == 1 and ended.cpu_seconds > 0.0 and ended.peak_memory > 2**20
 
 
-def test_a_group_ends_with_all_its_processes() -> None:
+def test_a_group_ends_with_all_its_processes():
     code = "import os, subprocess; print(subprocess.Popen(['sleep', '60']).pid, flush=True); input()"
     leader = subprocess.Popen(
         [*PYTHON, code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True
@@ -124,7 +121,7 @@ def _runs(pid: int) -> bool:
     return shown.stdout.strip()[:1] not in {"", "Z"}
 
 
-def test_a_process_ends_after_its_time_and_one_of_windows_too() -> None:
+def test_a_process_ends_after_its_time_and_one_of_windows_too():
     for module in ("host", "host.windows"):
         code = f"import time; from {module} import end_after; end_after(1); time.sleep(20)"
         begun = time.monotonic()
@@ -133,7 +130,7 @@ def test_a_process_ends_after_its_time_and_one_of_windows_too() -> None:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="Linux alone limits other processes and has /proc")
-def test_limits_and_processes_of_linux(tmp_path: Path) -> None:
+def test_limits_and_processes_of_linux(tmp_path):
     code = "print(flush=True); input(); open('file', 'w').write('x')"
     quiet = subprocess.DEVNULL
     with subprocess.Popen(
@@ -149,7 +146,7 @@ def test_limits_and_processes_of_linux(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="this system has no /proc")
-def test_the_cpu_time_of_a_family_counts_the_living_and_the_dead() -> None:
+def test_the_cpu_time_of_a_family_counts_the_living_and_the_dead():
     """A shell has one busy child after the other: while both live, and once the first is dead."""
     dies = "i=0; while [ $i -lt 200000 ]; do i=$((i+1)); done"
     script = f"sh -c '{dies}'; sh -c 'while :; do :; done'; :"

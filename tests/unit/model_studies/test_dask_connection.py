@@ -1,8 +1,5 @@
 """A Dask scheduler with certificates: who has them may use it, who has not is told what is missing."""
 
-from __future__ import annotations
-
-from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
@@ -46,7 +43,7 @@ def certificate(folder: Path) -> dict[str, Any]:
 
 
 @pytest.fixture(scope="module")
-def certificates(tmp_path_factory: pytest.TempPathFactory) -> dict[str, dict[str, Any]]:
+def certificates(tmp_path_factory):
     folder = tmp_path_factory.mktemp("certificates")
     ours, others = (certificate(folder / name) for name in ("ours", "others"))
     gone = ours | {"distributed.comm.tls.ca-file": str(folder / "gone.crt")}
@@ -54,7 +51,7 @@ def certificates(tmp_path_factory: pytest.TempPathFactory) -> dict[str, dict[str
 
 
 @pytest.fixture(scope="module")
-def port(certificates: dict[str, dict[str, Any]]) -> Iterator[str]:
+def port(certificates):
     """Yield where a scheduler listens that takes encrypted connections alone."""
     with dask.config.set(certificates["ours"]):
         where: dict[str, Any] = {
@@ -69,9 +66,7 @@ def port(certificates: dict[str, dict[str, Any]]) -> Iterator[str]:
 
 
 @pytest.mark.law
-def test_tasks_go_to_a_scheduler_whose_certificate_is_ours(
-    port: str, certificates: dict[str, dict[str, Any]]
-) -> None:
+def test_tasks_go_to_a_scheduler_whose_certificate_is_ours(port, certificates):
     with dask.config.set(certificates["ours"]):
         workers = dask_workers(f"tls://{port}")
         with workers.client:
@@ -88,8 +83,6 @@ def test_tasks_go_to_a_scheduler_whose_certificate_is_ours(
         ("none", "tcp", r"No Dask scheduler answers at tcp://"),
     ],
 )
-def test_a_connection_that_does_not_fit_is_refused_with_the_reason(
-    port: str, certificates: dict[str, dict[str, Any]], whose: str, scheme: str, reason: str
-) -> None:
+def test_a_connection_that_does_not_fit_is_refused_with_the_reason(port, certificates, whose, scheme, reason):
     with dask.config.set(certificates[whose]), pytest.raises(WorkersLost, match=reason):
         dask_workers(f"{scheme}://{port}")

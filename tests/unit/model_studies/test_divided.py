@@ -1,7 +1,5 @@
 """Work that is divided where that pays: who does it, its errors, its end by a cancel or a kill."""
 
-from __future__ import annotations
-
 import os
 import re
 import signal
@@ -63,16 +61,14 @@ def burned(_: None, seconds: float) -> float:
         ([], 99.0, 0),
     ],
 )
-def test_only_work_that_takes_longer_than_a_process_starts_is_sent(
-    items: list[float], seconds: float | None, sent: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_only_work_that_takes_longer_than_a_process_starts_is_sent(items, seconds, sent, monkeypatch):
     monkeypatch.setattr(dispatch, "START_SECONDS", 0.1)
     workers = Noting()
     assert list(divided(workers, burned, None, items, seconds)) == items
     assert workers.sent == items[len(items) - sent :]
 
 
-def test_workers_that_are_awake_take_less(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_workers_that_are_awake_take_less(monkeypatch):
     monkeypatch.setattr(dispatch, "START_SECONDS", 0.2)
     monkeypatch.setattr(dispatch, "AWAKE", 0.25)
     for tasks, sent in ((0, 0), (1, 3)):
@@ -83,7 +79,7 @@ def test_workers_that_are_awake_take_less(monkeypatch: pytest.MonkeyPatch) -> No
     assert not pays(InProcess(), 99.0)
 
 
-def test_time_of_the_caller_between_results_is_no_time_of_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_time_of_the_caller_between_results_is_no_time_of_tasks(monkeypatch):
     monkeypatch.setattr(dispatch, "START_SECONDS", 0.1)
     workers = Noting()
     for _ in divided(workers, burned, None, [0.0] * 4):
@@ -91,7 +87,7 @@ def test_time_of_the_caller_between_results_is_no_time_of_tasks(monkeypatch: pyt
     assert not workers.sent
 
 
-def test_what_was_spent_has_the_tasks_of_workers() -> None:
+def test_what_was_spent_has_the_tasks_of_workers():
     with ThreadPoolExecutor(1) as executor:
         workers, before = ByExecutor(executor), cpu_seconds()
         assert list(workers.run(burned, None, [0.2])) == [0.2]
@@ -103,7 +99,7 @@ def test_what_was_spent_has_the_tasks_of_workers() -> None:
 
 
 @pytest.fixture(autouse=True)
-def always(monkeypatch: pytest.MonkeyPatch) -> None:
+def always(monkeypatch):
     """Send everything, whatever it costs."""
     monkeypatch.setattr(dispatch, "START_SECONDS", 0.0)
 
@@ -125,7 +121,7 @@ def variants(*names: str) -> dict[str, str]:
     return {name: name for name in names}
 
 
-def test_variants_by_a_pool_have_results_reasons_and_errors_as_here() -> None:
+def test_variants_by_a_pool_have_results_reasons_and_errors_as_here():
     names = variants("one", "unsolved", "two", "said", "large", "three")
     seen: list[tuple[str, float]] = []
     with local_processes(2) as pool:
@@ -148,7 +144,7 @@ def test_variants_by_a_pool_have_results_reasons_and_errors_as_here() -> None:
     assert errors[0] == errors[1] == ("in a task",)
 
 
-def test_what_is_missing_there_is_missing_here_by_the_same_error() -> None:
+def test_what_is_missing_there_is_missing_here_by_the_same_error():
     missing = MissingExtra("ngsolve", "boundary-elements")
     with local_processes(1) as pool, pytest.raises(MissingExtra, match=re.escape(str(missing))) as caught:
         list(pool.run(refused, missing, [1]))
@@ -163,7 +159,7 @@ def long(_: None, seconds: float) -> None:
     time.sleep(seconds)
 
 
-def test_workers_end_at_once_when_the_caller_stops() -> None:
+def test_workers_end_at_once_when_the_caller_stops():
     begun = time.monotonic()
     with pytest.raises(KeyboardInterrupt), local_processes(2) as pool:
         for _ in divided(pool, long, None, [0.0, 60.0, 60.0, 60.0], 9.0):
@@ -178,7 +174,7 @@ def killed(caller: int, item: int) -> int:
     return item
 
 
-def test_a_killed_worker_ends_the_study_and_nothing_hangs() -> None:
+def test_a_killed_worker_ends_the_study_and_nothing_hangs():
     with pytest.raises(WorkersLost, match="1 of 3 tasks were done"), local_processes(1) as pool:
         list(divided(pool, killed, os.getpid(), [0, 1, 1], 9.0))
     until(lambda: not active_children())

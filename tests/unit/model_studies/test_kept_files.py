@@ -1,7 +1,5 @@
 """A result is made once for its content, and never lost to its cache."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

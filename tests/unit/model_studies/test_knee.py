@@ -1,7 +1,5 @@
 """The front of error against time, and its knee."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -45,8 +43,6 @@ def test_units_and_what_others_beat_do_not_move_the_knee():
 
 
 class Result(FidelityResult):
-    """A result with one error."""
-
     @property
     def error(self) -> float:
         """In the place of its title."""
@@ -54,7 +50,7 @@ class Result(FidelityResult):
 
 
 @pytest.mark.parametrize(("shared", "knee"), [((), "c"), ((1e-2,), "b"), ((float("nan"),), "c")])
-def test_differences_below_errors_that_all_share_buy_nothing(shared: tuple[float, ...], knee: str):
+def test_differences_below_errors_that_all_share_buy_nothing(shared, knee):
     """Every result is a decade dearer; c is far better than b unless both share an error of b's size."""
     errors = {"a": 1.0, "b": 1e-2, "c": 1e-6, "d": 5e-7, "reference": 5e-7}
     results = [Result(name, str(error), 10.0**k) for k, (name, error) in enumerate(errors.items())]

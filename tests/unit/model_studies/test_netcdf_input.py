@@ -1,7 +1,5 @@
 """Files that reach out of themselves are refused by every reader, and none says what it read."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -49,7 +47,7 @@ READERS: dict[str, Callable[[Path], Any]] = {
 
 
 @pytest.fixture(scope="module")
-def good(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def good(tmp_path_factory):
     folder = tmp_path_factory.mktemp("good")
     for name, (write, _) in WRITERS.items():
         write(folder / f"{name}.nc")
@@ -57,11 +55,10 @@ def good(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def strike(good: Path, tmp_path: Path) -> Callable[[str, str], Path]:
-    """Return what makes the struck file of a kind."""
+def strike(good, tmp_path):
     canary = write_canary(tmp_path)
 
-    def make(kind: str, name: str) -> Path:
+    def make(kind, name):
         file = tmp_path / "file.nc"
         file.write_bytes((good / f"{kind}.nc").read_bytes())
         struck(file, WRITERS[kind][1], STRIKES[name], canary)
@@ -72,7 +69,7 @@ def strike(good: Path, tmp_path: Path) -> Callable[[str, str], Path]:
 
 @pytest.mark.parametrize("name", STRIKES)
 @pytest.mark.parametrize("kind", WRITERS)
-def test_a_file_that_reaches_out_is_refused(kind: str, name: str, strike) -> None:
+def test_a_file_that_reaches_out_is_refused(kind, name, strike):
     """By the reader of its kind; the refusal tells neither the canary, nor a folder, nor HDF5's words."""
     file = strike(kind, name)
     with pytest.raises(Exception) as caught:
@@ -84,19 +81,19 @@ def test_a_file_that_reaches_out_is_refused(kind: str, name: str, strike) -> Non
 
 @pytest.mark.parametrize("name", ["external storage", "virtual of external storage", "external link", "huge"])
 @pytest.mark.parametrize("reader", READERS)
-def test_every_reader_walks_a_file_first(reader: str, name: str, strike) -> None:
+def test_every_reader_walks_a_file_first(reader, name, strike):
     file = strike("table", name)
     with pytest.raises(Exception, match=r"lie in other|links to|unpacks"):
         READERS[reader](file)
     assert case_of_file(file) is None
 
 
-def test_files_of_the_program_open(good: Path) -> None:
+def test_files_of_the_program_open(good):
     for kind in WRITERS:
         assert READERS[kind](good / f"{kind}.nc") is not None
 
 
-def test_a_dataset_is_that_of_xarray(tmp_path: Path) -> None:
+def test_a_dataset_is_that_of_xarray(tmp_path):
     """Texts in any script, too."""
     written = xarray.Dataset({"t": ("x", [1.0, 2.0])}, {"name": ("x", ["Ölkühler", "軸受"])}, {"unit": "µm"})
     written.to_netcdf(tmp_path / "a.nc", engine="h5netcdf")
@@ -107,7 +104,7 @@ def test_a_dataset_is_that_of_xarray(tmp_path: Path) -> None:
     assert read.identical(expected) and read["name"].dtype == expected["name"].dtype
 
 
-def test_a_file_may_begin_behind_other_bytes(tmp_path: Path) -> None:
+def test_a_file_may_begin_behind_other_bytes(tmp_path):
     """HDF5 allows for a block of the user; the parts of a divided file are none."""
     with h5py.File(tmp_path / "late.nc", "w", userblock_size=1024) as file:
         file["x"] = [1.0]
@@ -122,12 +119,12 @@ def test_a_file_may_begin_behind_other_bytes(tmp_path: Path) -> None:
             pass
 
 
-def test_no_plug_ins_are_loaded(good: Path) -> None:
+def test_no_plug_ins_are_loaded(good):
     with opened(good / "arrays.nc"):
         assert h5py.h5pl.size() == 0
 
 
-def test_the_larger_a_file_the_more_it_may_unpack(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_larger_a_file_the_more_it_may_unpack(tmp_path, monkeypatch):
     """A hundredfold: of noise any amount, of zeros none above the first."""
     monkeypatch.setattr(netcdf_input, "FREE_BYTES", 1 << 16)
     for name, values in (("noise", np.random.default_rng(1).random(1 << 16)), ("zeros", np.zeros(1 << 16))):
@@ -142,7 +139,7 @@ def test_the_larger_a_file_the_more_it_may_unpack(tmp_path: Path, monkeypatch: p
 @pytest.mark.parametrize(
     "shapes", ['{"mass": ["<f8", [100000000000]]}', '{"mass": ["O", [8]]}', "[]", "[" * 9999]
 )
-def test_arrays_are_as_large_as_their_values(tmp_path: Path, shapes: str) -> None:
+def test_arrays_are_as_large_as_their_values(tmp_path, shapes):
     """What a file states of types and shapes is no more than what is in it."""
     write_own(tmp_path / "own.nc")
     with h5py.File(tmp_path / "own.nc", "r+") as file:

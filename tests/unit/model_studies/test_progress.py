@@ -1,13 +1,11 @@
 """Progress of parts by their cost."""
 
-from __future__ import annotations
-
 import pytest
 
 from model_studies.progress import by_cost
 
 
-def test_parts_count_by_their_cost() -> None:
+def test_parts_count_by_their_cost():
     seen: list[float] = []
     progress = by_cost(seen.append, {"mesh": 1.0, "ring": 3.0, "free": 0.0})
     for step in (("mesh", 0.5), ("mesh", 1.0), ("ring", 0.5), ("other", 0.1), ("ring", 1.0), ("free", 1.0)):
@@ -15,7 +13,7 @@ def test_parts_count_by_their_cost() -> None:
     assert seen == pytest.approx([0.125, 0.25, 0.625, 1.0, 1.0])
 
 
-def test_what_costs_nothing_is_not_reported() -> None:
+def test_what_costs_nothing_is_not_reported():
     seen: list[float] = []
     by_cost(seen.append, {"kept": 0.0})("kept", 1.0)
     assert seen == []

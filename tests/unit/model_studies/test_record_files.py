@@ -1,7 +1,5 @@
 """A record comes back from its file as it was, and its numbers are variables with units and dimensions."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -52,8 +50,6 @@ class Set(Generic[C]):
 
 @dataclass(frozen=True)
 class Study(Set[Cup]):
-    """What is stored."""
-
     count: IntArray
     ended: Ended
     shares: Mapping[int, float]
@@ -84,7 +80,7 @@ def numbers(value: Any) -> bytes:
     return np.asarray(value, dtype=float).tobytes()
 
 
-def test_it_comes_back_to_the_last_bit(tmp_path: Path) -> None:
+def test_it_comes_back_to_the_last_bit(tmp_path):
     back = read_record(written(STUDY, tmp_path), {SCHEMA: Study})
     assert type(back) is Study
     for mine, theirs in zip((STUDY.first, *STUDY.rest), (back.first, *back.rest), strict=True):
@@ -98,7 +94,7 @@ def test_it_comes_back_to_the_last_bit(tmp_path: Path) -> None:
     assert (back.shares, back.spare, back.table) == ({-1: 0.25, 2: 0.75}, None, None)
 
 
-def test_rows_of_records_are_one_variable_with_unit_and_dimensions(tmp_path: Path) -> None:
+def test_rows_of_records_are_one_variable_with_unit_and_dimensions(tmp_path):
     with xarray.open_dataset(written(STUDY, tmp_path), engine="h5netcdf") as read:
         heights = read["rest.height"]
         assert (heights.dims, heights.shape, heights.units) == (("rest", "rim"), (3, 3), "m")
@@ -115,7 +111,7 @@ class Saucer:
     owner: str = field(metadata=under_key("whose"))
 
 
-def test_a_file_may_hold_fields_by_other_names(tmp_path: Path) -> None:
+def test_a_file_may_hold_fields_by_other_names(tmp_path):
     saucer = Saucer(0.07, "Ada")
     write_record(saucer, tmp_path / "saucer.nc", SCHEMA)
     with h5netcdf.File(tmp_path / "saucer.nc") as file:
@@ -132,14 +128,14 @@ class Later(Cup):
     labels: Mapping[str, str] = field(default_factory=dict)
 
 
-def test_a_file_of_an_earlier_version_has_no_fields_but_the_defaults(tmp_path: Path) -> None:
+def test_a_file_of_an_earlier_version_has_no_fields_but_the_defaults(tmp_path):
     file = tmp_path / "cup.nc"
     write_record(cup("a", 1.0), file, SCHEMA)
     read = read_record(file, {SCHEMA: Later})
     assert (read.handle, read.labels) == (None, {})
 
 
-def test_a_record_in_place_of_none_is_kept(tmp_path: Path) -> None:
+def test_a_record_in_place_of_none_is_kept(tmp_path):
     back = read_record(written(replace(STUDY, spare=cup("e", 5.0)), tmp_path), {SCHEMA: Study})
     assert back.spare.name == "e" and numbers(back.spare.height) == numbers(cup("e", 5.0).height)
 
@@ -152,7 +148,7 @@ class Other:
     lid: float
 
 
-def test_other_files_and_other_fields_are_refused(tmp_path: Path) -> None:
+def test_other_files_and_other_fields_are_refused(tmp_path):
     file = written(STUDY, tmp_path)
     with pytest.raises(UnreadableFile, match="expected a study of hats"):
         read_record(file, {"a study of hats": Study})
@@ -162,7 +158,7 @@ def test_other_files_and_other_fields_are_refused(tmp_path: Path) -> None:
         read_record(tmp_path / "none.nc", {SCHEMA: Study})
 
 
-def test_a_changed_number_is_found(tmp_path: Path) -> None:
+def test_a_changed_number_is_found(tmp_path):
     file = written(STUDY, tmp_path)
     with h5netcdf.File(file, "r+") as content:
         content.variables["first.load"][...] = 1.0

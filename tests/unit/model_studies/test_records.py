@@ -1,7 +1,5 @@
 """Changes are those of the figures; the worst known error counts."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -22,8 +20,6 @@ class Shift:
 
 @dataclass(frozen=True)
 class Waves(Figures):
-    """Figures with amplitudes."""
-
     amplitudes: FloatArray = field(metadata=in_unit("n"))
 
 
@@ -34,8 +30,6 @@ class Toggled(EffectAblation[Waves, Shift]):
 
 @dataclass(frozen=True)
 class Found(FidelityResult):
-    """A result."""
-
     FIGURES = ("far", "near")
 
     far: float = float("nan")
@@ -44,8 +38,6 @@ class Found(FidelityResult):
 
 @dataclass(frozen=True)
 class Study(Frontier[Found]):
-    """A study."""
-
     count: int
 
 

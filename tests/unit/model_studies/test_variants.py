@@ -1,9 +1,7 @@
 """Variants and fidelities run one by one: reasons, memory, progress, errors against the finest."""
 
-from __future__ import annotations
-
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import pytest
@@ -84,7 +82,7 @@ def test_only_what_runs_is_warmed_up_and_progress_rises_to_the_end():
 
 
 def test_cpu_time_is_that_of_the_fidelity_alone():
-    def burn(fidelity: Step) -> float:
+    def burn(fidelity):
         end = time.process_time() + fidelity.step / 4.0
         while time.process_time() < end:
             pass
@@ -98,7 +96,7 @@ def test_cpu_time_is_that_of_the_fidelity_alone():
 def test_errors_are_those_against_the_last_and_its_own_come_from_its_family():
     outcomes = [Outcome(step, step.run(), 1.0) for step in (Step("x", 0.9, family="model"), *STEPS)]
 
-    def remaining(coarser: Sequence[tuple[Step, Mapping[str, float]]], finest: Step) -> dict[str, float]:
+    def remaining(coarser, finest):
         assert [step.name for step, _ in coarser] == ["a", "b"]
         return {"off": coarser[-1][1]["off"] / (coarser[-1][0].step / finest.step - 1.0)}
 
@@ -107,7 +105,7 @@ def test_errors_are_those_against_the_last_and_its_own_come_from_its_family():
 
 
 def test_a_variant_may_say_itself_that_it_says_nothing():
-    def compute(value: int) -> int:
+    def compute(value):
         if value == 2:
             raise LeftOut("it is even")
         return value

@@ -1,7 +1,5 @@
 """The same bits whoever works, here, in a pool or interrupted, and its cost (on clusters: tests/flow)."""
 
-from __future__ import annotations
-
 import gc
 import os
 import signal
@@ -53,17 +51,17 @@ SLOPES = Tolerances(0.0, {"pinion.profile_slope": 10e-6, "wheel.profile_slope": 
 
 
 @pytest.fixture(scope="module")
-def compliances(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def compliances(tmp_path_factory):
     return tmp_path_factory.mktemp("compliances")
 
 
 @pytest.fixture(scope="module")
-def pair() -> GearPair:
+def pair():
     return PAIR
 
 
 @pytest.fixture(scope="module")
-def local(pair: GearPair, compliances: Path) -> ToleranceStudy:
+def local(pair, compliances):
     return study(pair, compliances, InProcess())
 
 
@@ -79,22 +77,18 @@ def study(pair: GearPair, compliances: Path, workers: Workers) -> ToleranceStudy
 
 
 @pytest.fixture(scope="module")
-def pool() -> Iterator[ByExecutor]:
+def pool():
     with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as executor:
         yield ByExecutor(executor)
 
 
 @pytest.mark.law
-def test_a_pool_of_processes_gives_the_same_bits(
-    pair: GearPair, compliances: Path, local: ToleranceStudy, pool: ByExecutor
-) -> None:
+def test_a_pool_of_processes_gives_the_same_bits(pair, compliances, local, pool):
     shared = study(pair, compliances, pool)
     np.testing.assert_array_equal(shared.peak_to_peak, local.peak_to_peak)
 
 
-def test_starts_searched_in_a_pool_find_the_same_designs(
-    pair: GearPair, compliances: Path, pool: ByExecutor
-) -> None:
+def test_starts_searched_in_a_pool_find_the_same_designs(pair, compliances, pool):
     variables = [DesignVariable(f"{gear}.profile_crowning", 0.0, 2e-5) for gear in ("pinion", "wheel")]
     search = Search(NelderMead(), starts=3, evaluations=25, positions=16)
     here, there = (
@@ -112,13 +106,8 @@ def test_starts_searched_in_a_pool_find_the_same_designs(
 @pytest.mark.law
 @pytest.mark.parametrize("evaluations", [90, 30, 9])
 def test_a_single_start_is_divided_and_finds_the_same(
-    pair: GearPair,
-    compliances: Path,
-    pool: ByExecutor,
-    evaluations: int,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+    pair, compliances, pool, evaluations, tmp_path, monkeypatch
+):
     """Its sample, its walks, their nodes and those beside its end; also where designs end in mid-walk."""
     monkeypatch.setattr(dispatch, "START_SECONDS", 0.0)
     variables = [DesignVariable(f"{gear}.profile_crowning", 0.0, 2e-5) for gear in ("pinion", "wheel")]
@@ -168,8 +157,8 @@ def interrupted(_shared: None, _item: Any) -> None:
 
 @pytest.mark.parametrize("task", ["_assess", "_linearized_nodes", "_walked", "_confirmed"])
 def test_an_interrupted_optimization_of_a_single_start_gives_the_best_so_far(
-    pair: GearPair, compliances: Path, pool: ByExecutor, task: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    pair, compliances, pool, task, monkeypatch
+):
     """In its sample, in its walks, at nodes of one design, and in the analyses behind them."""
     monkeypatch.setattr(dispatch, "START_SECONDS", 0.0)
     variables = [DesignVariable(f"{gear}.profile_crowning", 0.0, 2e-5) for gear in ("pinion", "wheel")]
@@ -184,7 +173,7 @@ def test_an_interrupted_optimization_of_a_single_start_gives_the_best_so_far(
     assert best.optimum.objective.value <= best.start.objective.value
 
 
-def test_a_failing_task_fails_the_whole(pool: ByExecutor) -> None:
+def test_a_failing_task_fails_the_whole(pool):
     for workers in (InProcess(), pool):
         with pytest.raises(ZeroDivisionError):
             list(workers.run(divided, 1.0, [2.0, 0.0, 4.0]))
@@ -195,11 +184,11 @@ def divided(shared: float, item: float) -> float:
     return shared / item
 
 
-def test_what_tasks_share_is_packed_once_and_passed_by_a_file(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_tasks_share_is_packed_once_and_passed_by_a_file(monkeypatch):
     packed: list[int] = []
     of = Packed.of
 
-    def counted(shared: object) -> Packed:
+    def counted(shared):
         packed.append(id(shared))
         return of(shared)
 
@@ -219,7 +208,7 @@ def test_what_tasks_share_is_packed_once_and_passed_by_a_file(monkeypatch: pytes
     assert not folder.exists()
 
 
-def test_a_pool_that_loses_a_process_says_so(pool: ByExecutor) -> None:
+def test_a_pool_that_loses_a_process_says_so(pool):
     """Nothing can be given to it any more: the last test of the pool."""
     with pytest.raises(WorkersLost, match=r"ended during the run.*: 0 of 2 tasks were done"):
         list(pool.run(end, os.getpid(), [0, 0]))
@@ -237,7 +226,7 @@ def end(caller: int, _: int) -> None:
     ("content", "reason"),
     [(None, "No such file"), ("{", "Expecting"), ("[]", "not one that"), ('{"address": 5}', "not one that")],
 )
-def test_a_scheduler_that_is_not_there_is_named(tmp_path: Path, content: str | None, reason: str) -> None:
+def test_a_scheduler_that_is_not_there_is_named(tmp_path, content, reason):
     pytest.importorskip("distributed", reason="the extra dask is not installed")
     file = tmp_path / "scheduler.json"
     if content is not None:
@@ -246,14 +235,14 @@ def test_a_scheduler_that_is_not_there_is_named(tmp_path: Path, content: str | N
         dask_workers(str(file))
 
 
-def test_an_address_that_is_none_is_refused_with_what_to_start() -> None:
+def test_an_address_that_is_none_is_refused_with_what_to_start():
     pytest.importorskip("distributed", reason="the extra dask is not installed")
     refused = pytest.raises(BadInput, match=r"--scheduler.*dask worker ADDRESS")
     with refused, open_executor(scheduler="nowhere://8786"):
         raise AssertionError
 
 
-def test_workers_are_of_this_machine_or_of_a_cluster() -> None:
+def test_workers_are_of_this_machine_or_of_a_cluster():
     refused = pytest.raises(BadInput, match=r"--workers.*left out with --scheduler")
     with refused, open_executor(2, "tcp://host:8786"):
         raise AssertionError
@@ -283,14 +272,14 @@ class Here:
 
 
 @pytest.fixture(autouse=True)
-def small_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
+def small_tasks(monkeypatch):
     """Cut small tables as large ones are."""
     monkeypatch.setattr(contact_lines, "TASK_SECONDS", 0.005)
     monkeypatch.setattr(dispatch, "START_SECONDS", 0.0)
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 
@@ -305,7 +294,7 @@ def full_pair(crowning: float = 4e-6) -> GearPair:
 
 
 @pytest.mark.law
-def test_an_interrupted_table_goes_on_where_it_was(cache: Path, tmp_path: Path) -> None:
+def test_an_interrupted_table_goes_on_where_it_was(cache, tmp_path):
     whole = analyze(full_pair(), **ASKED, cache=cache)
     first = Here(maximum=5)
     with pytest.raises(Interrupted):
@@ -322,7 +311,7 @@ def test_an_interrupted_table_goes_on_where_it_was(cache: Path, tmp_path: Path) 
     assert not third.tasks
 
 
-def test_another_question_takes_nothing(cache: Path, tmp_path: Path) -> None:
+def test_another_question_takes_nothing(cache, tmp_path):
     asked = {**ASKED, "positions": 24, "cache": cache, "receipt": "minimal"}
     analyze(full_pair(), **asked)  # condenses the gears, which is a task, too
     counts = []
@@ -333,7 +322,7 @@ def test_another_question_takes_nothing(cache: Path, tmp_path: Path) -> None:
     assert counts[0] > 2 and counts == [counts[0], 0, counts[0], counts[0]]
 
 
-def test_a_damaged_file_is_made_again(tmp_path: Path) -> None:
+def test_a_damaged_file_is_made_again(tmp_path):
     assert list(Remembering(Here(), tmp_path, "1").run(divided, 1.0, [2.0, 4.0])) == [0.5, 0.25]
     for file, content in zip(sorted(tmp_path.iterdir()), (b"", b"x" * 99), strict=True):
         file.write_bytes(content)
@@ -342,7 +331,7 @@ def test_a_damaged_file_is_made_again(tmp_path: Path) -> None:
     assert len(workers.tasks) == 2
 
 
-def test_what_nobody_can_tell_apart_is_not_kept(tmp_path: Path) -> None:
+def test_what_nobody_can_tell_apart_is_not_kept(tmp_path):
     assert list(Remembering(Here(), tmp_path, "1").run(named, object(), [2.0])) == ["2.0"]
     assert list(tmp_path.iterdir()) == []
 
@@ -367,7 +356,7 @@ class Thing:
     seconds: float = 0.0
 
 
-def test_content_decides_and_how_it_came_does_not() -> None:
+def test_content_decides_and_how_it_came_does_not():
     grid = np.arange(6.0).reshape(2, 3)
     one = Thing(1.0, (grid, "a", None, Kind.ONE, {"b": 1}))
     assert content_digest(one) == content_digest(Thing(1.0, (grid.copy(), "a", None, Kind.ONE, {"b": 1})))
@@ -400,7 +389,7 @@ class DearWorkers:
             yield task.result
 
 
-def test_searches_by_workers_are_in_the_cost_of_an_optimization() -> None:
+def test_searches_by_workers_are_in_the_cost_of_an_optimization():
     relief = DesignVariable("pinion.tip_relief", 0.0, 60e-6)
     search = Search(NelderMead(), evaluations=4, positions=16, exploration=8, starts=2)
     workers = DearWorkers()
@@ -411,7 +400,7 @@ def test_searches_by_workers_are_in_the_cost_of_an_optimization() -> None:
     assert result.cost["stages"]["search"]["cpu_seconds"] > 2.0 * DEAR
 
 
-def test_samples_by_workers_are_in_the_cost_of_a_tolerance_study() -> None:
+def test_samples_by_workers_are_in_the_cost_of_a_tolerance_study():
     workers, slope = DearWorkers(), Tolerances(0.0, {"pinion.profile_slope": 10e-6})
     sampling = Sampling(samples=20, seed=3, positions=16)
     result = scatter(PAIR, [100.0], slope, sampling, AnalysisOptions(**DRAFT), Run(workers))

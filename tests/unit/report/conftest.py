@@ -1,9 +1,6 @@
 """A small STE database and a small run in closed form."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -151,17 +148,17 @@ def closed_form_flanks(slices: int = 5, positions: int = 16) -> LoadDistribution
 
 
 @pytest.fixture
-def flanks() -> LoadDistribution:
+def flanks():
     return closed_form_flanks()
 
 
 @pytest.fixture
-def database() -> SteDatabase:
+def database():
     return closed_form()
 
 
 @pytest.fixture
-def damaged() -> SteDatabase:
+def damaged():
     return with_failures()
 
 
@@ -244,10 +241,10 @@ def _receipt(rate: float) -> dict[str, Any]:
 
 
 @pytest.fixture
-def run() -> RunResult:
+def run():
     return run_up()
 
 
 @pytest.fixture(scope="session", name="with_pitch_errors")
-def _with_pitch_errors() -> Callable[..., SteDatabase]:
+def _with_pitch_errors():
     return with_pitch_errors

@@ -1,7 +1,5 @@
 """What phases assume is in the text of a run and on its page."""
 
-from __future__ import annotations
-
 from lineofaction.report.drawing.tables import ledger_section
 from lineofaction.report.presentation import effect_text
 
@@ -15,13 +13,13 @@ ROWS = [
 ]
 
 
-def test_assumed_phases_are_said_line_by_line() -> None:
+def test_assumed_phases_are_said_line_by_line():
     lines = [part for part in effect_text({"entries": [], "assumed": ROWS}) if isinstance(part, str)]
     assert lines == [f"Assumed of middle: {row['words']}" for row in ROWS]
     assert not [part for part in effect_text({"entries": []}) if isinstance(part, str)]
 
 
-def test_assumed_phases_are_a_table_of_the_page() -> None:
+def test_assumed_phases_are_a_table_of_the_page():
     section = ledger_section({"entries": [], "assumed": ROWS})
     (table,) = [table for table in section.folded if "Assumed" in table.caption]
     assert table.rows == tuple(("middle", row["words"]) for row in ROWS)

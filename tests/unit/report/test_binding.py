@@ -1,25 +1,21 @@
 """Reports of the pairs of a unit as one: nothing of any is left out, what is common stands once."""
 
-from __future__ import annotations
-
 from collections import Counter
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
-from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.schemas.report import ReportInput
 from lineofaction.report.binding import bound
 from lineofaction.report.document import page_of, read_inputs, write_page
-from lineofaction.report.drawing.page import Page, Part
+from lineofaction.report.drawing.page import Part
 from lineofaction.report.title_block import titled
 
 PARTS = ("first stage", "second stage")
 
 
 @pytest.fixture
-def pages(database: SteDatabase, tmp_path: Path) -> dict[str, Page]:
+def pages(database, tmp_path):
     pages = {}
     for part, torque in zip(PARTS, (1.0, 3.0), strict=True):
         scaled = replace(database, torque=torque * database.torque, force=torque * database.force)
@@ -28,7 +24,7 @@ def pages(database: SteDatabase, tmp_path: Path) -> dict[str, Page]:
     return pages
 
 
-def test_every_panel_and_every_row_of_each_pair_is_there_and_has_its_name(pages: dict[str, Page]) -> None:
+def test_every_panel_and_every_row_of_each_pair_is_there_and_has_its_name(pages):
     whole = bound(pages)
     for part, page in pages.items():
         for section in page.sections:
@@ -42,7 +38,7 @@ def test_every_panel_and_every_row_of_each_pair_is_there_and_has_its_name(pages:
                 assert figure.alternative in drawn.alternative
 
 
-def test_what_both_say_stands_once(pages: dict[str, Page]) -> None:
+def test_what_both_say_stands_once(pages):
     whole = bound(pages)
     titles = Counter((section.title, section.part) for section in whole.sections)
     assert set(titles.values()) == {1}
@@ -57,26 +53,26 @@ def test_what_both_say_stands_once(pages: dict[str, Page]) -> None:
     assert set(keys.values()) == {1}
 
 
-def test_a_requirement_is_met_or_not_by_each_pair(pages: dict[str, Page]) -> None:
+def test_a_requirement_is_met_or_not_by_each_pair(pages):
     page = titled(bound(pages), ReportInput(requirements=("mean STE at most 1000 µm",)))
     assert page.block is not None and page.alarms == bound(pages).alarms
     assert [part for part, words in zip(PARTS, page.block.verdicts, strict=True) if part in words] == [*PARTS]
     assert all(words.startswith("Met: mean STE") for words in page.block.verdicts)
 
 
-def test_one_report_alone_stays_as_it_is(pages: dict[str, Page]) -> None:
+def test_one_report_alone_stays_as_it_is(pages):
     (page, _) = pages.values()
     assert bound({"": page}) is page
     assert bound({"first stage": page}) is page
 
 
-def test_the_bound_page_is_written_with_the_plot_library_once(pages: dict[str, Page], tmp_path: Path) -> None:
+def test_the_bound_page_is_written_with_the_plot_library_once(pages, tmp_path):
     write_page(bound(pages), tmp_path / "report.html")
     text = (tmp_path / "report.html").read_text("utf-8")
     assert text.count('id="library"') == 1
     assert all(f"second stage: {words}" in text for words in ("transverse section", "peak to peak"))
 
 
-def test_what_each_pair_was_made_from_is_kept(pages: dict[str, Page]) -> None:
+def test_what_each_pair_was_made_from_is_kept(pages):
     records = bound(pages).records
     assert records.keys() == {f"{part}.nc" for part in PARTS} and all(records.values())

@@ -1,7 +1,5 @@
 """What stands under a picture is true: over 30 random pairs (22 of them at night) and three computed ones."""
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import asdict, replace
@@ -229,7 +227,7 @@ def check_load_sharing(figure: Figure, database: SteDatabase) -> None:
         total = np.nansum([line.y for line in panel.lines], axis=0)
         np.testing.assert_allclose(total, database.force[load], rtol=1e-9)
         for value, mark in panel.y.names:
-            newton, percent = re.fullmatch(rf"{NUMBER} N, {NUMBER} %", mark).groups()  # type: ignore[union-attr]
+            newton, percent = re.fullmatch(rf"{NUMBER} N, {NUMBER} %", mark).groups()
             assert says(newton, value) and says(percent, 100.0 * value / database.force[load])
     for low, high, torque in re.findall(rf"(\d) (?:or|to) (\d) tooth pairs carry the load at {NUMBER}", text):
         column = counts[:, load_labels(database).index(f"{torque} N m")]
@@ -258,7 +256,6 @@ def check_mesh_stiffness(figure: Figure, database: SteDatabase) -> None:
         assert float(against[1]) == pytest.approx(beyond, abs=1.0)
         assert says(against[3], standard)
     for panel in figure.content:
-        assert panel.y.limits is not None
         assert all(panel.y.limits[0] <= mark.value <= panel.y.limits[1] for mark in panel.references)
 
 
@@ -272,7 +269,6 @@ def check_budget(figure: Figure, database: SteDatabase) -> None:
     assert name == max(parts, key=lambda part: parts[part]) and says(size, parts[name])
     assert sum(parts.values()) == pytest.approx(float(mean), rel=2e-3)
     assert says(share, 100.0 * parts[name] / sum(parts.values()))
-    assert figure.table is not None
     rows = {row[0]: row[1:] for row in figure.table.rows}
     for part, (pinion, wheel, both, _) in rows.items():
         assert says(both, parts[part])
@@ -281,7 +277,6 @@ def check_budget(figure: Figure, database: SteDatabase) -> None:
     (springs, table) = re.findall(rf"mean is {NUMBER} µm, that of the table {NUMBER} µm", figure.caption)[0]
     assert springs == mean and says(table, 1e6 * database.mean(force=force).value)
     pair = pair_of(database)
-    assert pair is not None
     modified = not (pair.pinion.modification.neutral and pair.wheel.modification.neutral)
     assert modified or "flank modifications" not in parts
 
@@ -300,7 +295,6 @@ def check_flanks(figure: Figure, database: SteDatabase) -> None:
 
 def check_drawing(figure: Figure, database: SteDatabase) -> None:
     pair = pair_of(database)
-    assert pair is not None
     modified = len(figure.content) > 1
     assert ("Material removed" in figure.caption) == ("flank modifications" in figure.title) == modified
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
@@ -382,11 +376,11 @@ def seeds() -> list[object]:
 
 @pytest.mark.drawn
 @pytest.mark.parametrize("seed", seeds())
-def test_findings_are_true_of_random_pairs(seed: int) -> None:
+def test_findings_are_true_of_random_pairs(seed):
     check_findings(*drawn_at_random(seed))
 
 
-def test_the_random_pairs_have_every_figure() -> None:
+def test_the_random_pairs_have_every_figure():
     drawn = [drawn_at_random(seed)[1] for seed in range(EVERY_CHANGE)]
     assert set().union(*drawn) == CHECKS.keys()
 
@@ -405,7 +399,7 @@ def computed() -> list[GearPair]:
 @pytest.mark.law
 @pytest.mark.usefixtures("coarse_sectors")
 @pytest.mark.parametrize("pair", computed(), ids=["spur", "relieved", "helical"])
-def test_findings_are_true_of_computed_pairs(pair: GearPair) -> None:
+def test_findings_are_true_of_computed_pairs(pair):
     model = "plane_strain" if pair.base_helix_angle == 0.0 else "3d"
     database = analyze(pair, torques=[20.0, 45.0, 70.0], level="draft", model=model)
     check_findings(database, figures(database))

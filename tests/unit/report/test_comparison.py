@@ -1,7 +1,5 @@
 """Laws of comparisons, of measurements too: what is equal is not shown to differ, what moved is found."""
 
-from __future__ import annotations
-
 import math
 import warnings
 from dataclasses import replace
@@ -12,12 +10,9 @@ import numpy as np
 import pytest
 from geared_scenes import RPM, gear_pair_scene
 
+from dynamics import TimeLaw, simulate
 from dynamics.export import write_universal_file
-from dynamics.loads import TimeLaw
-from dynamics.results import RunResult
-from dynamics.simulation import simulate
-from fe_contact.ste import SteDatabase
-from fe_contact.types import Estimate
+from fe_contact import Estimate
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.report.comparison.compare import compare, compare_runs
 from lineofaction.report.comparison.measured import (
@@ -54,7 +49,7 @@ def rows(page, title: str) -> list[tuple[str, ...]]:
     return [row for table in tables for row in table.rows]
 
 
-def test_a_difference_within_its_error_is_not_shown() -> None:
+def test_a_difference_within_its_error_is_not_shown():
     one = difference(1.0, 1.1, (0.05, 0.12))
     assert one.error == pytest.approx(0.13)
     assert str(one) == "+0.10 ± 0.13 µm: not shown to differ"
@@ -64,16 +59,14 @@ def test_a_difference_within_its_error_is_not_shown() -> None:
     assert difference(1.0, 9.0, (math.nan, 0.1)).finding == "no error stated"
 
 
-def test_a_table_is_not_shown_to_differ_from_itself(database: SteDatabase) -> None:
+def test_a_table_is_not_shown_to_differ_from_itself(database):
     page = compare_tables({"a": database, "b": database}, None)
     found = rows(page, "Differences with their errors")
     assert found and {row[-1] for row in found} == {"not shown to differ"}
     assert [section.title for section in page.sections] == ["Transmission errors"]
 
 
-def test_a_table_of_twice_the_error_is_shown_to_differ_with_the_field_that_does_it(
-    database: SteDatabase,
-) -> None:
+def test_a_table_of_twice_the_error_is_shown_to_differ_with_the_field_that_does_it(database):
     twice = replace(
         database,
         static_transmission_error=2.0 * database.static_transmission_error,
@@ -89,13 +82,13 @@ def test_a_table_of_twice_the_error_is_shown_to_differ_with_the_field_that_does_
     assert rows(page, "Fields that differ") == [("pair.normal_module_mm", "4", "2")]
 
 
-def test_torques_that_only_one_table_holds_are_refused(database: SteDatabase) -> None:
+def test_torques_that_only_one_table_holds_are_refused(database):
     with pytest.raises(BadInput, match="--torque"):
         compare_tables({"a": database, "b": database}, None, torque=1e4)
 
 
 @pytest.mark.parametrize("shift", [0, 31, 200])
-def test_a_moved_ripple_is_moved_back(shift: int) -> None:
+def test_a_moved_ripple_is_moved_back(shift):
     measured = MeasuredCurve(np.roll(RIPPLE, -shift), 0.0, 1)
     found = aligned_to(measured, RIPPLE + 12.0)
     assert found.shift == shift / PER_PITCH
@@ -104,7 +97,7 @@ def test_a_moved_ripple_is_moved_back(shift: int) -> None:
 
 
 @pytest.mark.parametrize(("name", "scale"), [("position", 1.0), ("angle_deg", 360.0 / TEETH)])
-def test_a_measured_curve_is_averaged_over_its_base_pitches(name: str, scale: float, tmp_path: Path) -> None:
+def test_a_measured_curve_is_averaged_over_its_base_pitches(name, scale, tmp_path):
     """Run-out averages out over a revolution; samples that do not divide the pitch are no matter."""
     position = np.arange(0.0, TEETH + 0.2, 1.0 / 177.3) + 0.31
     runout = 3.0 * np.sin(2 * np.pi * position / TEETH)
@@ -119,7 +112,7 @@ def test_a_measured_curve_is_averaged_over_its_base_pitches(name: str, scale: fl
     assert found.spread > 0.1
 
 
-def test_shaft_orders_become_mesh_orders(tmp_path: Path) -> None:
+def test_shaft_orders_become_mesh_orders(tmp_path):
     file = written(tmp_path / "o.csv", "order,amplitude_n", np.array([[1.0, 5.0], [23.0, 7.0], [46.4, 2.0]]))
     found = read_measured(file, TEETH)
     assert isinstance(found, MeasuredOrders)
@@ -134,13 +127,13 @@ def test_shaft_orders_become_mesh_orders(tmp_path: Path) -> None:
     ["", "a,b\n1,2\n", "position,amplitude_n\n0,1\n1,2\n", "position,transmission_error_um\n0,x\n",
      "position,transmission_error_um\n0,1\n0.5,2\n", "order,amplitude_um\n1,nan\n"],
 )  # fmt: skip
-def test_what_is_no_measurement_is_refused(text: str, tmp_path: Path) -> None:
+def test_what_is_no_measurement_is_refused(text, tmp_path):
     (tmp_path / "m.csv").write_text(text)
     with pytest.raises(BadInput, match="measured"):
         read_measured(tmp_path / "m.csv", TEETH)
 
 
-def test_a_run_of_twice_the_force_is_6_db_louder(run: RunResult) -> None:
+def test_a_run_of_twice_the_force_is_6_db_louder(run):
     twice = replace(run, bearing_force=2.0 * run.bearing_force)
     page = compare_runs({"a": run, "b": twice}, RunView(), None)
     assert "changes by +6.0 dB" in page.sections[0].figures[0].alternative
@@ -148,7 +141,7 @@ def test_a_run_of_twice_the_force_is_6_db_louder(run: RunResult) -> None:
     assert found["mesh order 2"][-1] == "no error stated"  # the receipt of this run has none of orders
 
 
-def test_stated_errors_of_orders_decide(run: RunResult) -> None:
+def test_stated_errors_of_orders_decide(run):
     receipt = {**run.receipt, "error": {"time_step": {"bearing_force_orders": [0.1, 30.0]}}}
     stated = replace(run, receipt=receipt)
     louder = replace(stated, bearing_force=1.5 * run.bearing_force)
@@ -159,7 +152,7 @@ def test_stated_errors_of_orders_decide(run: RunResult) -> None:
     assert page.headlines[1].value == "10.0 to 15.0 N peak, by +5.00 ± 0.14"
 
 
-def test_files_are_compared_by_what_they_hold(database: SteDatabase, run: RunResult, tmp_path: Path) -> None:
+def test_files_are_compared_by_what_they_hold(database, run, tmp_path):
     database.to_netcdf(tmp_path / "ste.nc")
     run.to_netcdf(tmp_path / "run.nc")
     measured = written(
@@ -175,9 +168,7 @@ def test_files_are_compared_by_what_they_hold(database: SteDatabase, run: RunRes
             compare(files, RunView())
 
 
-def test_of_two_folders_what_both_have_by_name_is_compared(
-    database: SteDatabase, run: RunResult, tmp_path: Path
-) -> None:
+def test_of_two_folders_what_both_have_by_name_is_compared(database, run, tmp_path):
     before, after = tmp_path / "before", tmp_path / "after"
     for folder in (before, after):
         folder.mkdir()
@@ -247,9 +238,7 @@ def universal(file: Path, *functions: dict[str, Any], length: float = 1.0) -> Pa
 
 @pytest.mark.parametrize("length", [1.0, 1e3])
 @pytest.mark.parametrize(("label", "scale"), [("Position", 1.0), ("Angle", 360.0 / TEETH)])
-def test_a_transmission_error_is_what_csv_would_say(
-    label: str, scale: float, length: float, tmp_path: Path
-) -> None:
+def test_a_transmission_error_is_what_csv_would_say(label, scale, length, tmp_path):
     file = universal(
         tmp_path / "m.uff", function(label, PITCHES * scale, 1e-6 * length * MEASURED), length=length
     )
@@ -259,7 +248,7 @@ def test_a_transmission_error_is_what_csv_would_say(
     np.testing.assert_allclose(found.ripple, known.ripple, atol=2e-4)
 
 
-def test_orders_of_the_shaft_become_mesh_orders(tmp_path: Path) -> None:
+def test_orders_of_the_shaft_become_mesh_orders(tmp_path):
     x = np.arange(0.0, 50.0)
     own: dict[str, Any] = {"abscissa_spec_data_type": 20, "ordinate_spec_data_type": 12}
     file = universal(tmp_path / "o.unv", function("Order", x, 1e3 * x, **own), length=1e3)
@@ -269,7 +258,7 @@ def test_orders_of_the_shaft_become_mesh_orders(tmp_path: Path) -> None:
     np.testing.assert_allclose(found.amplitude, x, rtol=1e-6)
 
 
-def test_what_this_program_writes_is_read_back(tmp_path: Path) -> None:
+def test_what_this_program_writes_is_read_back(tmp_path):
     run = simulate(gear_pair_scene(speed=TimeLaw.ramp(0.0, 955.0 * RPM, 0.2), duration=0.2))
     file = tmp_path / "run.unv"
     write_universal_file(run, file, "orders")
@@ -281,7 +270,7 @@ def test_what_this_program_writes_is_read_back(tmp_path: Path) -> None:
     np.testing.assert_allclose(found.order, kept["x"])  # mesh orders, not those of a shaft
 
 
-def test_one_of_several_is_not_guessed(tmp_path: Path) -> None:
+def test_one_of_several_is_not_guessed(tmp_path):
     one, other = (
         function("Position", PITCHES, MEASURED),
         function("Position", PITCHES, MEASURED, id1="second"),
@@ -295,7 +284,7 @@ def test_one_of_several_is_not_guessed(tmp_path: Path) -> None:
         read_universal(tmp_path / "bad.uff", TEETH, "µm")
 
 
-def test_a_table_is_compared_with_one(database: SteDatabase, tmp_path: Path) -> None:
+def test_a_table_is_compared_with_one(database, tmp_path):
     database.to_netcdf(tmp_path / "ste.nc")
     measured = universal(tmp_path / "m.uff", function("Position", PITCHES, 1e-6 * MEASURED))
     page = compare([tmp_path / "ste.nc", measured], RunView())

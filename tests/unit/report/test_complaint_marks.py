@@ -1,13 +1,10 @@
 """Marks of a complaint: lines at its speed and frequency, its order bold, and words for what is beyond."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
-from fe_contact.ste import SteDatabase
 from lineofaction.report.document import Inputs, page_of
 from lineofaction.report.drawing.figure import Axis, Figure, HeatMap, Line, Panel
 from lineofaction.report.drawing.marks import drawn_orders, marked, marks_of, of_run, order_label
@@ -32,7 +29,7 @@ def references(figure: Figure) -> list[tuple[str, float, str]]:
     return [(one.direction, one.value, one.label) for one in figure.content[0].references]
 
 
-def test_speed_and_frequency_cross_where_the_complaint_is() -> None:
+def test_speed_and_frequency_cross_where_the_complaint_is():
     line = Line("mesh orders", SPEED, SPEED / 3.0, "#000")
     figure = drawn(Panel(Axis.over("speed of input, rpm", SPEED), Axis("frequency, Hz"), (line,)))
     assert references(figure) == [
@@ -42,20 +39,20 @@ def test_speed_and_frequency_cross_where_the_complaint_is() -> None:
     assert figure.caption == "Caption."
 
 
-def test_the_speed_is_that_of_the_shaft_of_the_axis() -> None:
+def test_the_speed_is_that_of_the_shaft_of_the_axis():
     line = Line("force", SPEED, SPEED, "#000")
     figure = drawn(Panel(Axis("speed of output, rpm"), Axis("force, N"), (line,)))
     assert references(figure) == [("vertical", 600.0, "complaint, 600 rpm")]
 
 
-def test_a_complaint_beyond_an_axis_is_said_and_not_drawn() -> None:
+def test_a_complaint_beyond_an_axis_is_said_and_not_drawn():
     shade = HeatMap(SPEED, np.array([10.0, 20.0]), np.ones((2, 2)), "level, dB", 1.0)
     figure = drawn(Panel(Axis.over("speed of input, rpm", SPEED), Axis("frequency, Hz"), shade=shade))
     assert references(figure) == [("vertical", 1200.0, "complaint, 1200 rpm")]
     assert figure.caption == "Caption. The complaint, 400 Hz, lies beyond this axis."
 
 
-def test_only_the_order_of_the_complaint_is_bold() -> None:
+def test_only_the_order_of_the_complaint_is_bold():
     lines = tuple(Line(name, SPEED, SPEED, "#000", width=1.0) for name in ("order 0.6667", "order 1"))
     panel = drawn(Panel(Axis("time, s"), Axis("force, N"), lines)).content[0]
     assert [(line.name, line.width) for line in panel.lines] == [
@@ -65,7 +62,7 @@ def test_only_the_order_of_the_complaint_is_bold() -> None:
     assert panel.references == ()
 
 
-def test_a_run_is_marked_by_the_pitches_and_the_driver_of_the_mesh_that_is_shown() -> None:
+def test_a_run_is_marked_by_the_pitches_and_the_driver_of_the_mesh_that_is_shown():
     """Order map and order cuts over the speed of the driving gear, and a waterfall over frequency."""
     over = Axis("speed of the driving gear, rpm")
     shade = HeatMap(SPEED, np.array([0.0, 4.0]), np.ones((2, 2)), "level, dB", 1.0)
@@ -87,13 +84,13 @@ def test_a_run_is_marked_by_the_pitches_and_the_driver_of_the_mesh_that_is_shown
     assert plain["axes"] == {"frequency, Hz": 400.0} and np.isnan(plain["order"])
 
 
-def test_the_order_of_the_complaint_is_among_those_shown() -> None:
+def test_the_order_of_the_complaint_is_among_those_shown():
     order, sizes = np.array([2.0 / 3.0, 1.0, 4.0 / 3.0, 2.0]), np.array([0.1, 3.0, 1.0, 2.0])
     assert drawn_orders(order, sizes, 2, {}) == [1, 3]
     assert drawn_orders(order, sizes, 2, {"complaint": MARKS}) == [0, 1]
 
 
-def test_a_result_without_a_complaint_has_no_marks() -> None:
+def test_a_result_without_a_complaint_has_no_marks():
     @dataclass(frozen=True)
     class Result:
         metadata: dict[str, Any] = field(default_factory=dict)
@@ -103,7 +100,7 @@ def test_a_result_without_a_complaint_has_no_marks() -> None:
     assert marks_of(object()) is None
 
 
-def test_a_table_is_marked_where_its_case_is_heard(database: SteDatabase) -> None:
+def test_a_table_is_marked_where_its_case_is_heard(database):
     """20/20 teeth at 200 N m: order 40 of the pinion is the second harmonic."""
     case = database.metadata.case | {"complaint": {"order": 40.0, "torque_n_m": 200.0}}
     heard = replace(database, metadata=replace(database.metadata, case=case))
@@ -122,7 +119,7 @@ def references_of(panel: Panel) -> list[str]:
     return [one.label for one in panel.references if one.label.startswith("complaint")]
 
 
-def test_an_order_between_those_of_the_mesh_is_named_and_found_by_its_number() -> None:
+def test_an_order_between_those_of_the_mesh_is_named_and_found_by_its_number():
     metadata = {"turning": {"mesh": {"mesh": 1.0}, "shaft": {"pinion": 1.0 / 3.0}}}
     named = order_label(2.0 / 3.0, metadata)
     assert named == "0.6667 (mesh 1 - pinion 1)"

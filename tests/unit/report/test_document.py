@@ -1,7 +1,5 @@
 """A document says what it is about and whether it suffices, is small, and holds its receipts."""
 
-from __future__ import annotations
-
 import json
 import re
 import tomllib
@@ -9,7 +7,6 @@ import zlib
 from collections.abc import Sequence
 from dataclasses import replace
 from io import BytesIO
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,7 +14,6 @@ from command_line import loa
 from PIL import Image
 from spur_case import spur_case
 
-from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import about
 from lineofaction.gearbox.schemas import Case
@@ -25,7 +21,16 @@ from lineofaction.gearbox.schemas.report import ReportInput
 from lineofaction.report import document
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.attaching import attached
-from lineofaction.report.drawing.figure import Axis, Bars, Figure, Line, Panel, counts, panel_rows
+from lineofaction.report.drawing.figure import (
+    Axis,
+    Bars,
+    Figure,
+    Line,
+    Panel,
+    counts,
+    half_figures,
+    panel_rows,
+)
 from lineofaction.report.drawing.image import panel_sheet, png, still
 from lineofaction.report.drawing.interactive import plotly_figure
 from lineofaction.report.drawing.page import Headline, Page, Section, html
@@ -45,7 +50,6 @@ ABOUT = {"title": "First stage", "project": "EV", "number": "25-061", "revision"
 
 def verdicts(*requirements: str) -> tuple[str, ...]:
     block = titled(PAGE, ReportInput(requirements=list(requirements))).block
-    assert block is not None
     return block.verdicts
 
 
@@ -67,35 +71,34 @@ def verdicts(*requirements: str) -> tuple[str, ...]:
         ("99 % of all pairs below at most 0.6 µm", "Not met: "),
     ],
 )
-def test_a_limit_is_met_only_by_more_than_the_error(requirement: str, verdict: str) -> None:
+def test_a_limit_is_met_only_by_more_than_the_error(requirement, verdict):
     (said,) = verdicts(requirement)
     assert said.startswith(verdict)
 
 
-def test_a_verdict_is_one_sentence_with_value_error_and_limit() -> None:
+def test_a_verdict_is_one_sentence_with_value_error_and_limit():
     (said,) = verdicts("peak-to-peak STE at most 0.5 µm")
     assert said == "Met: peak-to-peak STE at 120 N m is 0.436 ± 0.020 µm; required is at most 0.5 µm."
 
 
 @pytest.mark.law
-def test_every_document_names_date_program_hash_author_and_main_result() -> None:
+def test_every_document_names_date_program_hash_author_and_main_result():
     page = titled(replace(PAGE, records={"ste.nc": {"content_hash": "3f2a"}}), None)
-    assert page.block is not None
     rows = dict(page.block.rows)
-    assert set(rows) == {"author", "date", "made with", "hash"}
+    assert set(rows) == {"date", "made with", "hash"}
     assert page.block.verdicts == ("Mean STE at 120 N m is 16.65 ± 0.088 µm; no requirement is stated.",)
     other = titled(replace(PAGE, records={"ste.nc": {"content_hash": "3f2b"}}), None).block
     assert other is not None and dict(other.rows)["hash"] != rows["hash"]
 
 
-def test_a_requirement_of_nothing_shown_is_an_alarm() -> None:
+def test_a_requirement_of_nothing_shown_is_an_alarm():
     """Also of one that is named by the end of its name alone, or in another unit."""
     stated = ["sound power at most 80 dB(A)", "mean STE at most 1 mm", "STE at 120 N m at most 1 µm"]
     page = titled(PAGE, ReportInput(requirements=stated))
     assert [text.rpartition(": ")[2] for text in page.alarms] == stated
 
 
-def test_the_title_block_stands_on_the_first_page_and_its_number_on_all() -> None:
+def test_the_title_block_stands_on_the_first_page_and_its_number_on_all():
     text = html(titled(PAGE, ReportInput(**ABOUT)), {}, still=True)
     for name, value in {"project": "EV", "drawing": "25-061", "revision": "B", "author": "A. Smith"}.items():
         assert f"<dt>{name}</dt><dd>{value}</dd>" in text
@@ -104,19 +107,19 @@ def test_the_title_block_stands_on_the_first_page_and_its_number_on_all() -> Non
     assert 'content: "page " counter(page) " of " counter(pages)' in text
 
 
-def test_what_a_limit_is_must_be_said() -> None:
+def test_what_a_limit_is_must_be_said():
     with pytest.raises(ValueError, match="FIGURE at most NUMBER UNIT"):
         ReportInput(requirements=["quiet"])
 
 
-def test_a_title_block_changes_no_result() -> None:
+def test_a_title_block_changes_no_result():
     table = tomllib.loads(spur_case(torques=[10.0]))
     titled_case, plain = (Case.model_validate(content) for content in (table | {"report": ABOUT}, table))
     assert titled_case.report is not None and titled_case.report.project == "EV"
     assert titled_case.model_dump_json() == plain.model_dump_json()
 
 
-def test_a_folder_has_one_title_block(tmp_path: Path) -> None:
+def test_a_folder_has_one_title_block(tmp_path):
     for name in ("one", "two"):
         (tmp_path / f"{name}.toml").write_text(f'[report]\nauthor = "{name}"\n')
     with pytest.raises(BadInput, match="a folder of one"):
@@ -129,9 +132,7 @@ def test_a_folder_has_one_title_block(tmp_path: Path) -> None:
         about_of(tmp_path / "none.toml")
 
 
-def test_a_report_without_interaction_is_small_and_says_its_verdict(
-    tmp_path: Path, database: SteDatabase
-) -> None:
+def test_a_report_without_interaction_is_small_and_says_its_verdict(tmp_path, database):
     database.to_netcdf(tmp_path / "ste.nc")
     (tmp_path / "report.toml").write_text('[report]\nrequirements = ["peak-to-peak STE at most 90 µm"]\n')
     done = loa("report", tmp_path, "--still")
@@ -160,7 +161,7 @@ def drawing(height: float) -> Panel:
 
 
 @pytest.mark.law
-def test_narrow_panels_stand_side_by_side() -> None:
+def test_narrow_panels_stand_side_by_side():
     wide, short = curve("120 N m: mean 5.59 µm"), curve("120 N m")
     assert panel_rows((curve(), short, curve()), 2) == [[0, 1], [2]]
     assert panel_rows((curve(), wide, curve(), curve()), 2) == [[0], [1], [2, 3]]
@@ -171,20 +172,35 @@ def test_narrow_panels_stand_side_by_side() -> None:
     assert left.get_position().x1 < right.get_position().x0
 
 
-def test_a_still_picture_has_the_size_of_its_sheet_in_a_third_of_the_bytes() -> None:
+def test_small_figures_share_the_width_of_a_page():
+    """Alone: of one panel; of two panels beside such a figure; never with long labels or three panels."""
+    panels = {
+        "one": [curve()],
+        "two": [curve()] * 2,
+        "three": [curve()] * 3,
+        "long": [curve("12.5 N m: mean 9 µm")],
+    }
+    named = {name: replace(figure(*drawn), key=name) for name, drawn in panels.items()}
+    last = replace(named["one"], key="last")
+    assert half_figures([*named.values(), last]) == {"one", "two", "last"}
+    assert half_figures([named["two"], named["three"]]) == set()
+    single, double = (Image.open(BytesIO(png(named[name], half=True))) for name in ("one", "two"))
+    assert single.width == double.width == Image.open(BytesIO(png(named["one"]))).width // 2
+    assert double.height > single.height
+
+
+def test_a_still_picture_has_the_size_of_its_sheet_in_a_third_of_the_bytes():
     whole = png(figure(curve(), curve()), across=2)
     small = still(whole)
     assert Image.open(BytesIO(small)).size == Image.open(BytesIO(whole)).size
     assert len(small) < 0.45 * len(whole)
 
 
-def test_a_page_and_its_images_draw_a_column_of_panels_once(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_a_page_and_its_images_draw_a_column_of_panels_once(monkeypatch, tmp_path):
     column, row = figure(drawing(0.3), curve()), replace(figure(curve(), curve()), key="row")
     calls: list[tuple[str, int]] = []
 
-    def counted(drawn: Figure, across: int = 1) -> bytes:
+    def counted(drawn, across=1, *, half=False):
         calls.append((drawn.key, across))
         return png(drawn, across)
 
@@ -197,7 +213,7 @@ def test_a_page_and_its_images_draw_a_column_of_panels_once(
 
 
 @pytest.mark.law
-def test_bars_are_one_artist_within_the_limits_of_single_ones() -> None:
+def test_bars_are_one_artist_within_the_limits_of_single_ones():
     order = np.arange(1.0, 2001.0)
     top = np.where(order % 7 == 0, np.nan, 2.0 + np.cos(order))
     bars = Bars("lines", order, top, 0.5, 0.8, palette.BLUE)
@@ -208,7 +224,7 @@ def test_bars_are_one_artist_within_the_limits_of_single_ones() -> None:
 
 
 @pytest.mark.law
-def test_orders_have_whole_ticks() -> None:
+def test_orders_have_whole_ticks():
     order = np.arange(1.0, 21.0)
     bars = Bars("lines", order, order, 0.0, 0.8, palette.BLUE)
     spectrum = Panel(Axis("mesh order"), Axis("µm"), (), bars=(bars,))
@@ -223,7 +239,7 @@ def test_orders_have_whole_ticks() -> None:
 
 
 @pytest.mark.law
-def test_the_first_harmonics_are_told_apart_by_eye(database: SteDatabase) -> None:
+def test_the_first_harmonics_are_told_apart_by_eye(database):
     colors = {line.name: line.color for line in ripple_over_torque(database).content[1].lines}
     assert all(
         max(part) > 80 for part in assert_apart([colors[f"{k}"] for k in range(1, 9)])
@@ -243,7 +259,7 @@ def assert_apart(colors: Sequence[str]) -> list[list[int]]:
 
 
 @pytest.mark.law
-def test_pairs_of_teeth_and_categories_are_told_apart_by_eye() -> None:
+def test_pairs_of_teeth_and_categories_are_told_apart_by_eye():
     assert_apart([palette.category(k) for k in range(6)])
     assert_apart([palette.tooth_pair(k) for k in range(6)])
 
@@ -256,7 +272,7 @@ SIMPLE = (
 
 
 @pytest.mark.law
-def test_a_file_in_a_pdf_is_found_by_its_table_and_comes_back_as_it_was() -> None:
+def test_a_file_in_a_pdf_is_found_by_its_table_and_comes_back_as_it_was():
     content = json.dumps({"case": "µm"}).encode()
     whole = attached(SIMPLE, "receipts.json", content)
     assert whole.startswith(SIMPLE)
@@ -271,5 +287,5 @@ def test_a_file_in_a_pdf_is_found_by_its_table_and_comes_back_as_it_was() -> Non
         attached(whole, "again.json", content)
 
 
-def test_a_page_that_is_no_document_has_no_title_block() -> None:
+def test_a_page_that_is_no_document_has_no_title_block():
     assert "drawing</dt>" not in html(replace(PAGE, lead=""), {}, still=True)

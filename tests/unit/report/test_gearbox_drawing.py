@@ -1,7 +1,5 @@
 """The drawing of a gearbox: names of gears stand free, and the drawing holds them."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
@@ -19,12 +17,12 @@ from lineofaction.report.drawing.interactive import plotly_figure
 
 
 @pytest.fixture(scope="module")
-def outline() -> Outline:
+def outline():
     found = Outline.of(two_stages())
     return replace(found, gears=("first pinion", "wheel of the first stage", "second pinion", "second wheel"))
 
 
-def test_no_name_of_a_gear_touches_a_circle_or_another_name(outline: Outline) -> None:
+def test_no_name_of_a_gear_touches_a_circle_or_another_name(outline):
     names = _gear_names(outline)
     center, radius = outline.origin[outline.gear_shaft, :2], 0.5 * outline.gear[:, 2]
     size = float(np.ptp(center[:, 0]))
@@ -37,7 +35,7 @@ def test_no_name_of_a_gear_touches_a_circle_or_another_name(outline: Outline) ->
             assert np.min(np.linalg.norm(name.points[:, None] - other.points, axis=2)) > 0.03 * size
 
 
-def test_the_end_view_holds_circles_and_names(outline: Outline) -> None:
+def test_the_end_view_holds_circles_and_names(outline):
     found = deflect(two_stages(), positions=1)
     result = GearboxDeflection(found, (), 1, 0.0, True, outline, {}, 0.0)
     view = gearbox_drawing(result, found.cases[0]).content[1]
@@ -52,7 +50,7 @@ def test_the_end_view_holds_circles_and_names(outline: Outline) -> None:
 @pytest.mark.parametrize(
     ("across", "along", "height"), [(330.0, 50.0, 1.0), (330.0, 150.0, 1.5), (1.0, 1.0, 2.0)]
 )
-def test_a_drawing_is_as_tall_as_it_needs_within_bounds(across: float, along: float, height: float) -> None:
+def test_a_drawing_is_as_tall_as_it_needs_within_bounds(across, along, height):
     box = Line("box", np.array([0.0, across]), np.array([0.0, along]), "#000000")
     panel = Panel(Axis("mm"), Axis("mm"), (box,), equal=True)
     assert panel_height(panel) == pytest.approx(height)
@@ -63,7 +61,7 @@ def test_a_drawing_is_as_tall_as_it_needs_within_bounds(across: float, along: fl
     assert drawing / curves == pytest.approx(height, rel=1e-4)
 
 
-def test_shafts_that_end_in_one_place_are_named_in_one_row(outline: Outline) -> None:
+def test_shafts_that_end_in_one_place_are_named_in_one_row(outline):
     origin = outline.origin.copy()
     origin[1] = origin[0] + [0.0, 0.001, 0.0]
     found = deflect(two_stages(), positions=1)
@@ -72,7 +70,7 @@ def test_shafts_that_end_in_one_place_are_named_in_one_row(outline: Outline) -> 
     assert [note.text for note in notes] == ["in, mid", "out"]
 
 
-def test_a_bent_train_is_seen_from_where_its_axes_lie_apart(outline: Outline) -> None:
+def test_a_bent_train_is_seen_from_where_its_axes_lie_apart(outline):
     origin = np.array([[0.0, 0.0, 0.0], [0.1, 0.04, 0.0], [0.14, -0.09, 0.0]])
     across = np.array([0.17, -0.06, 0.0])  # as far from the first to the second as to the third
     case = deflect(two_stages(), positions=1).cases[0]
@@ -81,7 +79,7 @@ def test_a_bent_train_is_seen_from_where_its_axes_lie_apart(outline: Outline) ->
 
 
 @pytest.mark.parametrize(("rows", "slices"), [(96, 90), (10, 7)])
-def test_a_contact_pattern_keeps_the_largest_pressure(rows: int, slices: int) -> None:
+def test_a_contact_pattern_keeps_the_largest_pressure(rows, slices):
     face = np.linspace(-0.01, 0.01, slices)
     flanks: Any = SimpleNamespace(
         face_position=face, slice_width=face[1] - face[0], face_load=np.ones((1, slices))

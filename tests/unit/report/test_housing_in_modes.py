@@ -1,10 +1,7 @@
 """The housing in the modes of a unit: the picture of the report, and what the page is sent."""
 
-from __future__ import annotations
-
 import base64
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,7 +18,7 @@ from lineofaction.report.unit_motion import motion_json
 
 
 @pytest.fixture(scope="module")
-def modes() -> ModalAnalysis:
+def modes():
     """At rest and at 100 rad/s, with what a study keeps of the housing."""
     subject = subject_of(tube_on(None))
     found = modal_analysis(assemble(subject.scene), [0.0, 100.0])
@@ -35,7 +32,7 @@ def pictures(modes: ModalAnalysis) -> list[Figure]:
 
 
 @pytest.mark.law
-def test_the_report_draws_the_lowest_mode_in_which_the_housing_has_a_third(modes: ModalAnalysis) -> None:
+def test_the_report_draws_the_lowest_mode_in_which_the_housing_has_a_third(modes):
     (figure,) = pictures(modes)
     columns = [name.startswith("case.") for name in modes.freedom]
     share = modes.natural_kinetic_energy[:, columns].sum(axis=1)
@@ -52,7 +49,7 @@ def test_the_report_draws_the_lowest_mode_in_which_the_housing_has_a_third(modes
 
 
 @pytest.mark.law
-def test_the_page_is_sent_the_surface_of_every_mode_with_its_shafts(modes: ModalAnalysis) -> None:
+def test_the_page_is_sent_the_surface_of_every_mode_with_its_shafts(modes):
     """At rest and whirling: mm, as complex as the mode."""
     shapes = [*modes.natural_shape, *modes.shape[np.isfinite(modes.frequency)]]
     assert len(shapes) > 2 * modes.natural_frequency.size
@@ -70,7 +67,7 @@ def test_the_page_is_sent_the_surface_of_every_mode_with_its_shafts(modes: Modal
         assert surface["level_re"] == "the largest"
 
 
-def test_a_file_keeps_the_motion_of_the_surface(modes: ModalAnalysis, tmp_path: Path) -> None:
+def test_a_file_keeps_the_motion_of_the_surface(modes, tmp_path):
     modes.to_netcdf(tmp_path / "modes.nc")
     kept = ModalAnalysis.from_netcdf(tmp_path / "modes.nc")
     assert kept.surface_motion.dtype == np.float32

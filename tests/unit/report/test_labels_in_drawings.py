@@ -1,7 +1,5 @@
 """Labels at lines, texts beside points, bars of modes: none covers another, and each is where it belongs."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np
@@ -30,7 +28,7 @@ def panel(ends: list[float], label: str = "{:g} N m", scale: str = "linear") -> 
         Line(f"{k}", ENDS, np.array([1.0, end]), palette.category(k), label=label.format(10 * k))
         for k, end in enumerate(ends)
     )
-    return Panel(Axis("position"), Axis("STE, µm", scale), lines)  # type: ignore[arg-type]
+    return Panel(Axis("position"), Axis("STE, µm", scale), lines)
 
 
 def sorted_gaps(middles: np.ndarray, heights: np.ndarray) -> np.ndarray:
@@ -39,7 +37,7 @@ def sorted_gaps(middles: np.ndarray, heights: np.ndarray) -> np.ndarray:
 
 
 @given(st.lists(st.floats(0.0, 1.0), min_size=1, max_size=8))
-def test_no_label_covers_another_and_all_are_in_the_panel(ends: list[float]) -> None:
+def test_no_label_covers_another_and_all_are_in_the_panel(ends):
     wanted, heights = np.array(ends), np.full(len(ends), HEIGHT)
     middles = spread_positions(wanted, heights)
     assert np.all(sorted_gaps(middles, heights) >= -1e-12)
@@ -50,18 +48,18 @@ def test_no_label_covers_another_and_all_are_in_the_panel(ends: list[float]) -> 
         assert (middles[a] < middles[b]) == (low < high) or low == high, "they keep the order of their lines"
 
 
-def test_labels_that_are_apart_stand_at_their_lines() -> None:
+def test_labels_that_are_apart_stand_at_their_lines():
     wanted = np.array([0.9, 0.2, 0.5])
     np.testing.assert_allclose(spread_positions(wanted, np.full(3, HEIGHT)), wanted)
 
 
-def test_labels_of_lines_that_end_together_stand_about_their_end() -> None:
+def test_labels_of_lines_that_end_together_stand_about_their_end():
     middles = spread_positions(np.full(3, 0.5), np.array([0.1, 0.2, 0.1]))
     np.testing.assert_allclose(middles, [0.35, 0.5, 0.65])
 
 
 @pytest.mark.parametrize("scale", ["linear", "log"])
-def test_heights_are_those_of_the_axis(scale: str) -> None:
+def test_heights_are_those_of_the_axis(scale):
     drawn = panel([1.0, 10.0, 100.0], scale=scale)
     ends = [label.end for label in line_labels(drawn, 0.01)]
     even = (ends[1] - ends[0]) / (ends[2] - ends[0])
@@ -69,7 +67,7 @@ def test_heights_are_those_of_the_axis(scale: str) -> None:
 
 
 @pytest.mark.parametrize("ends", [[1.0, 1.0, 1.0, 1.0, 1.01], [1.0, 2.0, 3.0, 3.05, 3.1], [5.0]])
-def test_drawn_labels_lie_apart_in_both_drawings(ends: list[float]) -> None:
+def test_drawn_labels_lie_apart_in_both_drawings(ends):
     """Texts of two rows, as the first figure of a report has them."""
     drawn = panel(ends, "{:g} N m: mean 12.3 µm,\n0.84 µm peak to peak")
     sheet = panel_sheet((drawn,))
@@ -89,7 +87,7 @@ def test_drawn_labels_lie_apart_in_both_drawings(ends: list[float]) -> None:
     assert layout["margin"]["r"] > 100
 
 
-def test_labeled_lines_are_not_in_the_legend() -> None:
+def test_labeled_lines_are_not_in_the_legend():
     assert legend_names((panel([1.0, 2.0]),)) == []
     plain = panel([1.0, 2.0], label="")
     assert legend_names((plain,)) == ["0", "1"]
@@ -198,7 +196,7 @@ def test_a_panel_that_ends_below_its_points_keeps_texts_above_the_axis():
 SHARES = [{"input lateral": 0.7, "output torsional": 0.3}, {"output torsional": 0.6}]
 
 
-def test_the_parts_of_every_mode_add_up_to_the_whole() -> None:
+def test_the_parts_of_every_mode_add_up_to_the_whole():
     panel = mode_bars(["100 Hz", "200 Hz"], SHARES, "kinetic energy")
     heights = sum(bars.top - bars.base for bars in panel.bars)
     np.testing.assert_allclose(heights, 100.0, rtol=1e-12, atol=0.0)
@@ -209,7 +207,7 @@ def test_the_parts_of_every_mode_add_up_to_the_whole() -> None:
     assert sizes[OTHERS] == pytest.approx([0.0, 40.0])
 
 
-def test_the_largest_parts_have_the_colors() -> None:
+def test_the_largest_parts_have_the_colors():
     many = [{f"part {k}": 0.5 / (k + 2) for k in range(9)}]
     parts = _largest_parts(many)
     assert parts == [f"part {k}" for k in range(len(palette.CATEGORIES))]
@@ -217,10 +215,10 @@ def test_the_largest_parts_have_the_colors() -> None:
 
 
 @pytest.mark.parametrize("teeth", [20, 60])
-def test_title_axis_and_legend_of_a_drawing_stand_apart(teeth: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_title_axis_and_legend_of_a_drawing_stand_apart(teeth, monkeypatch):
     sheets: list[Sheet] = []
 
-    def laid_out(sheet: Sheet, *_: object, **__: object) -> None:
+    def laid_out(sheet, *_, **__):
         sheet.draw_without_rendering()
         sheets.append(sheet)
 

@@ -1,11 +1,8 @@
 """loa listen: files of stated quantity and level, through housings too; figures of the sound pressure."""
 
-from __future__ import annotations
-
 import json
 import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -29,12 +26,12 @@ from lineofaction.gearbox.studies.listen.run import HeardRun
 
 
 @pytest.fixture
-def file(run: RunResult, tmp_path: Path) -> Path:
+def file(run, tmp_path):
     run.to_netcdf(tmp_path / "run.nc")
     return tmp_path / "run.nc"
 
 
-def test_a_run_becomes_a_file_of_its_force_with_the_levels_of_its_orders(file: Path, tmp_path: Path) -> None:
+def test_a_run_becomes_a_file_of_its_force_with_the_levels_of_its_orders(file, tmp_path):
     """10 N and 20 N at the first two mesh orders along y, on 1000 N."""
     done = loa("listen", file, "-o", tmp_path / "a.wav", "--json")
     assert done.exit_code == 0
@@ -53,9 +50,7 @@ def test_a_run_becomes_a_file_of_its_force_with_the_levels_of_its_orders(file: P
     assert orders["2"] == pytest.approx(20.0 / np.sqrt(2.0), rel=1e-3)
 
 
-def test_two_runs_keep_their_ratio_and_are_heard_at_the_same_bearing(
-    run: RunResult, file: Path, tmp_path: Path
-) -> None:
+def test_two_runs_keep_their_ratio_and_are_heard_at_the_same_bearing(run, file, tmp_path):
     """The second is louder at the other bearing, which is not that of the first."""
     force = 0.25 * run.bearing_force
     force[0, 0] = 100.0 * np.cos(2.0 * np.pi * 200.0 * run.time)
@@ -67,7 +62,7 @@ def test_two_runs_keep_their_ratio_and_are_heard_at_the_same_bearing(
     np.testing.assert_allclose(quiet.samples, 0.25 * loud.samples, atol=1e-6 * loud.peak)
 
 
-def test_along_an_axis_is_heard_that_component(run: RunResult, tmp_path: Path) -> None:
+def test_along_an_axis_is_heard_that_component(run, tmp_path):
     force = run.bearing_force.copy()
     force[1, 0] = 0.5 * force[1, 1]
     replace(run, bearing_force=force).to_netcdf(tmp_path / "run.nc")
@@ -89,14 +84,14 @@ def test_along_an_axis_is_heard_that_component(run: RunResult, tmp_path: Path) -
         (["--quantity", "acceleration"], "outputs.accelerations = true"),
     ],
 )
-def test_what_cannot_be_heard_is_refused(options: list[str], words: str, file: Path, tmp_path: Path) -> None:
+def test_what_cannot_be_heard_is_refused(options, words, file, tmp_path):
     done = loa("listen", file, "-o", tmp_path / "a.wav", *options)
     assert done.exit_code == 2
     assert words in " ".join(done.stderr.split())
     assert not (tmp_path / "a.wav").exists()
 
 
-def test_a_run_without_forces_on_bearings_says_what_it_holds(run: RunResult, tmp_path: Path) -> None:
+def test_a_run_without_forces_on_bearings_says_what_it_holds(run, tmp_path):
     none = np.empty((0, 3, run.time.size))
     replace(run, bearing_force=none, bearing=()).to_netcdf(tmp_path / "run.nc")
     done = loa("listen", tmp_path / "run.nc", "-o", tmp_path / "a.wav", "--quantity", "force")
@@ -104,7 +99,7 @@ def test_a_run_without_forces_on_bearings_says_what_it_holds(run: RunResult, tmp
     assert "one that the run holds" in " ".join(done.stderr.split())
 
 
-def test_outputs_that_would_overwrite_each_other_are_refused(file: Path, tmp_path: Path) -> None:
+def test_outputs_that_would_overwrite_each_other_are_refused(file, tmp_path):
     assert loa("listen", file, file, "-o", tmp_path / "a.wav").exit_code == 2
     assert loa("listen", file, file, "-o", tmp_path / "sounds").exit_code == 2
     assert loa("listen", file, "-o", tmp_path / "no" / "sounds").exit_code == 2
@@ -114,7 +109,7 @@ MICROPHONE = ("--microphone", "600,800,-200")
 
 
 @pytest.fixture(scope="module")
-def housing() -> ReducedHousing:
+def housing():
     bare = bare_housing(("left", "right"), motions=3, positions=[(0.0, 0.0, 0.05), (0.08, 0.0, 0.05)])
     hull = box((0.3, 0.2, 0.15), (6, 4, 3))
     sounding = with_surface(bare, hull, smooth_motion(hull, len(bare.stiffness)))
@@ -123,7 +118,7 @@ def housing() -> ReducedHousing:
 
 
 @pytest.fixture
-def scene(housing: ReducedHousing, tmp_path: Path) -> Path:
+def scene(housing, tmp_path):
     moved_file = scene_file(tmp_path)
     housing.to_netcdf(tmp_path / "case.nc")
     moved_file.write_text(f'{moved_file.read_text()}[[housings]]\nname = "case"\nmodes_file = "case.nc"\n')
@@ -131,7 +126,7 @@ def scene(housing: ReducedHousing, tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def moved(run: RunResult, housing: ReducedHousing) -> RunResult:
+def moved(run, housing):
     """The run of a scene with the housing, at constant speed: its loudness is told faster."""
     part = json.loads(json.dumps(vars(scene_housing(housing, "case")), default=list))
     speed = np.broadcast_to([[-40.0], [80.0]], run.speed.shape)
@@ -139,7 +134,7 @@ def moved(run: RunResult, housing: ReducedHousing) -> RunResult:
 
 
 @pytest.fixture
-def moved_file(moved: RunResult, tmp_path: Path) -> Path:
+def moved_file(moved, tmp_path):
     moved.to_netcdf(tmp_path / "run.nc")
     return tmp_path / "run.nc"
 
@@ -149,9 +144,7 @@ def heard_at(housing: ReducedHousing, moved: RunResult) -> Recording:
     return pressure_recording(housing, moved, place, estimate=estimate)
 
 
-def test_in_python_the_sound_needs_no_table(
-    moved: RunResult, housing: ReducedHousing, scene: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_in_python_the_sound_needs_no_table(moved, housing, scene, monkeypatch):
     monkeypatch.setitem(sys.modules, "mosqito", None)  # its figures take seconds
     monkeypatch.setattr(workbench, "scene_by_tables", None)
     heard: HeardRun = lineofaction.listen(scene, run=moved, microphone_mm=(600.0, 800.0, -200.0))
@@ -161,13 +154,8 @@ def test_in_python_the_sound_needs_no_table(
 
 @pytest.mark.law
 def test_the_sound_pressure_is_that_of_the_library_with_its_limits(
-    moved_file: Path,
-    moved: RunResult,
-    housing: ReducedHousing,
-    scene: Path,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+    moved_file, moved, housing, scene, tmp_path, monkeypatch
+):
     monkeypatch.setitem(sys.modules, "mosqito", None)  # its figures take seconds
     call = (moved_file, "-o", tmp_path / "a.wav", "--scene", scene, *MICROPHONE)
     facts = printed("listen", *call)
@@ -186,9 +174,7 @@ def test_the_sound_pressure_is_that_of_the_library_with_its_limits(
         assert words in shown
 
 
-def test_two_designs_are_told_apart_in_one_call(
-    moved: RunResult, moved_file: Path, scene: Path, tmp_path: Path
-) -> None:
+def test_two_designs_are_told_apart_in_one_call(moved, moved_file, scene, tmp_path):
     """Half of the force: 6.02 dB less, and files on one scale."""
     pytest.importorskip("mosqito", reason="loudness needs the extra psychoacoustics")
     replace(moved, bearing_force=0.5 * moved.bearing_force).to_netcdf(tmp_path / "after.nc")
@@ -201,9 +187,7 @@ def test_two_designs_are_told_apart_in_one_call(
     np.testing.assert_allclose(quiet.samples, 0.5 * loud.samples, atol=1e-6 * loud.peak)
 
 
-def test_a_point_is_heard_by_its_velocity(
-    moved_file: Path, moved: RunResult, housing: ReducedHousing, scene: Path, tmp_path: Path
-) -> None:
+def test_a_point_is_heard_by_its_velocity(moved_file, moved, housing, scene, tmp_path):
     call = (moved_file, "-o", tmp_path / "a.wav", "--scene", scene, "--point", "lid")
     for extra, axis in (((), None), (("--direction", "z"), np.array([0.0, 0.0, 1.0]))):
         done = loa("listen", *call, *extra)
@@ -214,9 +198,7 @@ def test_a_point_is_heard_by_its_velocity(
         np.testing.assert_allclose(heard.samples, expected.samples, atol=1e-6 * expected.peak)
 
 
-def test_a_run_that_moved_in_no_or_another_housing_is_warned_of(
-    run: RunResult, moved: RunResult, housing: ReducedHousing, scene: Path, tmp_path: Path
-) -> None:
+def test_a_run_that_moved_in_no_or_another_housing_is_warned_of(run, moved, housing, scene, tmp_path):
     (part,) = moved.case["housings"]
     softer = part | {"stiffness": (0.99 * np.array(part["stiffness"])).tolist()}
     for case in (run.case, run.case | {"housings": [softer]}):
@@ -250,18 +232,14 @@ def test_a_run_that_moved_in_no_or_another_housing_is_warned_of(
         ([*MICROPHONE, "--direction", "x"], "left out with --microphone"),
     ],
 )
-def test_what_cannot_be_heard_through_a_housing_is_refused(
-    options: list[str], words: str, moved_file: Path, scene: Path, tmp_path: Path
-) -> None:
+def test_what_cannot_be_heard_through_a_housing_is_refused(options, words, moved_file, scene, tmp_path):
     done = loa("listen", moved_file, "-o", tmp_path / "a.wav", "--scene", scene, *options)
     assert done.exit_code == 2
     assert words in " ".join(done.stderr.split())
     assert not (tmp_path / "a.wav").exists()
 
 
-def test_the_microphone_of_the_complaint_hears_where_none_is_named(
-    moved_file: Path, scene: Path, tmp_path: Path
-) -> None:
+def test_the_microphone_of_the_complaint_hears_where_none_is_named(moved_file, scene, tmp_path):
     stated = MICROPHONE[1].split(",")
     complained = scene.with_name("complained.toml")
     text = scene.read_text("utf-8") + f"\n[complaint]\norder = 20.0\nmicrophone_mm = [{', '.join(stated)}]\n"
@@ -274,7 +252,7 @@ def test_the_microphone_of_the_complaint_hears_where_none_is_named(
     assert files[scene].read_bytes() == files[complained].read_bytes()
 
 
-def test_a_scene_is_needed_and_one_that_sounds(moved_file: Path, tmp_path: Path) -> None:
+def test_a_scene_is_needed_and_one_that_sounds(moved_file, tmp_path):
     done = loa("listen", moved_file, "-o", tmp_path / "a.wav", *MICROPHONE)
     assert done.exit_code == 2 and "--scene" in done.stderr
     bare = scene_file(tmp_path)
@@ -297,11 +275,11 @@ def figures_of(samples: Recording, run: RunResult) -> SoundFigures:
 
 
 @pytest.fixture
-def steady(run: RunResult) -> RunResult:
+def steady(run):
     return replace(run, speed=np.broadcast_to([[-40.0], [80.0]], run.speed.shape))
 
 
-def test_a_steady_tone_of_60_db_has_4_sone_and_is_prominent(steady: RunResult) -> None:
+def test_a_steady_tone_of_60_db_has_4_sone_and_is_prominent(steady):
     pytest.importorskip("mosqito", reason="loudness needs the extra psychoacoustics")
     figures = figures_of(recording(), steady)
     assert figures.steady
@@ -312,7 +290,7 @@ def test_a_steady_tone_of_60_db_has_4_sone_and_is_prominent(steady: RunResult) -
     assert frequency == pytest.approx(1000.0, abs=5.0) and ratio > 8.0
 
 
-def test_the_loudness_of_a_run_up_is_exceeded_for_a_twentieth_of_its_time(run: RunResult) -> None:
+def test_the_loudness_of_a_run_up_is_exceeded_for_a_twentieth_of_its_time(run):
     pytest.importorskip("mosqito", reason="loudness needs the extra psychoacoustics")
     swelling = recording(TONE * np.linspace(0.0, 1.0, TONE.size) ** 2)
     figures = figures_of(swelling, run)
@@ -321,7 +299,7 @@ def test_the_loudness_of_a_run_up_is_exceeded_for_a_twentieth_of_its_time(run: R
     assert np.mean(loudness > figures.loudness) == pytest.approx(0.05, abs=0.01)
 
 
-def test_without_the_extra_the_levels_are_left(steady: RunResult, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_the_extra_the_levels_are_left(steady, monkeypatch):
     monkeypatch.setitem(sys.modules, "mosqito", None)
     figures = figures_of(recording(), steady)
     assert figures.level == pytest.approx(60.0, abs=0.01)

@@ -1,29 +1,22 @@
 """Plots by one call: figures of the report on axes, on axes of the caller, by plotly."""
 
-from __future__ import annotations
-
 import sys
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any, get_args, get_origin
 
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from repository import EXAMPLES
 
 import lineofaction as loa
 from bounds.plottable import Plottable
-from dynamics.results import RunResult
-from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.report.drawing.figure import HeatMap
 from lineofaction.report.plots import figures_of
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
-
 
 @pytest.fixture(autouse=True)
-def without_a_screen() -> Iterator[None]:
+def without_a_screen():
     with plt.rc_context():
         plt.switch_backend("Agg")
         yield
@@ -35,12 +28,12 @@ def _kinds(result: Any) -> tuple[Any, ...]:
 
 
 @pytest.mark.parametrize("study", STUDIES.values(), ids=STUDIES)
-def test_every_result_of_a_study_has_plots(study: Any) -> None:
+def test_every_result_of_a_study_has_plots(study):
     for kind in _kinds(study.run.file.result):
         assert issubclass(get_origin(kind) or kind, Plottable), kind
 
 
-def test_the_first_plot_of_a_table_is_its_curve(database: SteDatabase) -> None:
+def test_the_first_plot_of_a_table_is_its_curve(database):
     ripple, harris = database.plot()
     assert ripple.get_ylabel() == "STE less its mean, µm"
     drawn = max(np.ptp(np.asarray(line.get_ydata())) for line in ripple.get_lines())
@@ -49,7 +42,7 @@ def test_the_first_plot_of_a_table_is_its_curve(database: SteDatabase) -> None:
     assert harris.get_title(loc="left") == "Harris map"
 
 
-def test_a_figure_is_found_by_words_of_its_name(database: SteDatabase, run: RunResult) -> None:
+def test_a_figure_is_found_by_words_of_its_name(database, run):
     assert database.plot("harmonics")[0].get_ylabel().startswith("amplitude")
     assert database.plot("load sharing")[0].get_ylabel().startswith("normal force on a pair")
     assert run.plot()[-1].get_ylabel() == "transmission error, µm"
@@ -57,7 +50,7 @@ def test_a_figure_is_found_by_words_of_its_name(database: SteDatabase, run: RunR
         database.plot("no such")
 
 
-def test_panels_are_drawn_on_the_axes_of_the_caller(database: SteDatabase) -> None:
+def test_panels_are_drawn_on_the_axes_of_the_caller(database):
     _, axes = plt.subplots(2, 1)
     assert list(database.plot(axes=axes)) == list(axes)
     assert all(ax.get_lines() for ax in axes)
@@ -65,24 +58,24 @@ def test_panels_are_drawn_on_the_axes_of_the_caller(database: SteDatabase) -> No
         database.plot(axes=axes[0])
 
 
-def test_an_interactive_plot_has_the_curves_of_the_figure(database: SteDatabase) -> None:
+def test_an_interactive_plot_has_the_curves_of_the_figure(database):
     drawn = database.plot(interactive=True)
     assert {"x", "y"} <= set(drawn.data[0].to_plotly_json())
     assert len(drawn.data) >= len(database.plot()[0].get_lines())
 
 
-def test_a_result_of_a_study_draws_the_figure_of_its_verb() -> None:
+def test_a_result_of_a_study_draws_the_figure_of_its_verb():
     result = loa.modes(EXAMPLES / "jeffcott_scene.toml")
     assert result.plot()[0].figure.get_suptitle() == loa.plot(result)[0].figure.get_suptitle() != ""
 
 
-def test_a_library_alone_says_what_draws(database: SteDatabase, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_library_alone_says_what_draws(database, monkeypatch):
     monkeypatch.delitem(sys.modules, "lineofaction")
     with pytest.raises(ImportError, match="import lineofaction"):
         database.plot()
 
 
-def test_the_numbers_of_a_plot_are_a_table(database: SteDatabase) -> None:
+def test_the_numbers_of_a_plot_are_a_table(database):
     frame = database.to_dataframe()
     curve = database.curve(torque=100.0)
     drawn = frame[(frame["curve"] == "100 N m") & (frame["y_axis"] == "STE less its mean, µm")]
@@ -95,7 +88,7 @@ def test_the_numbers_of_a_plot_are_a_table(database: SteDatabase) -> None:
     )
 
 
-def test_the_numbers_of_a_map_have_its_coordinates(database: SteDatabase) -> None:
+def test_the_numbers_of_a_map_have_its_coordinates(database):
     names = [figure.key for figure in figures_of(database) if figure.content and figure.content[0].shade]
     frame = database.to_dataframe(names[0])
     shade = next(f for f in figures_of(database) if f.key == names[0]).content[0].shade

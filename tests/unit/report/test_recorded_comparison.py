@@ -1,10 +1,7 @@
 """A recording beside the run that it was made from: levels of orders agree, whatever the format."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,9 +9,7 @@ import pytest
 from geared_scenes import RPM, gear_pair_scene
 from recordings import FULL_SCALE, PULSES, WRITERS, universal
 
-from dynamics.loads import TimeLaw
-from dynamics.results import RunResult
-from dynamics.simulation import simulate
+from dynamics import RunResult, TimeLaw, simulate
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.report.comparison.compare import compare
 from lineofaction.report.comparison.recorded import Measurement
@@ -29,7 +24,7 @@ VIEW = RunView(quantity="acceleration", bearing="input.left", direction="y", ord
 
 
 @pytest.fixture(scope="module")
-def recorded(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any]]:
+def recorded(tmp_path_factory):
     """A run at the rate of the program, and the same motion at that of a recorder with noise and a tone."""
     scene = gear_pair_scene(speed=TimeLaw.ramp(600.0 * RPM, 1500.0 * RPM, 1.5), duration=1.5)
     computed, dense = (
@@ -62,9 +57,7 @@ def _differences(page: Page) -> dict[int, tuple[float, float]]:
 
 
 @pytest.mark.parametrize("form", WRITERS)
-def test_levels_of_eight_orders_agree_within_a_fifth_of_a_decibel(
-    form: str, recorded: tuple[Path, dict[str, Any]], tmp_path: Path
-) -> None:
+def test_levels_of_eight_orders_agree_within_a_fifth_of_a_decibel(form, recorded, tmp_path):
     """The published target: one measured waterfall, written by other programs, read back and compared."""
     run, recording = recorded
     assert np.abs(recording["acceleration"]).max() < FULL_SCALE
@@ -76,9 +69,7 @@ def test_levels_of_eight_orders_agree_within_a_fifth_of_a_decibel(
     assert sum(abs(value) <= error + 0.005 for value, error in differences.values()) >= 7  # two deviations
 
 
-def test_a_recording_of_twice_the_size_is_six_decibels_louder(
-    recorded: tuple[Path, dict[str, Any]], tmp_path: Path
-) -> None:
+def test_a_recording_of_twice_the_size_is_six_decibels_louder(recorded, tmp_path):
     run, recording = recorded
     twice = recording | {"acceleration": 2.0 * recording["acceleration"]}
     page = compare([run, universal(tmp_path / "t.uff", **twice)], VIEW)
@@ -88,9 +79,7 @@ def test_a_recording_of_twice_the_size_is_six_decibels_louder(
     assert len(page.sections[0].figures[1].content) == 2
 
 
-def test_what_the_file_does_not_say_is_asked_for(
-    recorded: tuple[Path, dict[str, Any]], tmp_path: Path
-) -> None:
+def test_what_the_file_does_not_say_is_asked_for(recorded, tmp_path):
     run, recording = recorded
     without = replace(VIEW, direction="")
     file = universal(tmp_path / "t.uff", **recording, direction=0)
@@ -113,9 +102,7 @@ def test_what_the_file_does_not_say_is_asked_for(
         compare([run, other, file], VIEW)
 
 
-def test_names_of_channels_and_files_are_text_on_the_page(
-    recorded: tuple[Path, dict[str, Any]], tmp_path: Path
-) -> None:
+def test_names_of_channels_and_files_are_text_on_the_page(recorded, tmp_path):
     run, recording = recorded
     file = universal(tmp_path / "<img src=x onerror=alert(1)>.uff", **recording)
     written = html(compare([run, file], VIEW), {"levels": b"", "order_maps": b""}, still=True)

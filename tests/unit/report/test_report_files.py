@@ -1,7 +1,5 @@
 """The report from files, as a page and as JSON: what they are is read from them, what is wrong is said."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Callable
@@ -18,7 +16,6 @@ from dynamics.orders import highest_valid_order, order_frequency
 from dynamics.results import RunResult
 from fe_contact.analysis.studies.fidelity_result import FidelityResult
 from fe_contact.analysis.studies.frontier import Frontier
-from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.problems import BadInput, DamagedFile
 from lineofaction.gearbox.studies.frontier.run import RUN
 from lineofaction.report.comparison.compare import stored_comparison
@@ -37,7 +34,7 @@ Work = Callable[[dict[str, Any]], Any]
 
 
 @pytest.fixture
-def files(tmp_path: Path, database: SteDatabase, run: RunResult) -> tuple[Path, Path]:
+def files(tmp_path, database, run):
     database.to_netcdf(tmp_path / "ste.nc")
     run.to_netcdf(tmp_path / "run.nc")
     return tmp_path / "ste.nc", tmp_path / "run.nc"
@@ -66,13 +63,7 @@ DYNAMIC = {
 }
 
 
-def test_kinds_are_read_from_the_files(files: tuple[Path, Path]) -> None:
-    table, run = (read_inputs([file]) for file in files)
-    assert table.run is run.database is None
-    assert table.database is not None and run.run is not None
-
-
-def test_a_page_and_all_images_of_both(files: tuple[Path, Path], tmp_path: Path) -> None:
+def test_a_page_and_all_images_of_both(files, tmp_path):
     written = write_report(files, tmp_path / "report.html", tmp_path / "images")
     assert written[0] == tmp_path / "report.html"
     assert {path.stem for path in written[1:]} == STATIC | DYNAMIC
@@ -84,26 +75,24 @@ def test_a_page_and_all_images_of_both(files: tuple[Path, Path], tmp_path: Path)
 
 
 @pytest.mark.parametrize(("index", "shown", "missing"), [(0, STATIC, DYNAMIC), (1, DYNAMIC, STATIC)])
-def test_one_file_alone(
-    files: tuple[Path, Path], tmp_path: Path, index: int, shown: set[str], missing: set[str]
-) -> None:
+def test_one_file_alone(files, tmp_path, index, shown, missing):
     (path,) = write_report(files[index], tmp_path / "report.html")
     page = path.read_text(encoding="utf-8")
     assert all(f'<figure id="{key}">' in page for key in shown)
     assert not any(f'<figure id="{key}">' in page for key in missing)
 
 
-def test_two_of_a_kind_are_refused(files: tuple[Path, Path], tmp_path: Path) -> None:
+def test_two_of_a_kind_are_refused(files, tmp_path):
     with pytest.raises(BadInput, match="the only run"):
         write_report([files[1], files[1]], tmp_path / "report.html")
 
 
-def test_no_file_is_refused(tmp_path: Path) -> None:
+def test_no_file_is_refused(tmp_path):
     with pytest.raises(BadInput, match="at least one file"):
         write_report([], tmp_path / "report.html")
 
 
-def test_what_is_no_result_is_refused_by_name(tmp_path: Path) -> None:
+def test_what_is_no_result_is_refused_by_name(tmp_path):
     text, other = tmp_path / "a.nc", tmp_path / "b.nc"
     text.write_text("hello")
     with h5netcdf.File(other, "w") as file:
@@ -117,14 +106,14 @@ def test_what_is_no_result_is_refused_by_name(tmp_path: Path) -> None:
     assert not (tmp_path / "report.html").exists()
 
 
-def test_a_damaged_file_is_refused(files: tuple[Path, Path], tmp_path: Path) -> None:
+def test_a_damaged_file_is_refused(files, tmp_path):
     with h5netcdf.File(files[0], "a") as file:
         file.attrs["data_sha256"] = "0" * 64
     with pytest.raises(BadInput, match="undamaged database"):
         write_report(files[0], tmp_path / "report.html")
 
 
-def test_an_old_report_survives_a_failed_one(files: tuple[Path, Path], tmp_path: Path) -> None:
+def test_an_old_report_survives_a_failed_one(files, tmp_path):
     target = tmp_path / "report.html"
     write_report(files[0], target)
     before = target.read_bytes()
@@ -134,7 +123,7 @@ def test_an_old_report_survives_a_failed_one(files: tuple[Path, Path], tmp_path:
 
 
 @pytest.mark.parametrize("work", [stored_figures, stored_comparison])
-def test_of_a_stored_file_nobody_learns_where_it_is(tmp_path: Path, work: Work) -> None:
+def test_of_a_stored_file_nobody_learns_where_it_is(tmp_path, work):
     """It is damage in the store, not a fault of the caller."""
     (tmp_path / "a.nc").write_text("hello")
     with pytest.raises(DamagedFile, match="not a readable netCDF-4 file") as refused:
@@ -158,7 +147,7 @@ LADDER = Frontier(
 )
 
 
-def test_a_stored_table_has_the_figures_of_its_report(database: SteDatabase, tmp_path: Path) -> None:
+def test_a_stored_table_has_the_figures_of_its_report(database, tmp_path):
     file = tmp_path / "ste.nc"
     database.to_netcdf(file)
     found = stored_figures({"kind": "database", "file": str(file)})
@@ -170,7 +159,7 @@ def test_a_stored_table_has_the_figures_of_its_report(database: SteDatabase, tmp
     assert [h["value"] for h in found["headlines"]] == [h.value for h in page.headlines]
 
 
-def test_a_stored_ladder_is_drawn_as_a_fresh_one(tmp_path: Path) -> None:
+def test_a_stored_ladder_is_drawn_as_a_fresh_one(tmp_path):
     file = tmp_path / "frontier.nc"
     RUN.file.write(LADDER, file)
     fresh = page_json(PAGE.page(LADDER))
@@ -178,7 +167,7 @@ def test_a_stored_ladder_is_drawn_as_a_fresh_one(tmp_path: Path) -> None:
     assert RUN.figures(RUN.file.read(file)) == RUN.figures(LADDER)
 
 
-def test_a_ladder_on_which_nothing_is_off_has_no_points() -> None:
+def test_a_ladder_on_which_nothing_is_off_has_no_points():
     alone = replace(LADDER, results=(rung("3d_fine", float("nan"), 60.0),), knee=None, chosen="3d_fine")
     for panel in PAGE.figure(alone).content:
         assert isinstance(panel, Panel) and panel.lines == () and panel.y.scale == "log"
@@ -191,14 +180,14 @@ SPEED = 3843.5 / 60.0  # turns per second
 
 
 @pytest.fixture(scope="module")
-def rotor_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def rotor_run(tmp_path_factory):
     file = tmp_path_factory.mktemp("rotor") / "run.nc"
     told = loa("simulate", ROTOR, "-o", file)
     assert told.exit_code == 0, told.output
     return file
 
 
-def test_the_spectrum_of_a_run_has_order_1(rotor_run: Path, tmp_path: Path) -> None:
+def test_the_spectrum_of_a_run_has_order_1(rotor_run, tmp_path):
     result = RunResult.from_netcdf(rotor_run)
     assert order_frequency(result) == pytest.approx(np.full(result.time.size, SPEED))
     assert highest_valid_order(result) == math.floor(1000.0 / 2.56 / SPEED)
@@ -219,7 +208,7 @@ def test_the_spectrum_of_a_run_has_order_1(rotor_run: Path, tmp_path: Path) -> N
     ("verb", "says"),
     [("modes", "71.18 Hz"), ("response", "force on bearing left"), ("steady", "rms bearing force of left")],
 )
-def test_studies_print_and_draw_bearings(verb: str, says: str, tmp_path: Path) -> None:
+def test_studies_print_and_draw_bearings(verb, says, tmp_path):
     file = tmp_path / f"{verb}.nc"
     told = loa(verb, ROTOR, "--speed-rpm", "3800,4000", "-o", file)
     assert told.exit_code == 0, told.output

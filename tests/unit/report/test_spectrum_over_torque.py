@@ -1,7 +1,5 @@
 """Laws of the spectrum over torque: its rows hold the energy of the curves, and nothing below its error."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -42,8 +40,8 @@ def with_orders(database: SteDatabase, amplitudes: dict[float, float], relative_
     [(1, {1.0: 2e-6, 2.0: 5e-7, 5.0: 2e-7}), (3, {1.0 / 3.0: 1e-6, 1.0: 2e-6, 4.0 / 3.0: 3e-7, 2.0: 5e-7})],
 )
 def test_the_orders_of_a_row_hold_the_mean_square_of_the_curve(
-    database: SteDatabase, with_pitch_errors: Tables, period: int, amplitudes: dict[float, float]
-) -> None:
+    database, with_pitch_errors, period, amplitudes
+):
     """Parseval: half the sum of the squared amplitudes."""
     table = with_orders(database if period == 1 else with_pitch_errors(period), amplitudes, 0.0)
     shade = shade_of(table)
@@ -58,7 +56,7 @@ def test_the_orders_of_a_row_hold_the_mean_square_of_the_curve(
             assert level[column] == pytest.approx(20.0 * np.log10(known), abs=0.1)
 
 
-def test_what_is_below_its_error_is_blank_and_all_else_is_drawn(database: SteDatabase) -> None:
+def test_what_is_below_its_error_is_blank_and_all_else_is_drawn(database):
     table = with_orders(database, {1.0: 2e-6, 3.0: 1e-7}, 0.01)
     shade = shade_of(table)
     for load, level in zip(drawn_loads(table), shade.z, strict=True):
@@ -70,14 +68,14 @@ def test_what_is_below_its_error_is_blank_and_all_else_is_drawn(database: SteDat
     assert nothing.alternative == "No order exceeds its error at any load."
 
 
-def test_errors_that_were_not_estimated_are_said_and_hide_nothing(database: SteDatabase) -> None:
+def test_errors_that_were_not_estimated_are_said_and_hide_nothing(database):
     table = with_orders(database, {1.0: 2e-6}, 0.01)
     unknown = replace(table, error_estimate=np.full_like(table.error_estimate, np.nan))
     assert "errors were not estimated" in ste_waterfall(unknown).caption
     assert np.isfinite(shade_of(unknown).z[:, 0]).all()
 
 
-def test_a_long_period_has_few_cells_of_which_each_shows_its_largest_order(with_pitch_errors: Tables) -> None:
+def test_a_long_period_has_few_cells_of_which_each_shows_its_largest_order(with_pitch_errors):
     table = with_pitch_errors(150)
     figure, shade = ste_waterfall(table), shade_of(table)
     assert shade.x.size == 300
@@ -93,17 +91,16 @@ def _level(amplitude: FloatArray) -> FloatArray:
     return np.asarray(20.0 * np.log10(1e6 * amplitude))
 
 
-def test_the_finding_names_order_load_and_level(database: SteDatabase) -> None:
+def test_the_finding_names_order_load_and_level(database):
     table = with_orders(database, {1.0: 2e-6, 2.0: 3e-6}, 1e-4)
     figure = ste_waterfall(table)
     assert figure.alternative == "Order 2 at 400 N m is the largest: 9.5 dB re 1 µm."
-    assert figure.table is not None
     assert [row[0] for row in figure.table.rows] == [load_labels(table)[k] for k in drawn_loads(table)]
     assert figure.table.head == ("torque", "order 1", "order 2")
 
 
-def test_one_load_has_no_spectrum_over_torque(database: SteDatabase) -> None:
-    def keys(table: SteDatabase) -> set[str]:
+def test_one_load_has_no_spectrum_over_torque(database):
+    def keys(table):
         return {figure.key for section in static_results(table) for figure in section.figures}
 
     along = {name: axes.index("force") for name, axes in database.stored.items() if "force" in axes}

@@ -1,10 +1,7 @@
 """Studies kept as netCDF files: the same figures and the same page as fresh ones."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import field, fields, make_dataclass, replace
-from pathlib import Path
 from typing import Any, get_type_hints
 
 import h5netcdf
@@ -27,12 +24,10 @@ from fe_contact.microgeometry.tolerance_study import Sampling, scatter
 from fe_contact.microgeometry.tolerances import iso1328_tolerances
 from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.options import AnalysisOptions, Run
-from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas.plan import InputWarning
-from lineofaction.gearbox.study import Study
 from lineofaction.report.design.optimize import _ripple_table
 from lineofaction.report.document import page_json, page_of, read_inputs, stored_figures
 from lineofaction.report.effects.ablate import PAGE
@@ -47,12 +42,12 @@ QUICK: dict[str, Any] = {"level": "draft", "model": "plane_strain"}
 
 
 @pytest.fixture(scope="module")
-def compliance(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def compliance(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 
 @pytest.fixture(scope="module")
-def studies(compliance: Path) -> dict[str, tuple[Study, Any]]:
+def studies(compliance):
     only = ["tooth_coupling", "profile_modification", "misalignment"]
     of_case = ablate(
         PAIR,
@@ -111,9 +106,7 @@ ALL = (
 )
 
 
-def test_an_optimization_of_one_misalignment_for_all_torques_still_opens(
-    studies: dict[str, tuple[Study, Any]], tmp_path: Path
-) -> None:
+def test_an_optimization_of_one_misalignment_for_all_torques_still_opens(studies, tmp_path):
     """As version 0.2 wrote it."""
     study, result = studies["optimization"]
     hints = get_type_hints(Optimization) | {"misalignment": float}
@@ -132,9 +125,7 @@ def test_an_optimization_of_one_misalignment_for_all_torques_still_opens(
 
 
 @pytest.mark.parametrize("name", ALL)
-def test_its_file_says_and_draws_what_the_fresh_one_does(
-    studies: dict[str, tuple[Study, Any]], name: str, tmp_path: Path
-) -> None:
+def test_its_file_says_and_draws_what_the_fresh_one_does(studies, name, tmp_path):
     study, result = studies[name]
     file = tmp_path / "study.nc"
     study.run.file.write(result, file)
@@ -146,16 +137,14 @@ def test_its_file_says_and_draws_what_the_fresh_one_does(
     assert page_json(page_of(read_inputs([file]))) == told, "a report and the service show the same"
 
 
-def test_both_harris_maps_are_drawn_to_one_scale(
-    studies: dict[str, tuple[Study, Any]],
-) -> None:
+def test_both_harris_maps_are_drawn_to_one_scale(studies):
     """A curve's height is its ripple, and the torques stand apart by the same on both."""
     study, result = studies["optimization"]
     content = study.run.figures(result)
     (figure,) = (
         f for s in presentation_of(study).page(result).sections for f in s.figures if f.key == "harris_map"
     )
-    before, after, _ = figure.content  # type: ignore[misc]
+    before, after, _ = figure.content
     assert before.y.limits == after.y.limits
     for panel, name in ((before, "start"), (after, "optimum")):
         told = content[name]["harris_map"]
@@ -168,9 +157,7 @@ def test_both_harris_maps_are_drawn_to_one_scale(
         assert np.ptp(np.diff(levels)) < 1e-9 * levels[-1]
 
 
-def test_torques_that_count_and_those_that_get_worse_are_drawn(
-    studies: dict[str, tuple[Study, Any]],
-) -> None:
+def test_torques_that_count_and_those_that_get_worse_are_drawn(studies):
     study, result = studies["optimization"]
     torque = np.sort([*np.arange(31.0, 132.0, 2.0), *result.torque])
     start, optimum = (at_torques(design.harris_map, torque) for design in [result.start] * 2)
@@ -184,7 +171,7 @@ def test_torques_that_count_and_those_that_get_worse_are_drawn(
         f for s in presentation_of(study).page(wide).sections for f in s.figures if f.key == "harris_map"
     )
     expected = {37.0, *result.torque.tolist()}
-    for panel in figure.content[:2]:  # type: ignore[index]
+    for panel in figure.content[:2]:
         drawn = {float(line.name.removesuffix(" N m")) for line in panel.lines}
         assert expected <= drawn and len(panel.lines) <= MAX_CURVES
     (warning,) = study.run.warnings(wide) or ()
@@ -202,9 +189,7 @@ def at_torques(harris: HarrisMap, torque: FloatArray) -> HarrisMap:
     )  # fmt: skip
 
 
-def test_a_report_takes_a_study_beside_a_table(
-    studies: dict[str, tuple[Study, Any]], database: SteDatabase, tmp_path: Path
-) -> None:
+def test_a_report_takes_a_study_beside_a_table(studies, database, tmp_path):
     table, file = tmp_path / "ste.nc", tmp_path / "optimum.nc"
     database.to_netcdf(table)
     study, result = studies["optimization"]
@@ -215,9 +200,7 @@ def test_a_report_takes_a_study_beside_a_table(
         read_inputs([file, file])
 
 
-def test_json_and_a_damaged_file_are_refused_with_a_reason(
-    studies: dict[str, tuple[Study, Any]], tmp_path: Path
-) -> None:
+def test_json_and_a_damaged_file_are_refused_with_a_reason(studies, tmp_path):
     study, result = studies["tolerances"]
     old, file = tmp_path / "scatter.json", tmp_path / "scatter.nc"
     study.run.save_figures(result, old)
@@ -230,7 +213,7 @@ def test_json_and_a_damaged_file_are_refused_with_a_reason(
         read_inputs([file])
 
 
-def test_an_ablation_of_nothing_has_its_reasons_and_no_plot(compliance: Path) -> None:
+def test_an_ablation_of_nothing_has_its_reasons_and_no_plot(compliance):
     none = ablate(
         PAIR,
         *table_request(torques=[20.0], positions=16, **QUICK),

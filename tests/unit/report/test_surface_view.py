@@ -1,7 +1,5 @@
 """Pictures of surfaces: what is in front, edges in sight."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hulls import sphere
@@ -21,7 +19,7 @@ def block() -> tuple[np.ndarray, np.ndarray]:
     return mesh.points[nodes], triangles.reshape(-1, 3)
 
 
-def test_a_block_shows_the_three_sides_that_face_the_eye_in_their_projected_areas() -> None:
+def test_a_block_shows_the_three_sides_that_face_the_eye_in_their_projected_areas():
     points, triangles = block()
     corner = points[triangles]
     normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
@@ -39,7 +37,7 @@ def test_a_block_shows_the_three_sides_that_face_the_eye_in_their_projected_area
     assert np.array_equal(np.isnan(image), np.isinf(depth))
 
 
-def test_all_six_sides_of_a_block_are_seen_in_two_pictures() -> None:
+def test_all_six_sides_of_a_block_are_seen_in_two_pictures():
     points, triangles = block()
     corner = points[triangles]
     normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
@@ -49,13 +47,13 @@ def test_all_six_sides_of_a_block_are_seen_in_two_pictures() -> None:
     assert set(seen[np.isfinite(seen)]) == set(range(6))
 
 
-def test_folds_are_the_edges_of_the_block() -> None:
+def test_folds_are_the_edges_of_the_block():
     points, triangles = block()
     ends = points[_folds(points, triangles)]
     assert np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).sum() == pytest.approx(4.0 * sum(SIDES))
 
 
-def test_values_of_either_sign_have_colors_even_about_zero() -> None:
+def test_values_of_either_sign_have_colors_even_about_zero():
     points, triangles = block()
     size = np.linspace(-0.5, 2.0, len(triangles))
     front, behind = surface_panels(points, triangles, np.zeros_like(points), size, "I, W/m²", "at rest")
@@ -71,7 +69,7 @@ def test_values_of_either_sign_have_colors_even_about_zero() -> None:
     assert [color for _, color in heat["colorscale"]] == list(palette.SIGNED)
 
 
-def test_a_panel_shows_the_moved_surface_and_the_nine_edges_in_sight_at_rest() -> None:
+def test_a_panel_shows_the_moved_surface_and_the_nine_edges_in_sight_at_rest():
     points, triangles = block()
     size = np.linspace(0.0, 2.0, len(triangles))
     still = surface_panels(points, triangles, np.zeros_like(points), size, "v, mm/s", "at rest")[0]
@@ -89,7 +87,7 @@ def test_a_panel_shows_the_moved_surface_and_the_nine_edges_in_sight_at_rest() -
     assert away.shade.z.shape[0] * (away.shade.y[1] - away.shade.y[0]) > still.shade.y[-1]
 
 
-def test_a_wall_that_has_one_of_its_two_sides_is_seen_from_both() -> None:
+def test_a_wall_that_has_one_of_its_two_sides_is_seen_from_both():
     points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
     covered = []
     for corners in (points, points[::-1]):
@@ -100,7 +98,7 @@ def test_a_wall_that_has_one_of_its_two_sides_is_seen_from_both() -> None:
 
 
 @pytest.mark.law
-def test_blocks_of_rough_triangles_have_the_edges_of_the_block_and_no_fold_within_a_side() -> None:
+def test_blocks_of_rough_triangles_have_the_edges_of_the_block_and_no_fold_within_a_side():
     mesh = box(SIDES, (6, 4, 2))
     nodes, triangles = np.unique(mesh.surface[:, :3], return_inverse=True)
     points, triangles = mesh.points[nodes], triangles.reshape(-1, 3)
@@ -115,7 +113,7 @@ def test_blocks_of_rough_triangles_have_the_edges_of_the_block_and_no_fold_withi
 
 
 @pytest.mark.law
-def test_a_sphere_has_its_outline_and_no_edge() -> None:
+def test_a_sphere_has_its_outline_and_no_edge():
     hull, radius = sphere(12, 0.3), 0.3
     points, triangles = hull.nodes, hull.triangles
     assert len(_folds(points, triangles)) == 0

@@ -1,7 +1,5 @@
 """Maps of teeth as made: what stands out stands out by its amount, at its tooth and its place."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The transverse section of a pair as it is drawn: every tooth in it has its form."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -64,7 +62,7 @@ def off_the_line(points: FloatArray, line: FloatArray) -> float:
 
 @pytest.mark.law
 @pytest.mark.parametrize("pair", [helical(), internal()], ids=["helical", "internal"])
-def test_every_tooth_in_the_picture_has_its_form_within_half_a_line(pair: ParallelAxes) -> None:
+def test_every_tooth_in_the_picture_has_its_form_within_half_a_line(pair):
     sheet, outline = panel_sheet(pair_drawing(pair).content[:1]), pair_outline(pair)
     sheet.draw_without_rendering()
     ax = sheet.axes[0]
@@ -76,7 +74,7 @@ def test_every_tooth_in_the_picture_has_its_form_within_half_a_line(pair: Parall
         assert max(off_the_line(tooth, drawn) for tooth in teeth) < half_a_line
 
 
-def test_gears_are_tinted_within_their_outline_and_a_ring_gear_is_not() -> None:
+def test_gears_are_tinted_within_their_outline_and_a_ring_gear_is_not():
     filled = [
         [line.filled for line in pair_drawing(pair).content[0].lines] for pair in (helical(), internal())
     ]

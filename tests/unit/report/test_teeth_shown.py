@@ -1,11 +1,8 @@
 """Report, answers and `loa ste` name the most loaded tooth of each gear, where teeth differ."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -24,13 +21,13 @@ FORCE = 100.0 / 0.0375877
 
 
 @pytest.fixture
-def alike(with_pitch_errors: Tables) -> SteDatabase:
+def alike(with_pitch_errors):
     """20 pitches of 20/20 teeth, all of which carry as much."""
     return with_pitch_errors(20)
 
 
 @pytest.fixture
-def table(alike: SteDatabase) -> SteDatabase:
+def table(alike):
     """Three of four parts of the load on all teeth, at most, and nine of ten on one of either gear."""
     share = np.where(alike.load_share == 1.0, 0.75, np.where(alike.load_share == 0.0, 0.25, 0.5))
     share[alike.pairs_in_contact == 1, 2] = 0.0
@@ -44,7 +41,7 @@ def drawn(table: SteDatabase) -> dict[str, Figure]:
     return {figure.key: figure for section in static_results(table) for figure in section.figures}
 
 
-def test_the_report_names_the_worst_tooth_of_either_gear(table: SteDatabase) -> None:
+def test_the_report_names_the_worst_tooth_of_either_gear(table):
     figure = drawn(table)["tooth_loads"]
     force = number(0.9 * FORCE, 4)
     times = f"{0.9 / (0.75 * 19 + 0.9) * 20:.3f}"
@@ -62,7 +59,7 @@ def test_the_report_names_the_worst_tooth_of_either_gear(table: SteDatabase) -> 
     assert figure.table is not None and figure.table.rows[0][:3] == ("pinion", "5", force)
 
 
-def test_nothing_is_shown_where_teeth_are_alike(alike: SteDatabase, database: SteDatabase) -> None:
+def test_nothing_is_shown_where_teeth_are_alike(alike, database):
     for plain in (alike, database):
         assert "tooth_loads" not in drawn(plain)
         assert not any("most loaded" in line.name for line in static_headlines(plain))
@@ -77,7 +74,7 @@ def pressed(table: SteDatabase) -> SteDatabase:
     return replace(table, pair_pressure=pressure)
 
 
-def test_the_report_maps_the_pressure_of_all_teeth_and_names_the_largest(table: SteDatabase) -> None:
+def test_the_report_maps_the_pressure_of_all_teeth_and_names_the_largest(table):
     for gear in ("pinion", "wheel"):
         figure = drawn(pressed(table))[f"tooth_pressures_{gear}"]
         map_of, way = figure.content
@@ -100,7 +97,7 @@ def test_the_report_maps_the_pressure_of_all_teeth_and_names_the_largest(table: 
     check_declared("database", json.loads(json.dumps(metadata_json(pressed(table)))))
 
 
-def test_teeth_that_are_equally_worst_are_all_named(table: SteDatabase) -> None:
+def test_teeth_that_are_equally_worst_are_all_named(table):
     share = table.load_share.copy()
     share[(table.position >= 11.0) & (table.position < 11.1)] = (0.1, 0.9, 0.0)
     figure = drawn(replace(table, load_share=share))["tooth_loads"]
@@ -108,7 +105,7 @@ def test_teeth_that_are_equally_worst_are_all_named(table: SteDatabase) -> None:
     assert [note.text for note in figure.content[0].notes] == ["5", "12"]
 
 
-def test_what_derivatives_may_change_is_said(table: SteDatabase) -> None:
+def test_what_derivatives_may_change_is_said(table):
     receipt = table.metadata.receipt | {"cycle": {"share_error": 0.01, "pressure_error_relative": 0.02}}
     derived = replace(pressed(table), metadata=replace(table.metadata, receipt=receipt))
     assert "within 18.00 MPa at 99 % of the drawn points" in drawn(derived)["tooth_pressures_wheel"].caption
@@ -116,7 +113,7 @@ def test_what_derivatives_may_change_is_said(table: SteDatabase) -> None:
     assert "derivatives" not in drawn(table)["tooth_loads"].caption
 
 
-def test_answers_hold_the_loads_of_all_teeth(table: SteDatabase) -> None:
+def test_answers_hold_the_loads_of_all_teeth(table):
     answer = curve_json(table, torque_n_m=100.0)["tooth_loads"]
     assert list(answer) == ["pinion", "wheel"]
     assert answer["pinion"]["most_loaded"] == [WORST]
@@ -127,7 +124,7 @@ def test_answers_hold_the_loads_of_all_teeth(table: SteDatabase) -> None:
     check_declared("database", json.loads(json.dumps(metadata_json(table))))
 
 
-def test_loa_ste_names_them(table: SteDatabase, alike: SteDatabase, tmp_path: Path) -> None:
+def test_loa_ste_names_them(table, alike, tmp_path):
     for name, each in (("worst", table), ("alike", alike)):
         each.to_netcdf(tmp_path / f"{name}.nc")
     lines = loa("ste", tmp_path / "worst.nc", "--torque", 100).stdout.splitlines()

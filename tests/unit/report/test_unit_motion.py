@@ -1,7 +1,5 @@
 """The surface of a housing as the page gets it: nodes, normals, motion, levels."""
 
-from __future__ import annotations
-
 import base64
 
 import numpy as np
@@ -17,7 +15,7 @@ from lineofaction.report.unit_motion import motion_json
 
 
 @pytest.fixture(scope="module")
-def pulsating() -> SurfaceShape:
+def pulsating():
     """A sphere whose nodes move outward by 1 mm/s."""
     hull = sphere(6, 0.1)
     outward = hull.nodes / np.linalg.norm(hull.nodes, axis=1)[:, None]
@@ -34,7 +32,7 @@ def sent(shape: SurfaceShape, *, is_velocity: bool = True) -> dict[str, np.ndarr
 
 
 @pytest.mark.law
-def test_a_sphere_that_pulsates_has_one_level_everywhere(pulsating: SurfaceShape) -> None:
+def test_a_sphere_that_pulsates_has_one_level_everywhere(pulsating):
     surface = sent(pulsating)
     level = 20.0 * np.log10(1e-3 / np.sqrt(2.0) / 5e-8)
     np.testing.assert_allclose(surface["level_db"], level, atol=0.15)  # of chords of the sphere
@@ -47,9 +45,7 @@ def test_a_sphere_that_pulsates_has_one_level_everywhere(pulsating: SurfaceShape
     np.testing.assert_allclose(of_shape, 0.0, atol=0.15)
 
 
-def test_a_large_surface_is_drawn_by_its_corners(
-    pulsating: SurfaceShape, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_large_surface_is_drawn_by_its_corners(pulsating, monkeypatch):
     whole = sent(pulsating)
     monkeypatch.setattr(unit_motion, "MAX_FACETS", 10)
     corners = sent(pulsating)
@@ -59,7 +55,7 @@ def test_a_large_surface_is_drawn_by_its_corners(
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf])
-def test_what_is_not_finite_is_refused(pulsating: SurfaceShape, value: float) -> None:
+def test_what_is_not_finite_is_refused(pulsating, value):
     motion = pulsating.motion.copy()
     motion[3, 1] = value
     with pytest.raises(DamagedFile, match="not finite"):

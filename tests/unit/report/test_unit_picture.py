@@ -1,7 +1,5 @@
 """The picture of a gear unit: sizes and what hides what, and where it stands in reports."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 
@@ -9,6 +7,7 @@ import numpy as np
 import pytest
 from command_line import loa
 from hulls import sphere
+from repository import EXAMPLES
 from sounding_housings import rigid_housing
 
 from bounds.types import Json
@@ -23,7 +22,6 @@ from lineofaction.report.drawing.image import still
 from lineofaction.report.drawing.page import Page
 from lineofaction.report.unit_picture import COLORS, HOUSED, UNHOUSED, is_picture, unit_png, with_picture
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 ROTOR, PLANETARY = EXAMPLES / "jeffcott_scene.toml", EXAMPLES / "lin_parker_planetary_scene.toml"
 SIZE = (240, 180)
 
@@ -46,13 +44,13 @@ def along_z(distance: float) -> Camera:
     return Camera(np.array([0.0, 0.0, distance]), np.eye(3), 100e3 * distance, 0.5 * np.array(SIZE), SIZE)
 
 
-def test_a_disc_covers_the_area_of_its_circle_in_perspective() -> None:
+def test_a_disc_covers_the_area_of_its_circle_in_perspective():
     camera, radius = along_z(1.0), 0.7e-3
     seen = rendered([body(SHAFT, -0.05, 0.0, radius)], camera, COLORS)
     assert np.count_nonzero(seen.body == 0) == pytest.approx(np.pi * 70.0**2, rel=2e-3)
 
 
-def test_a_cylinder_from_the_side_is_as_wide_as_its_tangent_cone() -> None:
+def test_a_cylinder_from_the_side_is_as_wide_as_its_tangent_cone():
     """An eye at distance d sees a radius r by half-width r / sqrt(d^2 - r^2) over its distance."""
     distance, radius = 0.01, 3e-3
     axes = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
@@ -62,7 +60,7 @@ def test_a_cylinder_from_the_side_is_as_wide_as_its_tangent_cone() -> None:
     assert rows == pytest.approx(2.0 * 200.0 * radius / np.sqrt(distance**2 - radius**2), abs=1.0)
 
 
-def test_a_cone_is_as_wide_as_its_radius_where_it_is_cut() -> None:
+def test_a_cone_is_as_wide_as_its_radius_where_it_is_cut():
     distance = 100.0
     axes = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
     camera = Camera(np.array([distance, 0.0, 0.0]), axes, 60.0 * distance, 0.5 * np.array(SIZE), SIZE)
@@ -76,7 +74,7 @@ def test_a_cone_is_as_wide_as_its_radius_where_it_is_cut() -> None:
 
 
 @pytest.mark.parametrize("nearest_first", [False, True])
-def test_what_is_behind_is_hidden(nearest_first: bool) -> None:
+def test_what_is_behind_is_hidden(nearest_first):
     parts = [body(PINION, -0.03, -0.02, 0.4e-3), body(WHEEL, -0.01, 0.0, 0.5e-3)]
     hidden = 0
     if nearest_first:
@@ -87,7 +85,7 @@ def test_what_is_behind_is_hidden(nearest_first: bool) -> None:
     assert np.any(seen == 1 - hidden)
 
 
-def test_through_a_bore_one_sees_what_is_behind() -> None:
+def test_through_a_bore_one_sees_what_is_behind():
     parts = [body(PINION, -0.03, -0.02, 0.3e-3), body(WHEEL, -0.01, 0.0, 0.8e-3, inner=0.5e-3)]
     seen = rendered(parts, along_z(1.0), COLORS).body
     assert seen[SIZE[1] // 2, SIZE[0] // 2] == 0
@@ -102,7 +100,7 @@ def plate(z: float, *, away: bool = False) -> Hull:
 
 
 @pytest.mark.law
-def test_the_rest_is_seen_through_a_surface_that_is_before_it() -> None:
+def test_the_rest_is_seen_through_a_surface_that_is_before_it():
     disc, camera = [body(SHAFT, -0.02, 0.0, 0.7e-3)], along_z(1.0)
     bare = rendered(disc, camera, COLORS).color
     through = rendered(disc, camera, COLORS, [plate(0.01)]).color
@@ -117,12 +115,12 @@ def test_the_rest_is_seen_through_a_surface_that_is_before_it() -> None:
 
 
 @pytest.mark.parametrize("hull", [plate(-0.01), plate(0.01, away=True)], ids=["behind", "turned away"])
-def test_a_surface_that_is_hidden_or_turned_away_is_not_seen(hull: Hull) -> None:
+def test_a_surface_that_is_hidden_or_turned_away_is_not_seen(hull):
     disc, camera = [body(SHAFT, -0.005, 0.0, 0.7e-3)], along_z(1.0)
     assert np.array_equal(rendered(disc, camera, COLORS).color, rendered(disc, camera, COLORS, [hull]).color)
 
 
-def test_the_housing_of_a_scene_is_in_its_picture_and_stays_small() -> None:
+def test_the_housing_of_a_scene_is_in_its_picture_and_stays_small():
     scene, radius = read_model(SceneInput, ROTOR), 0.3
     hull = sphere(24, radius)
     housing = rigid_housing(10.0, 1e8, 0.01, hull)
@@ -147,7 +145,7 @@ def test_the_housing_of_a_scene_is_in_its_picture_and_stays_small() -> None:
     assert first != second and len(still(first)) < 60_000
 
 
-def test_its_camera_shows_all_of_a_unit_and_fills_the_picture() -> None:
+def test_its_camera_shows_all_of_a_unit_and_fills_the_picture():
     parts = unit(PLANETARY)
     seen = rendered(parts, Camera.on(parts, SIZE, (20.0, 10.0)), COLORS).body >= 0
     rows, columns = (np.flatnonzero(np.any(seen, axis=axis)) for axis in (1, 0))
@@ -157,7 +155,7 @@ def test_its_camera_shows_all_of_a_unit_and_fills_the_picture() -> None:
     assert columns[-1] <= 220
 
 
-def test_the_bodies_of_a_scene_have_its_sizes() -> None:
+def test_the_bodies_of_a_scene_have_its_sizes():
     by_name = {part.name: part for part in unit(PLANETARY)}
     gears = {name: part for name, part in by_name.items() if part.kind in (PINION, WHEEL)}
     (ring,) = gears["ring gear"].rings
@@ -174,7 +172,7 @@ def test_the_bodies_of_a_scene_have_its_sizes() -> None:
         assert sun.outer + reach > np.hypot(*planet.axis)
 
 
-def test_a_picture_is_small_and_the_same_for_the_same_unit() -> None:
+def test_a_picture_is_small_and_the_same_for_the_same_unit():
     first, again = (unit_png(tuple(unit(PLANETARY))) for _ in range(2))
     assert first == again
     assert len(first) < 150_000
@@ -186,7 +184,7 @@ def pictures(text: str) -> list[str]:
 
 
 @pytest.mark.parametrize("verb", ["modes", "response", "steady", "deflect"])
-def test_the_report_of_a_study_of_a_scene_has_one_picture_of_its_unit(verb: str, tmp_path: Path) -> None:
+def test_the_report_of_a_study_of_a_scene_has_one_picture_of_its_unit(verb, tmp_path):
     page, file = tmp_path / "page.html", tmp_path / "result.nc"
     done = loa(verb, ROTOR, "-o", file)
     assert done.exit_code == 0, done.output
@@ -199,7 +197,7 @@ def test_the_report_of_a_study_of_a_scene_has_one_picture_of_its_unit(verb: str,
     assert all(figure["plot"]["data"] for one in page_json(read)["sections"] for figure in one["figures"])
 
 
-def test_results_of_one_scene_bound_together_share_its_picture(tmp_path: Path) -> None:
+def test_results_of_one_scene_bound_together_share_its_picture(tmp_path):
     for verb in ("modes", "deflect"):
         assert loa(verb, ROTOR, "-o", tmp_path / f"{verb}.nc").exit_code == 0
     assert loa("simulate", ROTOR, "-o", tmp_path / "run.nc").exit_code == 0
@@ -210,7 +208,7 @@ def test_results_of_one_scene_bound_together_share_its_picture(tmp_path: Path) -
         assert (tmp_path / page).stat().st_size < 600_000
 
 
-def test_a_page_with_plots_has_a_picture_that_is_none(tmp_path: Path) -> None:
+def test_a_page_with_plots_has_a_picture_that_is_none(tmp_path):
     page = with_picture(Page("Title", "", (), ()), bodies(ROTOR))
     write_page(page, tmp_path / "page.html")
     text = (tmp_path / "page.html").read_text("utf-8")
@@ -218,19 +216,19 @@ def test_a_page_with_plots_has_a_picture_that_is_none(tmp_path: Path) -> None:
     assert 'class="plot"' not in text
 
 
-def test_a_result_without_bodies_has_no_picture() -> None:
+def test_a_result_without_bodies_has_no_picture():
     page = Page("Title", "", (), ())
     assert with_picture(page, None) == with_picture(page, []) == page
 
 
-def test_bearings_are_rings_about_their_shafts() -> None:
+def test_bearings_are_rings_about_their_shafts():
     shaft = next(part for part in unit(ROTOR) if part.kind == SHAFT).rings[0]
     for bearing in (part.rings[0] for part in unit(ROTOR) if part.kind == BEARING):
         assert bearing.inner == pytest.approx(shaft.outer)
         assert bearing.outer == pytest.approx(1.7 * shaft.outer)
 
 
-def test_the_outside_of_a_bearing_is_that_of_its_catalog_line(tmp_path: Path) -> None:
+def test_the_outside_of_a_bearing_is_that_of_its_catalog_line(tmp_path):
     text = ROTOR.read_text("utf-8")
     line = "{ bore_mm = 25.0, outside_diameter_mm = 62.0, static_rating_n = 11600.0 }"
     bearing = f'name = "ball"\nshaft = "rotor"\nposition_mm = 100.0\ncatalog = {line}\n'

@@ -1,7 +1,5 @@
 """The client as a distribution of its own: it needs three packages, and runs from its own files alone."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 import tomllib
@@ -11,8 +9,8 @@ from pathlib import Path
 import client_wheel
 import httpx2
 import pytest
+from repository import ROOT
 
-ROOT = Path(__file__).parents[3]
 WITHOUT = ("gmsh", "skfem", "numba", "scipy", "xarray", "h5py", "fastapi", "tenacity", "rich", "typer")
 USE = """
 import sys
@@ -41,14 +39,14 @@ except ModuleNotFoundError as error:
 
 
 @pytest.fixture(scope="module")
-def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def tree(tmp_path_factory):
     """The sources of the distribution."""
     folder = tmp_path_factory.mktemp("client")
     client_wheel.collect(folder)
     return folder
 
 
-def test_it_runs_from_its_own_files(tree: Path) -> None:
+def test_it_runs_from_its_own_files(tree):
     packages = str(Path(httpx2.__file__).parents[1])
     code = USE.format(without=WITHOUT, tree=str(tree), packages=packages, examples=str(ROOT / "examples"))
     command = [sys.executable, "-I", "-S", "-c", code]  # no editable install of the project in sight
@@ -59,7 +57,7 @@ def test_it_runs_from_its_own_files(tree: Path) -> None:
     assert "pip install lineofaction" in remedy and "job.figures()" in remedy
 
 
-def test_it_is_small_and_is_of_this_version(tree: Path) -> None:
+def test_it_is_small_and_is_of_this_version(tree):
     project = tomllib.loads((tree / "pyproject.toml").read_text("utf-8"))["project"]
     whole = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     assert project["version"] == whole["version"]

@@ -1,7 +1,5 @@
 """Dockerfile, compose.yaml and the manifests for Kubernetes agree with the program and with each other."""
 
-from __future__ import annotations
-
 import importlib
 import os
 import re
@@ -12,12 +10,12 @@ import tomllib
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import pytest
 import yaml
-from postgres_server import PostgresServer, migrated, postgres
+from postgres_server import migrated, postgres
+from repository import ROOT
 from typer.main import get_command
 
 from lineofaction.cli.commands import app
@@ -25,7 +23,6 @@ from service.secret_files import is_secret
 from service.settings import Settings
 
 __all__ = ["postgres"]
-ROOT = Path(__file__).resolve().parents[3]
 MANIFESTS = ROOT / "deploy" / "kubernetes"
 FIELDS = {name.upper(): field for name, field in Settings.model_fields.items()}
 VARIABLES = {f"LOA_{name}" for name in FIELDS} | {
@@ -47,7 +44,6 @@ def documents(part: str) -> tuple[dict[str, Any], ...]:
 
 
 def of_kind(part: str, kind: str) -> Iterator[dict[str, Any]]:
-    """Yield the documents of a kind."""
     yield from (one for one in documents(part) if one["kind"] == kind)
 
 
@@ -74,18 +70,15 @@ def _pod(maker: dict[str, Any]) -> dict[str, Any]:
 
 
 def container(part: str) -> dict[str, Any]:
-    """Return the only container of a part."""
     (only,) = pods()[part]["containers"]
     return only
 
 
 def compose() -> dict[str, Any]:
-    """Return compose.yaml."""
     return yaml.safe_load((ROOT / "compose.yaml").read_text())
 
 
 def dockerfile() -> str:
-    """Return the Dockerfile."""
     return (ROOT / "Dockerfile").read_text()
 
 
@@ -99,19 +92,19 @@ def variables_of(part: str) -> dict[str, str]:
 
 
 @pytest.fixture
-def kubernetes_validate() -> ModuleType:
+def kubernetes_validate():
     """Its import takes three seconds, of every worker if it stood above."""
     return importlib.import_module("kubernetes_validate")
 
 
 @pytest.mark.parametrize("part", ["service", "schema", "whole"])
-def test_manifests_are_valid(part: str, kubernetes_validate: ModuleType) -> None:
+def test_manifests_are_valid(part, kubernetes_validate):
     for document in documents(part):
         if not document["apiVersion"].startswith("monitoring.coreos.com/"):  # see the test of the monitor
             kubernetes_validate.validate(document, "1.34", strict=True)
 
 
-def test_a_manifest_that_is_not_valid_is_found(kubernetes_validate: ModuleType) -> None:
+def test_a_manifest_that_is_not_valid_is_found(kubernetes_validate):
     wrong = {**next(of_kind("service", "Deployment"))}
     wrong["spec"] = {**wrong["spec"], "replica": 2}
     with pytest.raises(kubernetes_validate.ValidationError):
@@ -119,11 +112,11 @@ def test_a_manifest_that_is_not_valid_is_found(kubernetes_validate: ModuleType) 
 
 
 @pytest.mark.parametrize("part", OURS)
-def test_every_variable_of_a_pod_is_a_setting(part: str) -> None:
+def test_every_variable_of_a_pod_is_a_setting(part):
     assert {name for name in variables_of(part) if not name.startswith("DASK_")} <= VARIABLES
 
 
-def test_every_variable_of_compose_and_of_the_image_is_a_setting() -> None:
+def test_every_variable_of_compose_and_of_the_image_is_a_setting():
     named = {
         name for service in compose()["services"].values() for name in service.get("environment", {})
     } | set(re.findall(r"\bLOA_[A-Z_]+(?==)", dockerfile()))
@@ -131,7 +124,7 @@ def test_every_variable_of_compose_and_of_the_image_is_a_setting() -> None:
     assert {"LOA_DATABASE_URL_FILE", "LOA_MANAGEMENT_PORT", "LOA_DATA_DIRECTORY"} <= named
 
 
-def test_pods_hold_no_secret_and_mount_those_they_name() -> None:
+def test_pods_hold_no_secret_and_mount_those_they_name():
     for part, spec in pods().items():
         assert not any(
             is_secret(field) and f"LOA_{name}" in variables_of(part) for name, field in FIELDS.items()
@@ -147,19 +140,19 @@ def test_pods_hold_no_secret_and_mount_those_they_name() -> None:
 
 
 @pytest.mark.parametrize("part", OURS)
-def test_commands_are_verbs_of_the_program(part: str) -> None:
+def test_commands_are_verbs_of_the_program(part):
     for words in (
         container(part)["args"],
         compose()["services"][{"serve": "service"}.get(part, part)]["command"],
     ):
         program, verb, *rest = words
         assert program == "loa"
-        command = get_command(app).commands[verb]  # type: ignore[attr-defined]
+        command = get_command(app).commands[verb]
         options = {option for parameter in command.params for option in parameter.opts}
         assert all(word in options or word in getattr(command, "commands", {}) for word in rest)
 
 
-def test_ports_and_paths_agree() -> None:
+def test_ports_and_paths_agree():
     exposed = set(map(int, re.search(r"^EXPOSE (.*)$", dockerfile(), re.MULTILINE)[1].split()))
     http = int(re.search(r"LOA_PORT=(\d+)", dockerfile())[1])
     management = int(variables_of("serve")["LOA_MANAGEMENT_PORT"])
@@ -184,11 +177,10 @@ def test_ports_and_paths_agree() -> None:
 
 
 @pytest.mark.parametrize("part", PARTS)
-def test_pods_have_the_least_rights(part: str) -> None:
+def test_pods_have_the_least_rights(part):
     spec, only = pods()[part], container(part)
     assert spec["automountServiceAccountToken"] is False
     user = re.search(r"--uid (\d+)", dockerfile())
-    assert user is not None
     assert (spec["securityContext"]["runAsNonRoot"], spec["securityContext"]["runAsUser"]) == (
         True,
         int(user[1]),
@@ -202,12 +194,11 @@ def test_pods_have_the_least_rights(part: str) -> None:
     for bound in ("requests", "limits"):
         assert set(only["resources"][bound]) == {"cpu", "memory"}
     place = re.search(r"LOA_DATA_DIRECTORY=(\S+)", dockerfile())
-    assert place is not None
     writable = [mount["mountPath"] for mount in only["volumeMounts"] if not mount.get("readOnly")]
     assert "/tmp" in writable and any(Path(place[1]).is_relative_to(path) for path in writable)
 
 
-def test_containers_of_compose_are_bounded() -> None:
+def test_containers_of_compose_are_bounded():
     for name, service in compose()["services"].items():
         assert {"mem_limit", "cpus", "pids_limit"} <= set(service), name
         assert service["logging"]["options"] == {"max-size": "10m", "max-file": "5"}, name
@@ -215,14 +206,14 @@ def test_containers_of_compose_are_bounded() -> None:
         assert service.get("read_only", False) or name == "database"
 
 
-def test_there_is_one_server_and_the_former_has_ended_before_the_next_starts() -> None:
+def test_there_is_one_server_and_the_former_has_ended_before_the_next_starts():
     server = next(
         one for one in of_kind("service", "Deployment") if one["metadata"]["name"].endswith("serve")
     )
     assert (server["spec"]["replicas"], server["spec"]["strategy"]) == (1, {"type": "Recreate"})
 
 
-def test_the_server_and_the_workers_find_the_scheduler() -> None:
+def test_the_server_and_the_workers_find_the_scheduler():
     services = {
         one["metadata"]["name"]: one["spec"]["ports"][0]["port"] for one in of_kind("service", "Service")
     }
@@ -234,7 +225,7 @@ def test_the_server_and_the_workers_find_the_scheduler() -> None:
 
 
 @pytest.mark.law
-def test_server_scheduler_and_workers_have_one_certificate_and_let_in_nobody_without() -> None:
+def test_server_scheduler_and_workers_have_one_certificate_and_let_in_nobody_without():
     of_compose = compose()["services"]
     for name, part in {"service": "serve", "scheduler": "scheduler", "work": "work"}.items():
         for own in (of_compose[name]["environment"], variables_of(part)):
@@ -249,7 +240,7 @@ def test_server_scheduler_and_workers_have_one_certificate_and_let_in_nobody_wit
 
 
 @pytest.mark.law
-def test_only_the_server_and_dask_reach_the_ports_of_dask() -> None:
+def test_only_the_server_and_dask_reach_the_ports_of_dask():
     """They run the code that they are sent."""
     policies = {one["metadata"]["name"]: one["spec"] for one in of_kind("service", "NetworkPolicy")}
     (rule,) = policies["dask"]["ingress"]
@@ -273,7 +264,7 @@ def test_only_the_server_and_dask_reach_the_ports_of_dask() -> None:
 
 
 @pytest.mark.law
-def test_only_the_server_and_the_schema_job_reach_database_and_store() -> None:
+def test_only_the_server_and_the_schema_job_reach_database_and_store():
     """A worker of Dask runs code that it is sent: it gets no way out but to names and to Dask."""
     out = {
         one["metadata"]["name"]: {port["port"] for rule in one["spec"]["egress"] for port in rule["ports"]}
@@ -286,13 +277,13 @@ def test_only_the_server_and_the_schema_job_reach_database_and_store() -> None:
     assert (chosen["operator"], set(chosen["values"])) == ("In", {"serve", "schema"})
 
 
-def test_a_worker_fails_by_its_own_limit_before_the_container_does() -> None:
+def test_a_worker_fails_by_its_own_limit_before_the_container_does():
     limit = int(variables_of("serve")["LOA_MEMORY_LIMIT_MB"])
     assert container("work")["resources"]["limits"]["memory"] == "4Gi"
     assert limit + 600 < 4 * 1024  # the Dask worker, and the warm process it forks children from
 
 
-def test_scaling_needs_no_adapter_and_workers_say_what_they_use() -> None:
+def test_scaling_needs_no_adapter_and_workers_say_what_they_use():
     (scaler,) = of_kind("service", "HorizontalPodAutoscaler")
     assert [entry["type"] for entry in scaler["spec"]["metrics"]] == ["Resource"]
     target = scaler["spec"]["scaleTargetRef"]
@@ -304,7 +295,7 @@ def test_scaling_needs_no_adapter_and_workers_say_what_they_use() -> None:
     assert resources["requests"]["cpu"] == resources["limits"]["cpu"] == "1"  # a job uses one core: 100 %
 
 
-def test_a_worker_that_is_to_end_has_the_time_to_finish_its_job() -> None:
+def test_a_worker_that_is_to_end_has_the_time_to_finish_its_job():
     words = {"--no-nanny", "--preload", "service.worker.draining"}
     for command in (container("work")["args"], compose()["services"]["work"]["command"]):
         assert words <= {part for word in command for part in word.split("=")}
@@ -312,7 +303,7 @@ def test_a_worker_that_is_to_end_has_the_time_to_finish_its_job() -> None:
     assert importlib.import_module("service.worker.draining").dask_setup
 
 
-def test_byte_code_is_written_in_the_image_that_runs() -> None:
+def test_byte_code_is_written_in_the_image_that_runs():
     """The base image has none of Python's own modules: 0.3 CPU s of each process that cannot write it."""
     _, run = dockerfile().split(" AS run\n")
     script = re.search(r"RUN .*source=scripts/image_modules.py,target=(\S+) \\\n(?:.*\\\n)*?.*python \1", run)
@@ -321,7 +312,7 @@ def test_byte_code_is_written_in_the_image_that_runs() -> None:
     assert "PYTHONDONTWRITEBYTECODE" not in run.partition("RUN --mount")[0]
 
 
-def test_caches_and_temporary_files_are_on_volumes() -> None:
+def test_caches_and_temporary_files_are_on_volumes():
     """Neither a restart nor an upgrade compiles again, and no temporary file counts as memory."""
     place = Path(re.search(r"NUMBA_CACHE_DIR=(\S+)", dockerfile())[1])
     for part in ("serve", "work"):
@@ -352,7 +343,7 @@ def only(kind: str) -> dict[str, Any]:
     return found
 
 
-def test_the_whole_has_all_components() -> None:
+def test_the_whole_has_all_components():
     makers = {
         file.parent.name: yaml.safe_load(file.read_text()) for file in MANIFESTS.glob("*/kustomization.yaml")
     }
@@ -363,7 +354,7 @@ def test_the_whole_has_all_components() -> None:
     }
 
 
-def test_the_proxy_passes_on_what_the_service_takes_and_sends() -> None:
+def test_the_proxy_passes_on_what_the_service_takes_and_sends():
     ingress = only("Ingress")
     (rule,) = ingress["spec"]["rules"]
     (path,) = rule["http"]["paths"]
@@ -381,7 +372,7 @@ def test_the_proxy_passes_on_what_the_service_takes_and_sends() -> None:
     assert peer["namespaceSelector"]["matchLabels"]["kubernetes.io/metadata.name"] == "ingress-nginx"
 
 
-def test_the_monitor_finds_the_management_port_under_the_name_of_the_alerts() -> None:
+def test_the_monitor_finds_the_management_port_under_the_name_of_the_alerts():
     monitor = only("ServiceMonitor")
     assert monitor["apiVersion"] == "monitoring.coreos.com/v1"
     assert set(monitor["spec"]) == {"jobLabel", "selector", "endpoints"}
@@ -402,14 +393,13 @@ def test_the_monitor_finds_the_management_port_under_the_name_of_the_alerts() ->
 
 
 def pods_labels(part: str) -> dict[str, str]:
-    """Return the labels of the pods of a part."""
     (maker,) = (one for one in servers() if one["metadata"]["name"].endswith(part))
     labels: dict[str, str] = maker["spec"]["template"]["metadata"]["labels"]
     return labels
 
 
 @pytest.mark.law
-def test_the_backup_reads_the_database_and_reaches_nothing_else() -> None:
+def test_the_backup_reads_the_database_and_reaches_nothing_else():
     job = only("CronJob")["spec"]["jobTemplate"]["spec"]["template"]
     spec = job["spec"]
     (dump,) = spec["containers"]
@@ -435,7 +425,7 @@ def _selects(selector: dict[str, Any], labels: dict[str, str]) -> bool:
 
 
 @pytest.mark.skipif(shutil.which("pg_dump") is None, reason="PostgreSQL is not installed")
-def test_the_backup_leaves_whole_dumps_and_removes_old_ones(tmp_path: Path, postgres: PostgresServer) -> None:
+def test_the_backup_leaves_whole_dumps_and_removes_old_ones(tmp_path, postgres):
     """Its script, with other folders; a dump that fails leaves the last ones."""
     (script,) = only("CronJob")["spec"]["jobTemplate"]["spec"]["template"]["spec"]["containers"][0][
         "command"
@@ -457,7 +447,7 @@ def test_the_backup_leaves_whole_dumps_and_removes_old_ones(tmp_path: Path, post
     assert {young, new} <= set(backup.iterdir())
 
 
-def test_selectors_select_pods() -> None:
+def test_selectors_select_pods():
     labels = [one["spec"]["template"]["metadata"]["labels"] for one in servers()]
     chosen = [one["spec"]["selector"] for one in of_kind("service", "Service")]
     chosen += [one["spec"]["selector"]["matchLabels"] for one in of_kind("service", "PodDisruptionBudget")]
@@ -468,7 +458,7 @@ def test_selectors_select_pods() -> None:
         assert any(wanted.items() <= given.items() for given in labels), wanted
 
 
-def test_the_image_has_every_package() -> None:
+def test_the_image_has_every_package():
     """What the Dockerfile copies is let through by .dockerignore; no package of the project is missing."""
     copied = re.findall(r"^COPY (?!--from)(.*) \S+$", dockerfile(), re.MULTILINE)
     sources = {source for line in copied for source in line.split()}
@@ -479,7 +469,7 @@ def test_the_image_has_every_package() -> None:
     assert {name.rstrip("*") for name in packages["include"]} <= sources
 
 
-def test_the_tag_is_the_version() -> None:
+def test_the_tag_is_the_version():
     """An older image may lack what the manifests set: 0.2.0 has no management port."""
     image = yaml.safe_load((MANIFESTS / "image" / "kustomization.yaml").read_text())["images"][0]
     assert image["newTag"] == tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]

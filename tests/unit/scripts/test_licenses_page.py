@@ -1,24 +1,21 @@
 """The page of licenses has every locked package, and only such as let the image be passed on."""
 
-from __future__ import annotations
-
 import re
-from pathlib import Path
 
 import licenses
+from repository import ROOT
 
-ROOT = Path(__file__).parents[3]
 FREE = "MIT|BSD|Apache|PSF|Python Software Foundation|ISC|MPL|Mozilla|LGPL-3.0|GPLv2\\+"
 
 
-def test_every_locked_package_is_listed_at_its_versions() -> None:
+def test_every_locked_package_is_listed_at_its_versions():
     lock = (ROOT / "requirements-dev.lock").read_text("utf-8")
     locked = set(re.findall(r"^([A-Za-z0-9._-]+)==([^ ;\n]+)", lock, flags=re.MULTILINE))
     listed = {(row[0], version) for row in licenses.rows() for version in row[1].split(", ")}
     assert locked == listed
 
 
-def test_every_license_is_stated_and_those_of_the_service_let_it_be_passed_on_under_the_gpl() -> None:
+def test_every_license_is_stated_and_those_of_the_service_let_it_be_passed_on_under_the_gpl():
     assert [row for row in licenses.rows() if row[2] in ("", "not stated")] == []
     in_the_image = ("service", "extra `postgres`", "extra `s3`")
     bound = [row for row in licenses.rows() if row[3] in in_the_image and re.search(FREE, row[2]) is None]

@@ -1,23 +1,19 @@
 """The moving picture of the README moves, is small, and is drawn by its script."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import moving_picture
 import numpy as np
 import pytest
 from PIL import Image
 from PIL.GifImagePlugin import GifImageFile
+from repository import ROOT
 from scipy.io import wavfile
 
 from lineofaction.report.drawing.figure import Axis, Line, Panel
 
-ROOT = Path(__file__).parents[3]
 PICTURE = ROOT / "docs" / "images" / "relief.gif"
 
 
-def test_the_readme_shows_a_picture_that_moves_in_less_than_a_megabyte() -> None:
+def test_the_readme_shows_a_picture_that_moves_in_less_than_a_megabyte():
     assert "docs/images/relief.gif" in (ROOT / "README.md").read_text("utf-8")
     assert PICTURE.stat().st_size < 1_000_000
     with Image.open(PICTURE) as shown:
@@ -27,7 +23,7 @@ def test_the_readme_shows_a_picture_that_moves_in_less_than_a_megabyte() -> None
 
 
 @pytest.mark.law
-def test_frames_run_there_and_back_and_rest_at_the_ends(tmp_path: Path) -> None:
+def test_frames_run_there_and_back_and_rest_at_the_ends(tmp_path):
     x = np.array([0.0, 1.0])
     axes = Axis("x"), Axis("y", limits=(0.0, 3.0))
     panels = [Panel(*axes, (Line("a", x, k * x, "#0072B2"),)) for k in range(3)]
@@ -43,7 +39,7 @@ def test_frames_run_there_and_back_and_rest_at_the_ends(tmp_path: Path) -> None:
     assert [duration for _, duration in seen] == [900, 160, 900, 160]
 
 
-def test_the_sound_lasts_as_long_as_the_picture_and_is_small() -> None:
+def test_the_sound_lasts_as_long_as_the_picture_and_is_small():
     file = PICTURE.with_suffix(".wav")
     assert file.stat().st_size < 300_000
     rate, samples = wavfile.read(file)
@@ -58,7 +54,7 @@ def test_the_sound_lasts_as_long_as_the_picture_and_is_small() -> None:
 
 
 @pytest.mark.law
-def test_a_ripple_twice_as_large_sounds_twice_as_loud_and_each_harmonic_by_its_velocity() -> None:
+def test_a_ripple_twice_as_large_sounds_twice_as_loud_and_each_harmonic_by_its_velocity():
     angle = 2.0 * np.pi * np.arange(64) / 64
     curve = 3.0 + 0.5 * np.sin(angle) + 0.25 * np.sin(2.0 * angle + 1.0)
     first, second, *others = moving_picture.velocities(curve)
@@ -72,7 +68,7 @@ def test_a_ripple_twice_as_large_sounds_twice_as_loud_and_each_harmonic_by_its_v
     assert loud / quiet == pytest.approx(2.0, rel=1e-3)
 
 
-def test_both_gears_are_relieved_and_the_case_is_left_alone() -> None:
+def test_both_gears_are_relieved_and_the_case_is_left_alone():
     case = {"pair": {"pinion": {"tip_relief_um": 1.0}, "wheel": {}}}
     changed = moving_picture.relieved(case, 4.0)
     assert [changed["pair"][gear]["tip_relief_um"] for gear in ("pinion", "wheel")] == [4.0, 4.0]

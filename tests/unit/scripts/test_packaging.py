@@ -1,14 +1,12 @@
 """What is packaged is all that the packages need: files that are no Python are easily forgotten."""
 
-from __future__ import annotations
-
 import tomllib
 from fnmatch import fnmatch
 from pathlib import Path, PurePath
 
 import pytest
+from repository import ROOT
 
-ROOT = Path(__file__).parents[3]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 DATA = PROJECT["tool"]["setuptools"]["package-data"]
 PACKAGES = ("host", "bounds", "model_studies", "fe_contact", "dynamics", "lineofaction", "service")
@@ -35,7 +33,7 @@ def _matches(name: PurePath, pattern: PurePath) -> bool:
     return len(name.parts) >= len(first) + len(last) and all(fnmatch(part, known) for part, known in ends)
 
 
-def test_patterns_take_files_at_any_depth() -> None:
+def test_patterns_take_files_at_any_depth():
     """Loops are built into the folder of the package by `scripts/run`."""
     pattern = PurePath("shipped_loops/**/*.nb[ic]")
     assert _matches(PurePath("shipped_loops/dynamics/forces/elements.potential.nbc"), pattern)
@@ -45,24 +43,24 @@ def test_patterns_take_files_at_any_depth() -> None:
 
 
 @pytest.mark.parametrize("package", PACKAGES)
-def test_every_file_of_a_package_is_packaged(package: str) -> None:
+def test_every_file_of_a_package_is_packaged(package):
     found = (f for f in (ROOT / package).rglob("*") if f.is_file() and "__pycache__" not in f.parts)
     files = [f for f in found if f.suffix != ".py"]
     assert [str(f.relative_to(ROOT)) for f in files if not packaged(f)] == []
 
 
 @pytest.mark.parametrize("package", PACKAGES)
-def test_every_folder_of_modules_is_a_package(package: str) -> None:
+def test_every_folder_of_modules_is_a_package(package):
     folders = {f.parent for f in (ROOT / package).rglob("*.py")}
     assert [str(f.relative_to(ROOT)) for f in folders if not (f / "__init__.py").is_file()] == []
 
 
 @pytest.mark.parametrize("package", PACKAGES)
-def test_packages_say_that_they_are_typed(package: str) -> None:
+def test_packages_say_that_they_are_typed(package):
     assert (ROOT / package / "py.typed").is_file()
 
 
-def test_the_source_distribution_holds_what_a_clone_holds() -> None:
+def test_the_source_distribution_holds_what_a_clone_holds():
     manifest = (ROOT / "MANIFEST.in").read_text(encoding="utf-8").split()
     named = {*manifest, *PACKAGES, "pyproject.toml", "README.md", "LICENSE", "MANIFEST.in"}
     hidden = (".", "out", "build", "dist")

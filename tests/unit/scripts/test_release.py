@@ -1,20 +1,17 @@
 """A release is refused, and changes nothing, where the tree is not ready for it."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from repository import ROOT
 
-ROOT = Path(__file__).resolve().parents[3]
 GIT = ("git", "-c", "user.name=a tester", "-c", "user.email=tester@example.org")
 
 
 @pytest.fixture
-def project(tmp_path: Path) -> Path:
+def project(tmp_path):
     """A repository with what a release reads: scripts, changelog, version."""
     for name in ("scripts/release", "scripts/environment"):
         (tmp_path / name).parent.mkdir(exist_ok=True)
@@ -53,9 +50,7 @@ def ready(_project: Path) -> None:
         ("1.3.0", ready, "must have the page '## Unreleased (1.3.0)'"),
     ],
 )
-def test_a_release_that_is_not_ready_is_refused(
-    project: Path, version: str, prepare: Callable[[Path], None], reason: str
-) -> None:
+def test_a_release_that_is_not_ready_is_refused(project, version, prepare, reason):
     prepare(project)
     before = contents(project)
     ended = subprocess.run(
@@ -66,7 +61,7 @@ def test_a_release_that_is_not_ready_is_refused(
     assert before == contents(project)
 
 
-def test_a_version_follows_its_development_versions_alone(project: Path) -> None:
+def test_a_version_follows_its_development_versions_alone(project):
     (project / "pyproject.toml").write_text('version = "1.1.0.dev3"\n', "utf-8")
     subprocess.run([*GIT, "commit", "-qam", "Another version"], cwd=project, check=True)
     ended = subprocess.run(

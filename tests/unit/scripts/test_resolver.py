@@ -1,10 +1,7 @@
 """The resolver of platforms, without the network: its requirements, its verdicts."""
 
-from __future__ import annotations
-
 import subprocess
 from pathlib import Path
-from typing import Any
 
 import pytest
 import resolver
@@ -20,7 +17,7 @@ def answered(monkeypatch: pytest.MonkeyPatch, errors: dict[str, str]) -> list[st
     """Let uv fail on platforms with a text; return what it is asked for."""
     asked: list[str] = []
 
-    def run(command: list[str], **options: Any) -> subprocess.CompletedProcess[str]:
+    def run(command, **options):
         platform = command[command.index("--python-platform") + 1]
         asked.append(f"{platform} {command[-1]} {options['input']}")
         error = errors.get(platform, "") if "gmsh" in options["input"] else ""
@@ -30,7 +27,7 @@ def answered(monkeypatch: pytest.MonkeyPatch, errors: dict[str, str]) -> list[st
     return asked
 
 
-def test_the_package_without_wheels_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_package_without_wheels_is_named(monkeypatch):
     answered(monkeypatch, {"a": GMSH, "b": PYMETIS, "c": "no network"})
     assert resolver.lacking_wheels(["gmsh"], "a", "3.12") == "gmsh"
     assert resolver.lacking_wheels(["gmsh"], "b", "3.12") == "pymetis"
@@ -39,9 +36,7 @@ def test_the_package_without_wheels_is_named(monkeypatch: pytest.MonkeyPatch) ->
         resolver.lacking_wheels(["gmsh"], "c", "3.12")
 
 
-def test_what_is_stated_passes_and_anything_else_does_not(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_what_is_stated_passes_and_anything_else_does_not(monkeypatch, capsys):
     arm = resolver.PLATFORMS["Linux ARM"]
     asked = answered(monkeypatch, {arm: GMSH})
     assert resolver.main() == 0
@@ -53,7 +48,7 @@ def test_what_is_stated_passes_and_anything_else_does_not(
     assert "Windows analysis no wheels of pymetis <- NOT AS STATED" in capsys.readouterr().out
 
 
-def test_the_host_table_names_what_has_no_wheels() -> None:
+def test_the_host_table_names_what_has_no_wheels():
     page = (Path(resolver.ROOT) / "docs" / "architecture.md").read_text("utf-8")
     for (system, _), package in resolver.WITHOUT_WHEELS.items():
         (row,) = [

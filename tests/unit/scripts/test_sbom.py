@@ -1,15 +1,12 @@
 """The bill of materials of an image keeps to the schema of its format."""
 
-from __future__ import annotations
-
 import json
 from itertools import islice
 
-import pytest
 import sbom
 
 
-def test_it_lists_what_is_installed_in_its_format(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_it_lists_what_is_installed_in_its_format(monkeypatch):
     from cyclonedx.schema import SchemaVersion  # noqa: PLC0415 (two seconds that each worker would pay)
     from cyclonedx.validation.json import JsonStrictValidator  # noqa: PLC0415
 

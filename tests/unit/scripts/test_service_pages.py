@@ -1,18 +1,13 @@
 """The tables of verbs, routes and processes on their pages are those of the program."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import pytest
 import service_pages
 from described_api import DESCRIPTION
-
-ROOT = Path(__file__).parents[3]
+from repository import ROOT
 
 
 @pytest.mark.parametrize(("name", "tables"), [("cli", ["verbs"]), ("service", ["routes", "processes"])])
-def test_the_tables_are_current(name: str, tables: list[str]) -> None:
+def test_the_tables_are_current(name, tables):
     text = (ROOT / "docs" / f"{name}.md").read_text("utf-8")
     assert [found[2] for found in service_pages.TABLE.finditer(text)] == tables
     assert service_pages.page(text, DESCRIPTION) == text, (
@@ -20,12 +15,13 @@ def test_the_tables_are_current(name: str, tables: list[str]) -> None:
     )
 
 
-def test_a_verb_links_to_its_section_and_a_default_is_one_value() -> None:
+def test_a_verb_links_to_its_section_and_a_default_is_one_value():
     verbs = service_pages.verbs("\n## `loa ste`\n")
     assert (
         "| [`loa ste`](#loa-ste) | Print one STE curve of a database. |" in verbs
         and "| `loa keys add` |" in verbs
     )
+    assert "loa modes" not in verbs, "studies have a table of their own, in docs/studies.md"
     assert "`samples` (1000)" in service_pages.processes(DESCRIPTION)
     assert service_pages.default({"default": []}) == service_pages.default({}) == ""
     assert service_pages.default({"default": True}) == " (true)"

@@ -1,7 +1,5 @@
 """The page of the hard scenes holds each scene, and the random pairs that were run."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any
@@ -36,14 +34,14 @@ def _made(folder: Path) -> str:
     return page.read_text()
 
 
-def test_a_scene_is_an_entry_with_its_figures_and_bounds(tmp_path: Path) -> None:
+def test_a_scene_is_an_entry_with_its_figures_and_bounds(tmp_path):
     page = _made(tmp_path)
     assert "- **`zero_load`** (1.5 CPU s). 0/0 *Criterion:* tends to the gap *Figures:* STE left" in page
     assert max(map(len, page.splitlines())) <= stability_page.LINE
     assert "Random pairs" not in page
 
 
-def test_sweeps_in_the_folder_are_counted(tmp_path: Path) -> None:
+def test_sweeps_in_the_folder_are_counted(tmp_path):
     (tmp_path / "sweep-plane.jsonl").write_text(json.dumps({"end": "table", "figures": FIGURES}) + "\n")
     page = _made(tmp_path)
     assert page.startswith("# Stability\n")

@@ -1,7 +1,5 @@
 """Workers share a run out by files; by day all files of the browser go to one."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 from typing import Any
 
@@ -40,7 +38,7 @@ class _Worker:
         self.shutting_down = True
 
 
-def test_by_day_one_worker_opens_pages() -> None:
+def test_by_day_one_worker_opens_pages():
     collected = [OTHERS[0], *PAGES, *OTHERS[1:]]
     chosen = scheduler(_config(night=False), Producer("test", enabled=False))
     assert isinstance(chosen, OneBrowserScheduling)
@@ -56,5 +54,5 @@ def test_by_day_one_worker_opens_pages() -> None:
 
 
 @pytest.mark.parametrize("options", [{"night": True}, {"night": False, "dist": "load"}])
-def test_at_night_and_by_another_rule_the_command_line_decides(options: dict[str, Any]) -> None:
+def test_at_night_and_by_another_rule_the_command_line_decides(options):
     assert scheduler(_config(**options), Producer("test", enabled=False)) is None

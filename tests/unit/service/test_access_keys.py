@@ -1,12 +1,8 @@
 """Access keys: what is kept, who is let in, how often."""
 
-from __future__ import annotations
-
 import json
 import stat
 from datetime import datetime, timedelta
-from pathlib import Path
-from typing import Any
 
 import pytest
 import structlog.testing
@@ -22,7 +18,7 @@ from service.settings import Settings
 
 
 @pytest.fixture
-def file(tmp_path: Path) -> KeyFile:
+def file(tmp_path):
     return KeyFile(tmp_path / "keys.json")
 
 
@@ -31,16 +27,15 @@ def a_key(limit: int | None, name: str = "bench") -> AccessKey:
     return AccessKey(name=name, sha256=digest, created="2026-01-01T00:00:00Z", requests_per_minute=limit)
 
 
-def test_a_key_opens_and_is_nowhere_on_disk(file: KeyFile) -> None:
+def test_a_key_opens_and_is_nowhere_on_disk(file):
     secret = file.add("bench", requests_per_minute=60)
     assert len(secret) >= 43, "256 bits"
     assert secret not in file.path.read_text()
     holder = Keyring(file).holder(secret)
-    assert holder is not None
     assert (holder.name, holder.requests_per_minute, holder.unfinished_jobs) == ("bench", 60, None)
 
 
-def test_only_its_owner_reads_the_file_whatever_the_mask(tmp_path: Path, file: KeyFile) -> None:
+def test_only_its_owner_reads_the_file_whatever_the_mask(tmp_path, file):
     file.add("a")
     file.add("b")
     assert stat.S_IMODE(file.path.stat().st_mode) == 0o600
@@ -50,17 +45,17 @@ def test_only_its_owner_reads_the_file_whatever_the_mask(tmp_path: Path, file: K
 @pytest.mark.parametrize(
     "change", [lambda k: k[:-1], lambda k: k + "A", str.upper, lambda k: "", lambda k: k[4:]]
 )
-def test_anything_but_the_key_is_nobody(file: KeyFile, change) -> None:  # type: ignore[no-untyped-def]
+def test_anything_but_the_key_is_nobody(file, change):
     assert Keyring(file).holder(change(file.add("bench"))) is None
 
 
-def test_every_key_is_compared_whichever_it_is(file: KeyFile, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_every_key_is_compared_whichever_it_is(file, monkeypatch):
     """How long an answer takes must not tell which keys there are."""
     secrets = [file.add(f"k{number}") for number in range(5)]
     keyring = Keyring(file)
     seen: list[str] = []
 
-    def compare(a: str, b: str) -> bool:
+    def compare(a, b):
         seen.append(b)
         return a == b
 
@@ -71,7 +66,7 @@ def test_every_key_is_compared_whichever_it_is(file: KeyFile, monkeypatch: pytes
         assert len(seen) == 5
 
 
-def test_a_key_taken_back_opens_no_more_and_a_new_one_at_once(file: KeyFile) -> None:
+def test_a_key_taken_back_opens_no_more_and_a_new_one_at_once(file):
     old = file.add("old")
     keyring = Keyring(file)
     new = file.add("new")
@@ -81,7 +76,7 @@ def test_a_key_taken_back_opens_no_more_and_a_new_one_at_once(file: KeyFile) -> 
     assert keyring.holder(new) is not None
 
 
-def test_a_file_spoilt_meanwhile_opens_nothing_and_shuts_nobody_out(file: KeyFile) -> None:
+def test_a_file_spoilt_meanwhile_opens_nothing_and_shuts_nobody_out(file):
     secret = file.add("bench")
     keyring = Keyring(file)
     file.path.write_text("{")
@@ -101,7 +96,7 @@ def test_a_file_spoilt_meanwhile_opens_nothing_and_shuts_nobody_out(file: KeyFil
         json.dumps({"keys": [{"name": "a", "sha256": "0" * 64, "created": "", "unfinished_jobs": 0}]}),
     ],
 )
-def test_a_spoilt_file_is_never_one_without_keys(tmp_path: Path, text: str) -> None:
+def test_a_spoilt_file_is_never_one_without_keys(tmp_path, text):
     path = tmp_path / "keys.json"
     path.write_text(text)
     with pytest.raises(BadInput, match="keys_file"):
@@ -109,12 +104,12 @@ def test_a_spoilt_file_is_never_one_without_keys(tmp_path: Path, text: str) -> N
 
 
 @pytest.mark.parametrize("name", ["", "-a", "a b", "a" * 65, "ä", "a\n"])
-def test_a_name_that_would_spoil_a_log_is_refused(tmp_path: Path, name: str) -> None:
+def test_a_name_that_would_spoil_a_log_is_refused(tmp_path, name):
     with pytest.raises(BadInput, match="name"):
         KeyFile(tmp_path / "keys.json").add(name)
 
 
-def test_names_are_taken_once_and_limits_allow_something(file: KeyFile) -> None:
+def test_names_are_taken_once_and_limits_allow_something(file):
     file.add("a")
     with pytest.raises(BadInput, match="must be new"):
         file.add("a")
@@ -124,7 +119,7 @@ def test_names_are_taken_once_and_limits_allow_something(file: KeyFile) -> None:
         file.remove("b")
 
 
-def test_over_any_time_no_more_pass_than_a_minutes_worth_and_the_rate() -> None:
+def test_over_any_time_no_more_pass_than_a_minutes_worth_and_the_rate():
     instant = 0.0
     limits = RateLimits(clock=lambda: instant)
     passed = 0
@@ -134,7 +129,7 @@ def test_over_any_time_no_more_pass_than_a_minutes_worth_and_the_rate() -> None:
     assert passed == pytest.approx(30 + 30 * 10, abs=1)
 
 
-def test_who_waits_as_long_as_told_is_let_in() -> None:
+def test_who_waits_as_long_as_told_is_let_in():
     instant = 0.0
     limits = RateLimits(clock=lambda: instant)
     while (wait := limits.wait_s(a_key(7))) == 0:
@@ -144,7 +139,7 @@ def test_who_waits_as_long_as_told_is_let_in() -> None:
     assert limits.wait_s(a_key(7)) == 0
 
 
-def test_keys_do_not_use_up_one_another() -> None:
+def test_keys_do_not_use_up_one_another():
     limits = RateLimits(clock=lambda: 0.0)
     while limits.wait_s(a_key(3, "busy")) == 0:
         pass
@@ -153,7 +148,7 @@ def test_keys_do_not_use_up_one_another() -> None:
 
 
 @pytest.mark.parametrize("host", ["0.0.0.0", "192.168.1.5", "::", "example.org"])
-def test_an_address_that_others_reach_needs_a_key(tmp_path: Path, host: str) -> None:
+def test_an_address_that_others_reach_needs_a_key(tmp_path, host):
     settings = Settings(host=host, data_directory=tmp_path)
     with pytest.raises(BadInput, match="loa keys add"):
         open_identities(settings)
@@ -169,13 +164,12 @@ def rewritten(file: KeyFile, name: str, **changes: object) -> None:
     file.path.write_text(json.dumps(content))
 
 
-def test_a_key_of_before_there_were_scopes_may_do_what_it_did(file: KeyFile) -> None:
+def test_a_key_of_before_there_were_scopes_may_do_what_it_did(file):
     secret = file.add("old")
     entry = json.loads(file.path.read_text())["keys"][0]
     former = {name: entry[name] for name in ("name", "sha256", "created", "requests_per_minute")}
     file.path.write_text(json.dumps({"keys": [former | {"of_a_later_program": 1}]}))
     holder = Keyring(file).holder(secret)
-    assert holder is not None
     assert (set(holder.scopes), holder.project, holder.expires) == (set(Scope), "", None)
 
 
@@ -192,7 +186,7 @@ def test_a_key_of_before_there_were_scopes_may_do_what_it_did(file: KeyFile) -> 
         ({"connections": -1}, "at least 1"),
     ],
 )
-def test_rights_that_are_none_are_refused(file: KeyFile, rights: dict[str, Any], named: str) -> None:
+def test_rights_that_are_none_are_refused(file, rights, named):
     with pytest.raises(BadInput, match=named):
         file.add("bench", **rights)
     assert file.read() == ()
@@ -201,7 +195,7 @@ def test_rights_that_are_none_are_refused(file: KeyFile, rights: dict[str, Any],
 @pytest.mark.parametrize(
     "spoilt", [{"scopes": ["all"]}, {"project": "../x"}, {"expires": "2026-01-01T00:00:00"}, {"expires": "x"}]
 )
-def test_a_right_that_cannot_be_read_is_not_left_out(file: KeyFile, spoilt: dict[str, object]) -> None:
+def test_a_right_that_cannot_be_read_is_not_left_out(file, spoilt):
     file.add("bench")
     rewritten(file, "bench", **spoilt)
     with pytest.raises(BadInput, match="keys_file"):
@@ -209,7 +203,7 @@ def test_a_right_that_cannot_be_read_is_not_left_out(file: KeyFile, spoilt: dict
 
 
 @pytest.mark.parametrize(("text", "hours"), [("12h", 12), ("90d", 2160), ("2w", 336)])
-def test_a_key_ends_after_the_time_it_was_made_for(file: KeyFile, text: str, hours: int) -> None:
+def test_a_key_ends_after_the_time_it_was_made_for(file, text, hours):
     file.add("bench", expires=text)
     (key,) = file.read()
     end = datetime.fromisoformat(key.created) + timedelta(hours=hours)
@@ -218,12 +212,11 @@ def test_a_key_ends_after_the_time_it_was_made_for(file: KeyFile, text: str, hou
     assert not key.expired
 
 
-def test_rotation_leaves_the_old_key_the_overlap_and_the_new_one_all_rights(file: KeyFile) -> None:
+def test_rotation_leaves_the_old_key_the_overlap_and_the_new_one_all_rights(file):
     old = file.add("bench", project="axle", scopes=["read"], expires="90d", streams=3)
     new = file.rotate("bench", overlap="7d")
     keyring = Keyring(file)
     before, after = keyring.holder(old), keyring.holder(new)
-    assert before is not None and after is not None
     for key in (before, after):
         assert (key.name, key.project, key.scopes, key.streams) == ("bench", "axle", (Scope.READ,), 3)
     assert before.ends_within(timedelta(days=7)) and not before.ends_within(timedelta(days=6, hours=23))
@@ -232,7 +225,7 @@ def test_rotation_leaves_the_old_key_the_overlap_and_the_new_one_all_rights(file
     assert file.read() == ()
 
 
-def test_rotation_without_an_overlap_ends_the_old_key(file: KeyFile) -> None:
+def test_rotation_without_an_overlap_ends_the_old_key(file):
     old = file.add("bench")
     new = file.rotate("bench")
     assert Keyring(file).holder(old) is None
@@ -240,7 +233,7 @@ def test_rotation_without_an_overlap_ends_the_old_key(file: KeyFile) -> None:
     assert [key.expires for key in file.read()] == [None]
 
 
-def test_rotation_makes_no_key_live_longer(file: KeyFile) -> None:
+def test_rotation_makes_no_key_live_longer(file):
     file.add("bench", expires="1h")
     end = file.read()[0].expires
     file.rotate("bench", overlap="7d", expires="90d")
@@ -249,7 +242,7 @@ def test_rotation_makes_no_key_live_longer(file: KeyFile) -> None:
         file.rotate("other")
 
 
-def test_both_keys_of_a_rotation_share_one_rate(tmp_path: Path) -> None:
+def test_both_keys_of_a_rotation_share_one_rate(tmp_path):
     file, limits = KeyFile(tmp_path / "keys.json"), RateLimits(clock=lambda: 0.0)
     file.add("bench", requests_per_minute=3)
     file.rotate("bench", overlap="1d")
@@ -257,7 +250,7 @@ def test_both_keys_of_a_rotation_share_one_rate(tmp_path: Path) -> None:
     assert [limits.wait_s(keys[n % 2]) == 0 for n in range(5)] == [True, True, True, False, False]
 
 
-def test_a_key_that_ends_soon_is_mentioned_once_a_day(file: KeyFile) -> None:
+def test_a_key_that_ends_soon_is_mentioned_once_a_day(file):
     soon, later = file.add("soon", expires="6d"), file.add("later", expires="8d")
     keyring = Keyring(file)
     with structlog.testing.capture_logs() as lines:
@@ -266,10 +259,10 @@ def test_a_key_that_ends_soon_is_mentioned_once_a_day(file: KeyFile) -> None:
     assert [(line["event"], line["key"]) for line in lines] == [("key ends soon", "soon")]
 
 
-def test_the_verbs_show_rights_and_never_a_hash(tmp_path: Path) -> None:
+def test_the_verbs_show_rights_and_never_a_hash(tmp_path):
     path = tmp_path / "keys.json"
 
-    def verb(*arguments: str) -> str:
+    def verb(*arguments):
         shown = loa("keys", *arguments, "--file", path, "--json")
         assert shown.exit_code == 0, shown.output
         return shown.stdout

@@ -1,7 +1,5 @@
 """Alerts and dashboard: they name what the service tells, and each alert fires on its case alone."""
 
-from __future__ import annotations
-
 import json
 import re
 import shutil
@@ -169,12 +167,12 @@ def dashboard_expressions() -> list[str]:
 
 
 @pytest.fixture(scope="module")
-def told(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[dict[str, str]]]:
+def told(tmp_path_factory):
     """The labels of all samples of a service by name: with a job that runs, one that waits, and a result."""
     app = create_app(Settings(data_directory=tmp_path_factory.mktemp("service")), REGISTRY)
     with served(app) as port, httpx2.Client(base_url=f"http://127.0.0.1:{port}", timeout=None) as client:
 
-        def submit(mode: str, text: str) -> str:
+        def submit(mode, text):
             body = {"inputs": {"wish": {"mode": mode, "text": text}}}
             return str(client.post(EXECUTION, json=body).headers["location"])
 
@@ -194,12 +192,12 @@ def told(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[dict[str, s
     return samples
 
 
-def test_every_metric_they_name_is_told(told: dict[str, list[dict[str, str]]]) -> None:
+def test_every_metric_they_name_is_told(told):
     expressions = [rule["expr"] for rule in alerts().values()] + dashboard_expressions()
     assert {name for text in expressions for name in METRIC.findall(text)} - set(told) == set()
 
 
-def test_every_label_they_choose_by_is_told(told: dict[str, list[dict[str, str]]]) -> None:
+def test_every_label_they_choose_by_is_told(told):
     missing = []
     for text in [rule["expr"] for rule in alerts().values()] + dashboard_expressions():
         for name, chosen in LABELS.findall(text):
@@ -209,7 +207,7 @@ def test_every_label_they_choose_by_is_told(told: dict[str, list[dict[str, str]]
     assert missing == []
 
 
-def test_every_metric_and_alert_is_documented(told: dict[str, list[dict[str, str]]]) -> None:
+def test_every_metric_and_alert_is_documented(told):
     docs = DEPLOY.parent / "docs"
     text = "".join((docs / page).read_text("utf-8") for page in ("operations.md", "how-to/runbooks.md"))
     parts = re.compile("_(bucket|count|sum)$")
@@ -217,7 +215,7 @@ def test_every_metric_and_alert_is_documented(told: dict[str, list[dict[str, str
     assert {name for name in names if f"`{name}`" not in text} == set()
 
 
-def test_each_alert_has_a_runbook_and_each_runbook_an_alert() -> None:
+def test_each_alert_has_a_runbook_and_each_runbook_an_alert():
     sections = {rule["annotations"]["runbook"].partition("#")[::2] for rule in alerts().values()}
     assert sections - {("operations.md", "log")} == {("how-to/runbooks.md", name) for name in RUNBOOKS}
     assert {rule["labels"]["severity"] for rule in alerts().values()} == {"critical", "warning"}
@@ -246,7 +244,7 @@ def promtool(*arguments: object) -> str:
     return done.stdout
 
 
-def test_each_alert_fires_on_its_case_and_no_other_does(tmp_path: Path) -> None:
+def test_each_alert_fires_on_its_case_and_no_other_does(tmp_path):
     assert set(CASES) == set(alerts())
     tests = []
     for case in (None, *CASES):
@@ -261,7 +259,7 @@ def test_each_alert_fires_on_its_case_and_no_other_does(tmp_path: Path) -> None:
     assert "SUCCESS" in promtool("test", "rules", file)
 
 
-def test_prometheus_reads_its_configuration_and_every_expression(tmp_path: Path) -> None:
+def test_prometheus_reads_its_configuration_and_every_expression(tmp_path):
     promtool("check", "config", RULES.with_name("prometheus.yml"))
     rules = [{"record": f"panel_{n}", "expr": text} for n, text in enumerate(dashboard_expressions())]
     file = tmp_path / "dashboard.yml"

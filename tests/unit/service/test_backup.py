@@ -1,7 +1,5 @@
 """A backup while the service works (how-to/back-up-and-upgrade.md): what was entered before is in it."""
 
-from __future__ import annotations
-
 import shutil
 import sqlite3
 import subprocess
@@ -40,7 +38,7 @@ def dumped(url: str, server: PostgresServer, folder: Path) -> str:
 def submitting(machine: Bench) -> Iterator[None]:
     stop = threading.Event()
 
-    def submit() -> None:
+    def submit():
         number = 0
         while not stop.wait(0.01):
             machine.submit(text=f"meanwhile {number}")
@@ -56,9 +54,7 @@ def submitting(machine: Bench) -> Iterator[None]:
 
 
 @pytest.mark.law
-def test_a_backup_holds_what_was_entered_before_and_goes_on(
-    tmp_path: Path, database_url: str | None, request: pytest.FixtureRequest
-) -> None:
+def test_a_backup_holds_what_was_entered_before_and_goes_on(tmp_path, database_url, request):
     """The database first, then the files: each line has its file, and what waited and ran is done again."""
     machine = bench(tmp_path / "old", REGISTRY, database_url=database_url, queue_limit=100_000)
     machine.scheduler.start()
@@ -81,7 +77,7 @@ def test_a_backup_holds_what_was_entered_before_and_goes_on(
     restored.close()
 
 
-def test_what_ran_at_the_time_of_a_backup_is_done_after_its_restoration(tmp_path: Path) -> None:
+def test_what_ran_at_the_time_of_a_backup_is_done_after_its_restoration(tmp_path):
     machine = bench(tmp_path / "old", REGISTRY)
     jobs = [machine.submit(text=text) for text in ("runs", "waits")]
     machine.claimed()
@@ -95,7 +91,7 @@ def test_what_ran_at_the_time_of_a_backup_is_done_after_its_restoration(tmp_path
     restored.close()
 
 
-def test_the_file_of_the_database_alone_is_no_backup(tmp_path: Path) -> None:
+def test_the_file_of_the_database_alone_is_no_backup(tmp_path):
     """What was committed last is in the log beside it, as long as anybody has the database open."""
     machine = bench(tmp_path, REGISTRY)
     with closing(sqlite3.connect(tmp_path / "service.sqlite3")) as reader:

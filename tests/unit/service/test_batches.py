@@ -1,7 +1,5 @@
 """Batches in the job table, on each database: progress by cost, ends, expiry."""
 
-from __future__ import annotations
-
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
@@ -28,7 +26,7 @@ def seen(machine: Bench, batch: str) -> Job:
     return machine.submissions.find(batch)
 
 
-def test_progress_is_the_share_of_the_cost_that_is_done(machine: Bench) -> None:
+def test_progress_is_the_share_of_the_cost_that_is_done(machine):
     batch = entered(machine, {"a": 9.0, "b": 3.0})
     assert (seen(machine, batch).fraction, seen(machine, batch).status) == (0.0, "running")
     first = machine.claimed()
@@ -44,7 +42,7 @@ def test_progress_is_the_share_of_the_cost_that_is_done(machine: Bench) -> None:
     assert end.finished is not None
 
 
-def test_no_scheduler_takes_a_batch_for_work(machine: Bench) -> None:
+def test_no_scheduler_takes_a_batch_for_work(machine):
     batch = entered(machine, {"a": 1.0})
     assert machine.claimed().key == "a"
     assert machine.claims.claim() is None
@@ -52,7 +50,7 @@ def test_no_scheduler_takes_a_batch_for_work(machine: Bench) -> None:
     assert seen(machine, batch).status == "running"
 
 
-def test_a_batch_that_is_entered_by_many_at_once_is_one(machine: Bench) -> None:
+def test_a_batch_that_is_entered_by_many_at_once_is_one(machine):
     with ThreadPoolExecutor(8) as pool:
         names = set(pool.map(lambda _: entered(machine, {"a": 1.0, "b": 1.0}, "same"), range(24)))
     (batch,) = names
@@ -61,7 +59,7 @@ def test_a_batch_that_is_entered_by_many_at_once_is_one(machine: Bench) -> None:
     assert len(machine.submissions.page(10, JobFilter(parent=batch))) == 2
 
 
-def test_many_batches_at_once_and_schedulers_that_look_at_them(machine: Bench) -> None:
+def test_many_batches_at_once_and_schedulers_that_look_at_them(machine):
     with ThreadPoolExecutor(8) as pool:
         batches = list(pool.map(lambda n: entered(machine, {f"{n}": 1.0, "same": 1.0}), range(8)))
         while (claim := machine.claims.claim()) is not None:
@@ -71,7 +69,7 @@ def test_many_batches_at_once_and_schedulers_that_look_at_them(machine: Bench) -
     assert {(end.status, end.message) for end in ends} == {("successful", "2 of 2 jobs have ended.")}
 
 
-def test_a_batch_is_no_computation_of_the_figures(machine: Bench) -> None:
+def test_a_batch_is_no_computation_of_the_figures(machine):
     batch = entered(machine, {"a": 1.0})
     assert machine.submissions.counts() == {"accepted": 1}
     machine.submissions.dismiss(batch)
@@ -85,7 +83,7 @@ def test_a_batch_is_no_computation_of_the_figures(machine: Bench) -> None:
     assert (row.process, row.outcome, row.number) == ("fake", "successful", 1)
 
 
-def test_a_batch_expires_as_a_whole(machine: Bench) -> None:
+def test_a_batch_expires_as_a_whole(machine):
     old, used, new = (entered(machine, {f"{n}{m}": 1.0 for m in "ab"}) for n in range(3))
     while (claim := machine.claims.claim()) is not None:
         machine.claims.succeed(claim)

@@ -1,13 +1,10 @@
 """A process validates, converts and checks a case once on its way from the body to the contact solver."""
 
-from __future__ import annotations
-
 import json
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import Future
 from contextlib import ExitStack
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -59,19 +56,19 @@ class Calls:
 
 
 @pytest.fixture
-def calls(monkeypatch: pytest.MonkeyPatch) -> Iterator[Calls]:
+def calls(monkeypatch):
     calls = Calls()
     convert, check, validate = conversion.gear_pair, request_check.check_request, Case.model_validate_json
 
-    def converted(case: Case) -> Any:
+    def converted(case):
         calls.converted += 1
         return convert(case)
 
-    def checked(*request: Any, **limits: Any) -> Any:
+    def checked(*request, **limits):
         calls.checked.append(repr(request))
         return check(*request, **limits)
 
-    def read(text: str) -> Case:
+    def read(text):
         calls.validated += 1
         return validate(text)
 
@@ -92,7 +89,7 @@ def _replace(
 
 
 @pytest.fixture
-def file(tmp_path: Path) -> Path:
+def file(tmp_path):
     file = tmp_path / "case.toml"
     file.write_text(toml_text(CASE), encoding="utf-8")
     return file
@@ -109,9 +106,7 @@ def _planned(_order: object, _asker: object) -> Future[bytes]:
     return answer
 
 
-def test_a_submission_with_a_cost_limit_checks_once_in_the_server(
-    calls: Calls, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_submission_with_a_cost_limit_checks_once_in_the_server(calls, tmp_path, monkeypatch):
     """Its warnings and its predicted cost are of that check; the plan is made in a process of its own."""
     app = create_app(Settings(data_directory=tmp_path))
     body = {"inputs": {"case": CASE}, "max_cost_s": 1e4}
@@ -128,29 +123,29 @@ def test_a_submission_with_a_cost_limit_checks_once_in_the_server(
     assert calls.counts == (0, 1, 1)
 
 
-def test_a_worker_reads_and_checks_its_case_once(calls: Calls, tmp_path: Path) -> None:
+def test_a_worker_reads_and_checks_its_case_once(calls, tmp_path):
     inputs = {"case": validated(Case, CASE).model_dump(mode="json")}
     order = WorkOrder("", inputs, "key", tmp_path, tmp_path)
     stamp_products(order, analyze_case(order, lambda *_: None))
     assert calls.counts == (1, 1, 1)
 
 
-def test_the_command_line_checks_once(calls: Calls, file: Path, tmp_path: Path) -> None:
+def test_the_command_line_checks_once(calls, file, tmp_path):
     invoked("analyze", file, "-o", tmp_path / "ste.nc")
     assert calls.counts == (0, 1, 1)
 
 
-def test_python_checks_once(calls: Calls) -> None:
+def test_python_checks_once(calls):
     lineofaction.analyze(validated(Case, CASE))
     assert calls.counts == (0, 1, 1)
 
 
-def test_a_plan_checks_once(calls: Calls, file: Path) -> None:
+def test_a_plan_checks_once(calls, file):
     invoked("plan", file)
     assert calls.counts == (0, 1, 1)
 
 
-def test_a_tolerance_goes_on_from_the_check_of_the_submission(calls: Calls) -> None:
+def test_a_tolerance_goes_on_from_the_check_of_the_submission(calls):
     """What it does not need is decided as where the request is checked at once."""
     table = CASE | {"accuracy": {"tolerance": 0.3}}
     submitted, direct = (CheckedCase(validated(Case, table)) for _ in range(2))
@@ -161,7 +156,7 @@ def test_a_tolerance_goes_on_from_the_check_of_the_submission(calls: Calls) -> N
 
 
 @pytest.mark.law
-def test_an_optimization_checks_its_request_once(calls: Calls, file: Path, tmp_path: Path) -> None:
+def test_an_optimization_checks_its_request_once(calls, file, tmp_path):
     """That of its maps, whose torques are more than its own."""
     (tmp_path / "study.json").write_text(json.dumps(STUDY))
     invoked("optimize", file, tmp_path / "study.json", "-o", tmp_path / "best")
@@ -169,7 +164,7 @@ def test_an_optimization_checks_its_request_once(calls: Calls, file: Path, tmp_p
     assert len(calls.checked) == 1
 
 
-def test_a_sweep_checks_once(calls: Calls, file: Path, tmp_path: Path) -> None:
+def test_a_sweep_checks_once(calls, file, tmp_path):
     invoked("sweep", file, "--over", "torque=0.1:0.2:0.1", "-o", tmp_path / "map.nc")
     assert calls.counts == (0, 1, 1)
 
@@ -177,15 +172,13 @@ def test_a_sweep_checks_once(calls: Calls, file: Path, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("verb", "target"), [("flank", "flanks.nc"), ("root-stress", "roots.json"), ("export", "bodies")]
 )
-def test_results_at_a_point_check_once(
-    calls: Calls, file: Path, tmp_path: Path, verb: str, target: str
-) -> None:
+def test_results_at_a_point_check_once(calls, file, tmp_path, verb, target):
     """Flanks, roots and deformed gears go on from the check that refuses what cannot be."""
     invoked(verb, file, "-o", tmp_path / target)
     assert calls.counts == (0, 1, 1)
 
 
-def test_a_plan_goes_on_from_the_check_of_the_submission(calls: Calls) -> None:
+def test_a_plan_goes_on_from_the_check_of_the_submission(calls):
     case = CheckedCase(validated(Case, CASE))
     assert case.feasible.request.pair == plan_of(case, None, None).checked.request.pair
     assert calls.counts == (0, 1, 1)
@@ -197,10 +190,10 @@ def inputs(torque_n_m: float) -> AnalyzeInputs:
     return AnalyzeInputs.model_validate({"case": case})
 
 
-def test_a_case_is_checked_until_its_table_is_stored(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_case_is_checked_until_its_table_is_stored(tmp_path, monkeypatch):
     class Refused:
         @property
-        def feasible(self) -> None:
+        def feasible(self):
             raise BadInput.of("case", None, "never checked")
 
     store, known = stored_results(tmp_path), inputs(100.0)

@@ -1,10 +1,6 @@
 """Cost limits of jobs: refused by the plan, ended by the CPU time, extended by jobs that share the work."""
 
-from __future__ import annotations
-
 import time
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -24,7 +20,7 @@ from service.settings import Settings
 
 
 @pytest.fixture
-def machine(tmp_path: Path, database_url: str | None) -> Iterator[Bench]:
+def machine(tmp_path, database_url):
     found = bench(tmp_path, REGISTRY, database_url=database_url)
     found.scheduler.start()
     yield found
@@ -47,13 +43,13 @@ def spent(machine: Bench) -> float:
 
 
 @pytest.mark.law
-def test_work_ends_at_its_limit_and_says_what_to_lower(machine: Bench) -> None:
+def test_work_ends_at_its_limit_and_says_what_to_lower(machine):
     ended = machine.ended(entered(machine, 1.5))
     assert (ended.status, ended.attempts, ended.max_cost_s) == ("failed", 1, 1.5)
     assert ended.message.startswith("The limit of 1.5 CPU s (max_cost_s) was reached. Select a coarser level")
 
 
-def test_work_may_cost_what_the_most_generous_of_its_jobs_allows(machine: Bench) -> None:
+def test_work_may_cost_what_the_most_generous_of_its_jobs_allows(machine):
     first = entered(machine, 0.5)
     assert entered(machine, 0.3).max_cost_s == 0.5
     assert entered(machine, 5e3).max_cost_s == 5e3
@@ -64,14 +60,14 @@ def test_work_may_cost_what_the_most_generous_of_its_jobs_allows(machine: Bench)
     assert entered(machine, 0.1).max_cost_s is None
 
 
-def test_the_lower_of_both_limits_holds() -> None:
+def test_the_lower_of_both_limits_holds():
     bounded = Holder(name="ann", max_cost_s=60)
     assert cost_limit(None, KEYLESS_CALLER) is None
     assert cost_limit(5.0, KEYLESS_CALLER) == cost_limit(5.0, bounded) == 5.0
     assert cost_limit(None, bounded) == cost_limit(100.0, bounded) == 60
 
 
-def test_a_prediction_beyond_the_limit_is_told_with_its_largest_stages() -> None:
+def test_a_prediction_beyond_the_limit_is_told_with_its_largest_stages():
     stages = {"mesh": 0.5, "compliance": 40.0, "contact": 9.5}
     refuse_beyond(50.0, stages)
     refuse_beyond(0.1, {})  # nothing is predicted
@@ -82,7 +78,7 @@ def test_a_prediction_beyond_the_limit_is_told_with_its_largest_stages() -> None
 
 
 @pytest.fixture
-def client(tmp_path: Path) -> Iterator[TestClient]:
+def client(tmp_path):
     """A client of an app whose scheduler does not run; plans are made."""
     app = create_app(Settings(data_directory=tmp_path))
     yield TestClient(app)
@@ -94,7 +90,7 @@ def analyzed(client: TestClient, **terms: Any) -> Any:
     return client.post("/v1/processes/analyze/execution", json={"inputs": {"case": CASE}, **terms})
 
 
-def test_a_table_that_is_planned_to_cost_more_is_not_entered(client: TestClient, tmp_path: Path) -> None:
+def test_a_table_that_is_planned_to_cost_more_is_not_entered(client, tmp_path):
     plan = client.post("/v1/plans", json={"inputs": {"case": CASE}}).json()["prediction"]["cpu_seconds"]
     refused = analyzed(client, max_cost_s=0.9 * plan)
     assert refused.status_code == 422
@@ -109,7 +105,7 @@ def test_a_table_that_is_planned_to_cost_more_is_not_entered(client: TestClient,
     assert analyzed(client, max_cost_s=1e-3).status_code == 422
 
 
-def test_what_is_stored_costs_nothing(tmp_path: Path) -> None:
+def test_what_is_stored_costs_nothing(tmp_path):
     app = create_app(Settings(data_directory=tmp_path))
     key = app.state.context.registry["analyze"].key(
         app.state.context.registry["analyze"].prepare(_inputs(app), app.state.context.store)

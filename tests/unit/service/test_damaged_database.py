@@ -1,12 +1,10 @@
 """A database that has to be mended: said at the start and at every request, and nobody waits for it."""
 
-from __future__ import annotations
-
 import resource
 import shutil
 import sqlite3
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -25,7 +23,6 @@ from lineofaction.gearbox.problems import (
     DatabaseUnavailable,
     NoSpace,
     OutOfFiles,
-    ServiceError,
 )
 from service.app import create_app
 from service.settings import Settings
@@ -40,7 +37,7 @@ PAGE = 4096
 
 
 @pytest.fixture(scope="module")
-def sound(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def sound(tmp_path_factory):
     directory = tmp_path_factory.mktemp("sound")
     with TestClient(create_app(Settings(data_directory=directory), REGISTRY, works=False)) as client:
         for number in range(8):
@@ -50,12 +47,12 @@ def sound(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def directory(tmp_path: Path, sound: Path) -> Path:
+def directory(tmp_path, sound):
     return shutil.copytree(sound, tmp_path / "data")
 
 
 @pytest.fixture
-def client(directory: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[TestClient]:
+def client(directory, monkeypatch):
     """A client of an app on it, which tries at each question whether it can write."""
     monkeypatch.setattr("service.store.write_check.VALID_S", 0.0)
     with TestClient(create_app(Settings(data_directory=directory), REGISTRY)) as found:
@@ -94,7 +91,7 @@ def refused(client: TestClient, what: str) -> None:
 
 
 @pytest.mark.parametrize("kind", ["garbage", "cut off", "bad pages", "one bad page"])
-def test_the_start_names_the_damage_and_the_way_to_restore(directory: Path, kind: str) -> None:
+def test_the_start_names_the_damage_and_the_way_to_restore(directory, kind):
     file = directory / "service.sqlite3"
     damage(file, kind)
     with pytest.raises(DatabaseDamaged, match="cannot be used") as caught:
@@ -104,13 +101,11 @@ def test_the_start_names_the_damage_and_the_way_to_restore(directory: Path, kind
     assert create_app(Settings(data_directory=directory / "other"), REGISTRY)
 
 
-def test_a_start_does_not_wait_for_a_long_look_and_what_it_finds_makes_unready(
-    directory: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_start_does_not_wait_for_a_long_look_and_what_it_finds_makes_unready(directory, monkeypatch):
     damage(directory / "service.sqlite3", "one bad page")
     found, look = threading.Event(), Schema.check
 
-    def late(schema: Schema) -> None:
+    def late(schema):
         found.wait(60.0)
         look(schema)
 
@@ -125,7 +120,7 @@ def test_a_start_does_not_wait_for_a_long_look_and_what_it_finds_makes_unready(
         assert client.get("/health").status_code == 200
 
 
-def test_the_verb_says_so_and_fails(directory: Path) -> None:
+def test_the_verb_says_so_and_fails(directory):
     damage(directory / "service.sqlite3", "garbage")
     done = loa("serve", "--port", "0", "--data-directory", directory)
     assert done.exit_code == EXIT_FAILED
@@ -137,9 +132,7 @@ def test_the_verb_says_so_and_fails(directory: Path) -> None:
     ("kind", "what"),
     [("garbage", "file is not a database"), ("bad pages", "malformed"), ("gone", "no such table")],
 )
-def test_damage_beneath_a_running_service_is_said_at_once(
-    client: TestClient, directory: Path, kind: str, what: str
-) -> None:
+def test_damage_beneath_a_running_service_is_said_at_once(client, directory, kind, what):
     """Reading went on where the pages were sound, and /ready said 200."""
     assert client.get("/ready").status_code == 200
     assert writable(client) == {"database": 1.0, "results": 1.0}
@@ -159,13 +152,11 @@ def test_damage_beneath_a_running_service_is_said_at_once(
         ("max_page_count=1", "no-space", "There is no space left: database or disk is full"),
     ],
 )
-def test_a_database_that_takes_nothing_is_said_and_taken_up_again(
-    client: TestClient, pragma: str, kind: str, what: str
-) -> None:
+def test_a_database_that_takes_nothing_is_said_and_taken_up_again(client, pragma, kind, what):
     """Read-only, and full: when that is mended the service goes on."""
-    engine = client.app.state.context.engine  # type: ignore[attr-defined]
+    engine = client.app.state.context.engine
 
-    def harm(connection: sqlite3.Connection, _record: object) -> None:
+    def harm(connection, _record):
         connection.execute(f"PRAGMA {pragma}")
 
     event.listen(engine, "connect", harm)
@@ -180,7 +171,7 @@ def test_a_database_that_takes_nothing_is_said_and_taken_up_again(
     assert client.post(EXECUTION, json={"inputs": {"wish": {"text": "after"}}}).status_code == 201
 
 
-def test_a_place_of_results_that_takes_nothing_is_not_ready(client: TestClient, directory: Path) -> None:
+def test_a_place_of_results_that_takes_nothing_is_not_ready(client, directory):
     """Its volume is gone, say: the folder is there and the note is not."""
     (directory / "results" / NOTE).rename(directory / "note")
     assert client.get("/ready").status_code == 503
@@ -195,9 +186,7 @@ def test_a_place_of_results_that_takes_nothing_is_not_ready(client: TestClient, 
     assert client.get("/ready").status_code == 200
 
 
-def test_a_disk_without_room_for_a_submission_is_not_ready(
-    client: TestClient, directory: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_disk_without_room_for_a_submission_is_not_ready(client, directory, monkeypatch):
     """57 kB were free, every submission was refused, and /ready said 200."""
     assert client.get("/ready").status_code == 200
     little = shutil.disk_usage(directory)._replace(free=57_000)
@@ -223,9 +212,7 @@ _IO_ERROR, _CANNOT_OPEN = sqlite3.SQLITE_IOERR, sqlite3.SQLITE_CANTOPEN
         (_CANNOT_OPEN, "", DatabaseDamaged),
     ],
 )
-def test_what_the_files_beside_a_database_lack_is_named(
-    directory: Path, monkeypatch: pytest.MonkeyPatch, code: int, lacking: str, kind: type[ServiceError]
-) -> None:
+def test_what_the_files_beside_a_database_lack_is_named(directory, monkeypatch, code, lacking, kind):
     """With no space or no open file left SQLite says that it cannot open or read the files beside its own."""
     if lacking:
         monkeypatch.setattr(f"service.store.dialects.{lacking}", lambda *_: True)
@@ -236,7 +223,7 @@ def test_what_the_files_beside_a_database_lack_is_named(
     assert type(outage) is kind
 
 
-def test_open_files_that_are_used_up_are_noticed() -> None:
+def test_open_files_that_are_used_up_are_noticed():
     assert not out_of_files()
     limits = resource.getrlimit(resource.RLIMIT_NOFILE)
     resource.setrlimit(resource.RLIMIT_NOFILE, (3, limits[1]))
@@ -263,14 +250,14 @@ class Place:
 
 
 def failing(error: Exception) -> Callable[[], None]:
-    def step() -> None:
+    def step():
         raise error
 
     return step
 
 
 @pytest.fixture
-def place(monkeypatch: pytest.MonkeyPatch) -> Place:
+def place(monkeypatch):
     monkeypatch.setattr(write_check, "VALID_S", -1.0)
     return Place()
 
@@ -279,11 +266,9 @@ def fault(check: WriteCheck) -> str:
     return check.outcome().fault
 
 
-def test_one_that_waits_for_its_turn_is_ready_until_it_has_waited_too_long(
-    place: Place, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_one_that_waits_for_its_turn_is_ready_until_it_has_waited_too_long(place, monkeypatch):
     """200 submissions at once held the database for a second, and a service at work said 503."""
-    check = WriteCheck(place)  # type: ignore[arg-type]
+    check = WriteCheck(place)
     assert fault(check) == ""
     place.database = failing(DatabaseUnavailable("Others hold it."))
     assert fault(check) == ""
@@ -291,13 +276,13 @@ def test_one_that_waits_for_its_turn_is_ready_until_it_has_waited_too_long(
     assert fault(check) == "Others hold it."
 
 
-def test_one_that_has_never_written_is_not_ready(place: Place) -> None:
+def test_one_that_has_never_written_is_not_ready(place):
     place.database = failing(DatabaseUnavailable("Others hold it."))
-    assert fault(WriteCheck(place)) == "Others hold it."  # type: ignore[arg-type]
+    assert fault(WriteCheck(place)) == "Others hold it."
 
 
-def test_damage_is_told_at_once(place: Place) -> None:
-    check = WriteCheck(place)  # type: ignore[arg-type]
+def test_damage_is_told_at_once(place):
+    check = WriteCheck(place)
     assert fault(check) == ""
     place.database = failing(DatabaseDamaged("It is malformed."))
     assert fault(check) == "It is malformed."

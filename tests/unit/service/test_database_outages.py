@@ -1,21 +1,17 @@
 """A lost connection: outlasted if it comes back, answered with a time to try again if it does not."""
 
-from __future__ import annotations
-
 import os
 import socket
 import sqlite3
-from collections.abc import Iterator
 from itertools import count
-from pathlib import Path
 
 import pytest
 from cut_connections import relay
 from fastapi.testclient import TestClient
-from postgres_server import PostgresServer, migrated, running_server
-from running_service import Bench, bench
+from postgres_server import migrated, running_server
+from running_service import bench
 from service_fakes import REGISTRY
-from sqlalchemy import Connection, event
+from sqlalchemy import event
 
 from lineofaction.gearbox.problems import BadInput, Busy
 from service.app import create_app
@@ -27,7 +23,7 @@ KEEPALIVE = (socket.TCP_KEEPIDLE, socket.TCP_KEEPINTVL, socket.TCP_KEEPCNT)
 
 
 @pytest.fixture
-def server_url(postgres: PostgresServer) -> str:
+def server_url(postgres):
     url = postgres.new_database()
     engine = database_engine(url)
     Schema(engine).upgrade()
@@ -36,13 +32,13 @@ def server_url(postgres: PostgresServer) -> str:
 
 
 @pytest.fixture
-def machine(tmp_path: Path, server_url: str) -> Iterator[Bench]:
+def machine(tmp_path, server_url):
     found = bench(tmp_path, REGISTRY, database_url=server_url)
     yield found
     found.close()
 
 
-def test_steps_go_on_when_their_connections_are_ended(machine: Bench, postgres: PostgresServer) -> None:
+def test_steps_go_on_when_their_connections_are_ended(machine, postgres):
     """Connections that wait in the pool, and one in mid-transaction whose commit is never answered."""
     job = machine.submit(text="kept")
     url = str(machine.settings.database_address)
@@ -51,7 +47,7 @@ def test_steps_go_on_when_their_connections_are_ended(machine: Bench, postgres: 
 
     ended: list[int] = []
 
-    def end_once(_connection: object) -> None:
+    def end_once(_connection):
         if not ended:
             ended.append(postgres.end_connections(url))
 
@@ -62,10 +58,10 @@ def test_steps_go_on_when_their_connections_are_ended(machine: Bench, postgres: 
     assert machine.submissions.counts() == {"accepted": 2}
 
 
-def test_an_answer_to_a_commit_that_is_lost_enters_no_job_twice(machine: Bench) -> None:
+def test_an_answer_to_a_commit_that_is_lost_enters_no_job_twice(machine):
     """The transaction was committed; the connection broke before the answer came: the step runs again."""
     entry, work = machine.submissions.entry(), BatchCase("ab" * 32, {"wish": {}})
-    enter = Entry._job.__wrapped__  # type: ignore[attr-defined]
+    enter = Entry._job.__wrapped__
     identifier = "7a8a9f0e-26f4-4f55-9e0b-3a3e3a3f3a3f"
     for _ in range(2):
         enter(entry, identifier, "fake", work, now())
@@ -73,10 +69,10 @@ def test_an_answer_to_a_commit_that_is_lost_enters_no_job_twice(machine: Bench) 
     assert machine.submissions.counts() == {"accepted": 1}
 
 
-def test_jobs_end_while_connections_are_ended_all_the_time(machine: Bench, postgres: PostgresServer) -> None:
+def test_jobs_end_while_connections_are_ended_all_the_time(machine, postgres):
     url, writes = str(machine.settings.database_address), count(1)
 
-    def end_at_every_third(connection: Connection) -> None:
+    def end_at_every_third(connection):
         if connection.get_execution_options().get("immediate") and next(writes) % 3 == 0:
             postgres.end_connections(url)
 
@@ -87,7 +83,7 @@ def test_jobs_end_while_connections_are_ended_all_the_time(machine: Bench, postg
     assert next(writes) > 6
 
 
-def test_a_server_that_is_gone_is_said_to_callers_with_a_time_to_try_again(tmp_path: Path) -> None:
+def test_a_server_that_is_gone_is_said_to_callers_with_a_time_to_try_again(tmp_path):
     with running_server() as server:
         url = server.new_database()
         Schema(engine := database_engine(url)).upgrade()
@@ -102,13 +98,13 @@ def test_a_server_that_is_gone_is_said_to_callers_with_a_time_to_try_again(tmp_p
     app.state.context.close()
 
 
-def test_a_network_that_swallows_everything_is_noticed(postgres: PostgresServer) -> None:
+def test_a_network_that_swallows_everything_is_noticed(postgres):
     """The system drops a connection whose packets nobody takes, within a client's patience of 30 s."""
     with relay(postgres.socket) as between:
         url = postgres.new_database().partition("?")[0].replace("@", f"@127.0.0.1:{between.port}")
         engine = database_engine(url)
         with engine.connect() as connection:
-            descriptor = os.dup(connection.connection.dbapi_connection.fileno())  # type: ignore[union-attr]
+            descriptor = os.dup(connection.connection.dbapi_connection.fileno())
             with socket.socket(fileno=descriptor) as wire:
                 assert 0 < wire.getsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT) <= 20_000
                 silent = [wire.getsockopt(socket.IPPROTO_TCP, option) for option in KEEPALIVE]
@@ -117,15 +113,13 @@ def test_a_network_that_swallows_everything_is_noticed(postgres: PostgresServer)
     assert idle + interval * count < 30
 
 
-def test_a_connection_that_is_cut_in_mid_statement_is_outlasted(
-    tmp_path: Path, postgres: PostgresServer
-) -> None:
+def test_a_connection_that_is_cut_in_mid_statement_is_outlasted(tmp_path, postgres):
     with relay(postgres.socket) as between:
         direct = migrated(postgres.new_database())
         url = direct.partition("?")[0].replace("@", f"@127.0.0.1:{between.port}")
         machine, cuts = bench(tmp_path, REGISTRY, database_url=url), []
 
-        def cut_once(*_: object) -> None:
+        def cut_once(*_):
             if len(cuts) < 1:
                 cuts.append(between.cut())
 
@@ -136,9 +130,7 @@ def test_a_connection_that_is_cut_in_mid_statement_is_outlasted(
         machine.close()
 
 
-def test_a_file_that_another_holds_is_waited_for_and_then_refused(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_file_that_another_holds_is_waited_for_and_then_refused(tmp_path, monkeypatch):
     monkeypatch.setattr("service.store.dialects.PATIENCE_MS", 20)
     machine = bench(tmp_path, REGISTRY)
     holder = sqlite3.connect(tmp_path / "service.sqlite3", isolation_level=None)
@@ -151,9 +143,7 @@ def test_a_file_that_another_holds_is_waited_for_and_then_refused(
     holder.close()
 
 
-def test_a_database_that_is_none_is_refused_without_its_password(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_database_that_is_none_is_refused_without_its_password(tmp_path, monkeypatch):
     monkeypatch.setenv("LOA_DATABASE_URL", "mysql://user:geheim@host/name")
     with pytest.raises(BadInput) as caught:
         open_database(str(load_settings(data_directory=tmp_path).database_address))
@@ -162,6 +152,6 @@ def test_a_database_that_is_none_is_refused_without_its_password(
     assert "geheim" not in repr(load_settings(data_directory=tmp_path))
 
 
-def test_a_server_is_not_upgraded_by_the_way(postgres: PostgresServer) -> None:
+def test_a_server_is_not_upgraded_by_the_way(postgres):
     with pytest.raises(BadInput, match=r"it has no tables\. Run loa database upgrade first"):
         open_database(postgres.new_database())

@@ -1,11 +1,9 @@
 """One database and one place of results belong together: neither is served, nor removed, beside another's."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
@@ -39,13 +37,13 @@ NewDatabase = Callable[[], str]
 
 
 @pytest.fixture(params=["one machine", "servers"])
-def on_servers(request: pytest.FixtureRequest) -> bool:
+def on_servers(request):
     """Whether index and files are on servers (PostgreSQL, S3) or in folders (SQLite)."""
     return bool(request.param == "servers")
 
 
 @pytest.fixture
-def new_database(tmp_path: Path, on_servers: bool, request: pytest.FixtureRequest) -> NewDatabase:
+def new_database(tmp_path, on_servers, request):
     if on_servers:
         server: PostgresServer = request.getfixturevalue("postgres")
         return lambda: migrated(server.new_database())
@@ -54,12 +52,12 @@ def new_database(tmp_path: Path, on_servers: bool, request: pytest.FixtureReques
 
 
 @pytest.fixture
-def place(tmp_path: Path, on_servers: bool, request: pytest.FixtureRequest) -> str:
+def place(tmp_path, on_servers, request):
     return str(request.getfixturevalue("s3_url")) if on_servers else (tmp_path / "results").as_uri()
 
 
 @pytest.fixture
-def first(tmp_path: Path, new_database: NewDatabase, place: str) -> Iterator[Bench]:
+def first(tmp_path, new_database, place):
     """A deployment with three results, all requested some time ago."""
     machine = bench(tmp_path / "first", REGISTRY, database_url=new_database(), results_url=place)
     for key in KEYS:
@@ -105,9 +103,7 @@ def opened(tmp_path: Path, url: str, place: str) -> Bench:
     return bench(tmp_path / "second", REGISTRY, database_url=url, results_url=place)
 
 
-def test_an_empty_database_beside_results_removes_none_of_them(
-    tmp_path: Path, first: Bench, new_database: NewDatabase, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_empty_database_beside_results_removes_none_of_them(tmp_path, first, new_database, monkeypatch):
     """One minute after the start of a fresh database with 3650 days all were gone."""
     monkeypatch.setattr("service.store.maintenance.GRACE_S", -60.0)
     for unmarked in (False, True):
@@ -124,9 +120,7 @@ def test_an_empty_database_beside_results_removes_none_of_them(
     assert [read(first.store, key) for key in KEYS] == KEYS
 
 
-def test_retention_beside_files_that_the_index_does_not_name_removes_none(
-    first: Bench, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_retention_beside_files_that_the_index_does_not_name_removes_none(first, monkeypatch):
     """What has no line has no date."""
     monkeypatch.setattr("service.store.maintenance.GRACE_S", -60.0)
     (line, *_) = first.store.lines()
@@ -136,9 +130,7 @@ def test_retention_beside_files_that_the_index_does_not_name_removes_none(
     assert verify_store(first.store).unknown == (line.file,)
 
 
-def test_a_service_is_not_started_beside_files_of_another(
-    tmp_path: Path, first: Bench, new_database: NewDatabase, place: str
-) -> None:
+def test_a_service_is_not_started_beside_files_of_another(tmp_path, first, new_database, place):
     """Both are named, with the database of the other and what to do."""
     theirs = Deployment(first.engine, first.store).identifier()
     with pytest.raises(BadInput) as caught:
@@ -152,9 +144,7 @@ def test_a_service_is_not_started_beside_files_of_another(
         opened(tmp_path, new_database(), place)
 
 
-def test_an_index_with_results_of_its_own_is_not_put_beside_others(
-    tmp_path: Path, first: Bench, new_database: NewDatabase, place: str
-) -> None:
+def test_an_index_with_results_of_its_own_is_not_put_beside_others(tmp_path, first, new_database, place):
     url = new_database()
     second = bench(tmp_path / "second", REGISTRY, database_url=url)
     put(second, KEYS[0])
@@ -170,9 +160,7 @@ def test_an_index_with_results_of_its_own_is_not_put_beside_others(
     engine.dispose()
 
 
-def test_a_place_of_older_versions_is_taken_by_the_index_that_knows_it(
-    tmp_path: Path, first: Bench, place: str
-) -> None:
+def test_a_place_of_older_versions_is_taken_by_the_index_that_knows_it(tmp_path, first, place):
     of_older_versions(first)
     again = opened(tmp_path, str(first.settings.database_address), place)
     assert [read(again.store, key) for key in KEYS] == KEYS
@@ -180,9 +168,7 @@ def test_a_place_of_older_versions_is_taken_by_the_index_that_knows_it(
     again.close()
 
 
-def test_an_empty_place_beside_an_index_with_results_is_refused(
-    tmp_path: Path, first: Bench, place: str
-) -> None:
+def test_an_empty_place_beside_an_index_with_results_is_refused(tmp_path, first, place):
     """A volume that is not mounted, say; if the results are lost, reindexing says so to the index."""
     url = str(first.settings.database_address)
     elsewhere = f"{place}/not/mounted"
@@ -195,14 +181,12 @@ def test_an_empty_place_beside_an_index_with_results_is_refused(
     opened(tmp_path, url, place).close()
 
 
-def test_two_that_start_on_one_place_at_the_same_time_are_one(
-    tmp_path: Path, new_database: NewDatabase, place: str
-) -> None:
+def test_two_that_start_on_one_place_at_the_same_time_are_one(tmp_path, new_database, place):
     urls = [new_database() for _ in range(3)]
     for url in urls:
         open_database(url).dispose()  # alembic migrates one database at a time
 
-    def start(number: int) -> Bench | None:
+    def start(number):
         try:
             return bench(
                 tmp_path / str(number), REGISTRY, database_url=urls[number], results_url=place + "/shared"
@@ -218,9 +202,7 @@ def test_two_that_start_on_one_place_at_the_same_time_are_one(
     started[0].close()
 
 
-def test_the_index_is_rebuilt_from_the_files(
-    tmp_path: Path, first: Bench, new_database: NewDatabase, place: str
-) -> None:
+def test_the_index_is_rebuilt_from_the_files(tmp_path, first, new_database, place):
     """Retention counts from then, whatever the files' dates are, and the old owner removes nothing more."""
     lost = tmp_path / "damaged"
     lost.write_text("other bytes")
@@ -244,7 +226,7 @@ def test_the_index_is_rebuilt_from_the_files(
     rebuilt.close()
 
 
-def test_what_is_removed_stays_in_quarantine_for_the_stated_time_and_comes_back(first: Bench) -> None:
+def test_what_is_removed_stays_in_quarantine_for_the_stated_time_and_comes_back(first):
     """It is dated by when it came there: a copy has no date of its own."""
     with writing(first.engine) as connection:
         connection.execute(update(results).where(results.c.key != KEYS[0]).values(used=LONG_AGO))
@@ -258,7 +240,7 @@ def test_what_is_removed_stays_in_quarantine_for_the_stated_time_and_comes_back(
     assert found.entered == 2 and [read(first.store, key) for key in KEYS] == KEYS
 
 
-def test_quarantine_ends_by_its_own_date(first: Bench) -> None:
+def test_quarantine_ends_by_its_own_date(first):
     now = datetime.now(UTC)
     (name, *_) = sorted(held(first))
     for days in (6.5, 7.5):
@@ -276,7 +258,7 @@ def made(machine: Bench) -> Path:
     return file
 
 
-def test_results_newer_than_a_restored_database_are_kept_and_told(tmp_path: Path) -> None:
+def test_results_newer_than_a_restored_database_are_kept_and_told(tmp_path):
     """As docs/how-to/back-up-and-upgrade.md says: they are unknown until the index is rebuilt."""
     machine = bench(tmp_path / "data", REGISTRY)
     put(machine, KEYS[0])
@@ -292,7 +274,7 @@ def test_results_newer_than_a_restored_database_are_kept_and_told(tmp_path: Path
     restored.close()
 
 
-def test_a_database_from_before_the_files_were_marked_takes_them_back(first: Bench) -> None:
+def test_a_database_from_before_the_files_were_marked_takes_them_back(first):
     """A backup of an older version has no identifier: its index names the files, so they may be its own."""
     with writing(first.engine) as connection:
         connection.execute(delete(deployments))
@@ -302,7 +284,7 @@ def test_a_database_from_before_the_files_were_marked_takes_them_back(first: Ben
     Deployment(first.engine, first.store).confirm_files()
 
 
-def test_the_verbs_refuse_and_rebuild(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_verbs_refuse_and_rebuild(tmp_path, monkeypatch):
     monkeypatch.setenv("LOA_DATA_DIRECTORY", str(tmp_path))
     monkeypatch.setenv("LOA_RETENTION_DAYS", "3650")
     machine = bench(tmp_path, REGISTRY)
@@ -326,10 +308,8 @@ def test_the_verbs_refuse_and_rebuild(tmp_path: Path, monkeypatch: pytest.Monkey
     engine.dispose()
 
 
-def test_a_note_is_whole_and_the_first_one_stays_where_there_are_no_links(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def refuse(*_: object) -> None:
+def test_a_note_is_whole_and_the_first_one_stays_where_there_are_no_links(tmp_path, monkeypatch):
+    def refuse(*_):
         raise PermissionError("no links here")
 
     for name, linked in (("linked", True), ("written", False)):

@@ -1,7 +1,5 @@
 """What sets a job apart: differences of inputs, and the words for them."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 
@@ -34,11 +32,11 @@ def between(before: Any, now: Any) -> list[tuple[str, Any, Any]]:
         ({"x": "a"}, {"x": "b" * 201}, [("x", "a", "text of 201 characters")]),
     ],
 )
-def test_differences_are_those_of_the_leaves(before: Any, now: Any, differences: Any) -> None:
+def test_differences_are_those_of_the_leaves(before, now, differences):
     assert between(before, now) == differences
 
 
-def test_the_first_twelve_are_kept_and_all_are_counted() -> None:
+def test_the_first_twelve_are_kept_and_all_are_counted():
     found = differences_between({}, {f"x{n}": n for n in range(40)}, "there")
     assert (found.number, found.since) == (40, "there")
     assert [difference.field for difference in found.first] == [f"x{n}" for n in range(12)]
@@ -46,7 +44,7 @@ def test_the_first_twelve_are_kept_and_all_are_counted() -> None:
     assert found.first[3] == Difference(field="x3", before=None, value=3)
 
 
-def test_the_subject_names_the_pair_or_the_scene() -> None:
+def test_the_subject_names_the_pair_or_the_scene():
     assert subject_of(json.dumps({"case": CASE})) == "20/20, module 4 mm, up to 400 N m"
     assert subject_of(json.dumps({"scene": SCENE})) == "scene of 1 mesh"
     assert subject_of(json.dumps({"wish": {}})) == ""

@@ -1,16 +1,12 @@
 """A worker of Dask that is told to end finishes its job first."""
 
-from __future__ import annotations
-
 import os
 import signal
 import time
-from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from dask_processes import DaskProcesses, dask_processes
-from running_service import PATIENCE_S, Bench, bench, until
+from running_service import PATIENCE_S, bench, until
 from service_fakes import REGISTRY
 
 from service.queue import cluster
@@ -22,8 +18,7 @@ PRELOAD = "service.worker.draining"
 
 
 @pytest.fixture
-def dask(tmp_path: Path) -> Iterator[DaskProcesses]:
-    """A worker as containers start it."""
+def dask(tmp_path):
     with dask_processes(tmp_path, 0, LOA_DATA_DIRECTORY=str(tmp_path / "data")) as running:
         running.start_workers(nanny=False, preload=PRELOAD)
         running.await_workers(1)
@@ -31,7 +26,7 @@ def dask(tmp_path: Path) -> Iterator[DaskProcesses]:
 
 
 @pytest.fixture
-def server(dask: DaskProcesses, tmp_path: Path) -> Iterator[Bench]:
+def server(dask, tmp_path):
     made = bench(tmp_path / "server", REGISTRY, scheduler=dask.address)
     made.scheduler._crew = cluster.Cluster(dask.address, "draining")
     made.scheduler.start()
@@ -45,9 +40,7 @@ def starts(dask: DaskProcesses, job: Job) -> int:
 
 
 @pytest.mark.law
-def test_a_worker_that_is_told_to_end_finishes_its_job_and_begins_no_other(
-    dask: DaskProcesses, server: Bench
-) -> None:
+def test_a_worker_that_is_told_to_end_finishes_its_job_and_begins_no_other(dask, server):
     (worker,) = dask.workers
     job = server.submit(mode="slow", text="one")
     until(lambda: starts(dask, job) == 1)
@@ -62,9 +55,7 @@ def test_a_worker_that_is_told_to_end_finishes_its_job_and_begins_no_other(
     assert starts(dask, other) == 1
 
 
-def test_a_worker_without_a_job_leaves_at_once_and_a_second_signal_ends_one_with_a_job(
-    dask: DaskProcesses, server: Bench
-) -> None:
+def test_a_worker_without_a_job_leaves_at_once_and_a_second_signal_ends_one_with_a_job(dask, server):
     (first,) = dask.workers
     dask.start_workers(nanny=False, preload=PRELOAD)
     dask.await_workers(2)

@@ -1,7 +1,5 @@
 """Faults: in the words and units of the reader, by the line of the file, and no more than are of use."""
 
-from __future__ import annotations
-
 import json
 import math
 import re
@@ -13,21 +11,9 @@ from typing import Any
 import pytest
 from command_line import loa
 from pydantic import BaseModel, ValidationError
+from repository import EXAMPLES
 
-from bounds import (
-    Bound,
-    FieldName,
-    Quantity,
-    SiNote,
-    Text,
-    Wording,
-    above,
-    at_least,
-    at_most,
-    below,
-    exactly,
-    from_to,
-)
+from bounds import Bound, FieldName, Quantity, SiNote, Text, above, at_least, at_most, below, exactly, from_to
 from dynamics.errors import InputError as DynamicsInputError
 from dynamics.errors import SolveError as DynamicsSolveError
 from fe_contact.errors import InputError, MeshError
@@ -48,7 +34,7 @@ JAM = Text.of("Without backlash: ", FieldName("center_distance"), " = ", Quantit
 TOO_HIGH = InputError("pinion.modification.tip_relief", 2e-3, at_most(1e-3))
 
 
-def test_advice_names_other_fields_as_its_reader_knows_them() -> None:
+def test_advice_names_other_fields_as_its_reader_knows_them():
     error = InputError("center_distance", 0.08, at_least(0.0802, "m"), JAM)
     assert str(error).endswith("Without backlash: center_distance = 0.0802 m.")
     found = translated(error)
@@ -108,7 +94,7 @@ def test_advice_names_other_fields_as_its_reader_knows_them() -> None:
         ),
     ],
 )
-def test_errors_come_back_in_the_users_words_and_units(error: Exception, said: str) -> None:
+def test_errors_come_back_in_the_users_words_and_units(error, said):
     found = translated(error)
     assert isinstance(found, BadInput)
     assert str(found).startswith(said)
@@ -130,27 +116,26 @@ def test_errors_come_back_in_the_users_words_and_units(error: Exception, said: s
         ("a finite number", "a finite number"),
     ],
 )
-def test_numbers_of_a_bound_are_converted_by_what_they_are(bound: Wording, shown: str) -> None:
+def test_numbers_of_a_bound_are_converted_by_what_they_are(bound, shown):
     found = translated(InputError("center_distance", 0.08, bound))
     assert isinstance(found, BadInput)
     assert found.faults[0].bound == shown
 
 
-def test_suggestions_never_explain_si_to_someone_who_does_not_use_it() -> None:
+def test_suggestions_never_explain_si_to_someone_who_does_not_use_it():
     found = translated(InputError("pinion.face_width", -0.025, above(0.0), SiNote("In m: 25 mm is 0.025.")))
     assert found is not None and "In m" not in str(found) and "Face width b, in mm" in str(found)
 
 
 @pytest.mark.parametrize("error", [MeshError("no mesh"), DynamicsSolveError("no equilibrium")])
-def test_failures_are_failures(error: Exception) -> None:
+def test_failures_are_failures(error):
     assert isinstance(translated(error), JobFailed)
 
 
-def test_what_the_libraries_do_not_raise_on_purpose_is_not_translated() -> None:
+def test_what_the_libraries_do_not_raise_on_purpose_is_not_translated():
     assert translated(ZeroDivisionError("0")) is None
 
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 SPUR = EXAMPLES / "palermo_spur_20_20.toml"
 
 
@@ -166,7 +151,7 @@ def fields(value: Any, path: str = "") -> Iterator[tuple[str, str]]:
 
 
 @pytest.mark.parametrize("file", sorted(EXAMPLES.glob("*.toml")), ids=lambda file: file.stem)
-def test_every_field_of_an_example_is_found_in_a_line_that_names_it(file: Path) -> None:
+def test_every_field_of_an_example_is_found_in_a_line_that_names_it(file):
     text = file.read_text(encoding="utf-8")
     lines = text.splitlines()
     seen: dict[str, int] = {}
@@ -183,7 +168,7 @@ def test_every_field_of_an_example_is_found_in_a_line_that_names_it(file: Path) 
     assert len([number for number in seen.values() if number > 0]) > 0.5 * len(seen)
 
 
-def test_texts_and_lists_of_several_lines_hide_what_looks_like_a_field() -> None:
+def test_texts_and_lists_of_several_lines_hide_what_looks_like_a_field():
     text = (
         'a = """\nb = 1\n[c]\n"""\nd = [\n  1,\n  2, # ]\n]\n"e f" = 3\n'
         "[c]\nb = 4\n[[g.h]]\nx = 1\n[[g.h]]\nx = 2\n"
@@ -208,7 +193,7 @@ def errors(*arguments: object) -> list[str]:
     return done.stderr.strip().splitlines()
 
 
-def test_a_value_out_of_bounds_a_wrong_name_and_an_impossible_gear_name_their_line(tmp_path: Path) -> None:
+def test_a_value_out_of_bounds_a_wrong_name_and_an_impossible_gear_name_their_line(tmp_path):
     wrong = changed(tmp_path, "[pair.wheel]\nteeth = 20", "[pair.wheel]\nteeth = 3")
     (line,) = errors("plan", wrong)
     assert line.startswith("error: pair.wheel.teeth = 3: must be")
@@ -249,7 +234,7 @@ def suggestion(model: type[BoundaryModel], table: dict[str, Any], *path: str | i
         (("load", "xyzzy"), "Known here: torque_n_m, normal_force_n."),
     ],
 )
-def test_an_unknown_field_of_a_case_is_said_to_be_where_it_is_known(path: tuple[str, ...], said: str) -> None:
+def test_an_unknown_field_of_a_case_is_said_to_be_where_it_is_known(path, said):
     assert suggestion(Case, CASE, *path) == said
 
 
@@ -261,13 +246,11 @@ def test_an_unknown_field_of_a_case_is_said_to_be_where_it_is_known(path: tuple[
         (("outputs", "shaft"), "Known here: sample_rate_hz, "),  # too many tables have a shaft
     ],
 )
-def test_an_unknown_field_of_a_scene_is_said_to_be_where_it_is_known(
-    path: tuple[str | int, ...], said: str
-) -> None:
+def test_an_unknown_field_of_a_scene_is_said_to_be_where_it_is_known(path, said):
     assert said.removeprefix("...") in suggestion(SceneInput, SCENE, *path)
 
 
-def test_of_many_fields_the_nearest_are_listed_and_where_all_are() -> None:
+def test_of_many_fields_the_nearest_are_listed_and_where_all_are():
     text = suggestion(Case, CASE, "pair", "pinion", "number_of_teeth")
     nearest = re.fullmatch(r"Nearest of \d+ here: (.*)\. All are in docs/case-file\.md\.", text)
     assert nearest and len(names := nearest[1].split(", ")) == 12
@@ -281,7 +264,7 @@ def tables(model: type[BaseModel]) -> Iterator[type[BaseModel]]:
             yield from tables(inner)
 
 
-def test_the_manual_that_a_table_names_has_all_its_fields() -> None:
+def test_the_manual_that_a_table_names_has_all_its_fields():
     wide = {
         table
         for model in (Case, SceneInput, *(study.inputs for study in STUDIES.values()))
@@ -289,25 +272,25 @@ def test_the_manual_that_a_table_names_has_all_its_fields() -> None:
         if len(table.model_fields) > 12
     }
     for table in wide:
-        manual = (EXAMPLES.parent / table.MANUAL).read_text(encoding="utf-8")  # type: ignore[attr-defined]
+        manual = (EXAMPLES.parent / table.MANUAL).read_text(encoding="utf-8")
         missing = [name for name in table.model_fields if not re.search(rf"\b{name}\b", manual)]
         assert not missing, table
     assert len(wide) > 8
 
 
-def test_a_line_that_is_no_toml_is_shown_with_what_is_expected(tmp_path: Path) -> None:
+def test_a_line_that_is_no_toml_is_shown_with_what_is_expected(tmp_path):
     (line,) = errors("plan", changed(tmp_path, 'level = "standard"', "level = standard"))
     assert "= 'level = standard': must be well-formed TOML, which line 29 is not" in line
     assert "a text in quotes" in line
 
 
-def test_a_value_that_was_set_is_in_no_line() -> None:
+def test_a_value_that_was_set_is_in_no_line():
     with pytest.raises(BadInput) as error:
         read_model(Case, InputFile(SPUR, (Override("pair.pinion.teeth", 2.5),)))
     assert [fault.location for fault in error.value.faults] == [""]
 
 
-def test_json_over_http_stays_as_it_was(tmp_path: Path) -> None:
+def test_json_over_http_stays_as_it_was(tmp_path):
     with pytest.raises(BadInput) as error:
         read_model(Case, changed(tmp_path, "teeth = 20", "teeth = 2.5"))
     assert set(error.value.faults[0].as_json()) == {"field", "value", "bound", "suggestion"}
@@ -325,14 +308,14 @@ SPOILED: dict[str, tuple[type[BoundaryModel], dict[str, Any]]] = {
 
 
 @pytest.mark.parametrize("kind", SPOILED)
-def test_a_search_ends_while_it_finds(kind: str) -> None:
+def test_a_search_ends_while_it_finds(kind):
     model, data = SPOILED[kind]
     with pytest.raises(ValidationError) as caught:
         model.model_validate(data)
     assert 1 <= caught.value.error_count() <= 100
 
 
-def test_each_of_some_tables_is_told_its_faults() -> None:
+def test_each_of_some_tables_is_told_its_faults():
     shafts = [{"name": 1, "length": 2.0}] * 12
     with pytest.raises(BadInput) as caught:
         validated(SceneInput, SCENE | {"shafts": shafts})
@@ -340,7 +323,7 @@ def test_each_of_some_tables_is_told_its_faults() -> None:
     assert {f"shafts[{number}].{field}" for number in range(12) for field in ("name", "length")} <= fields
 
 
-def test_a_list_that_is_too_long_is_told_its_length_though_its_tables_are_wrong() -> None:
+def test_a_list_that_is_too_long_is_told_its_length_though_its_tables_are_wrong():
     with pytest.raises(BadInput) as caught:
         validated(SceneInput, SCENE | {"shafts": [{}] * 1001})
     (fault,) = caught.value.faults
@@ -350,23 +333,23 @@ def test_a_list_that_is_too_long_is_told_its_length_though_its_tables_are_wrong(
 @pytest.mark.parametrize(
     "value", [[], {}, [1, "a", [None, {}]], {"a": {"b": [1.5, True]}, 2: "c"}, [[[]]], "text", None, (1,)]
 )
-def test_a_short_value_is_shown_as_it_is(value: object) -> None:
+def test_a_short_value_is_shown_as_it_is(value):
     shown = str(Fault("field", value, "another"))
     assert shown == f"field = {'nothing' if value is None else repr(value)}: must be another"
 
 
-def test_of_a_long_value_the_beginning_is_shown() -> None:
+def test_of_a_long_value_the_beginning_is_shown():
     value = {"numbers": list(range(1000)), "texts": ["a" * 1000]}
     assert f"field = {repr(value)[:200]}...: must" in str(Fault("field", value, "another"))
 
 
-def test_a_name_as_long_as_a_body_is_not_told_whole() -> None:
+def test_a_name_as_long_as_a_body_is_not_told_whole():
     with pytest.raises(BadInput) as caught:
         validated(Case, CASE | {"x" * 1_000_000: 1})
     assert len(str(caught.value)) < 1000
 
 
-def test_what_is_bounded_once_is_not_bounded_again() -> None:
+def test_what_is_bounded_once_is_not_bounded_again():
     """The description of the API was too deep to be written: each use of a model had wrapped it once more."""
 
     class Part(BoundaryModel):
@@ -379,7 +362,7 @@ def test_what_is_bounded_once_is_not_bounded_again() -> None:
     class Uses(BoundaryModel):
         whole: Whole
 
-    def bounds(node: object) -> int:
+    def bounds(node):
         """Return the most functions that see the data of one schema in turn."""
         if not isinstance(node, dict) or node.get("type") != "function-before":
             return 0

@@ -1,7 +1,5 @@
 """The fraction reported of work follows the time that its stages take, and of a table its CPU time."""
 
-from __future__ import annotations
-
 import itertools
 import math
 import resource
@@ -39,14 +37,14 @@ TIMES = [dict(zip(SHARES, seconds, strict=True)) for seconds in itertools.produc
 
 
 @pytest.mark.parametrize("seconds", TIMES, ids=str)
-def test_the_fraction_never_falls_and_ends_at_one(seconds: dict[str, float]) -> None:
+def test_the_fraction_never_falls_and_ends_at_one(seconds):
     fractions = [fraction for *_, fraction in reported(seconds)]
     assert fractions == sorted(fractions)
     assert fractions[-1] == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize("seconds", TIMES, ids=str)
-def test_the_last_stage_is_right_whatever_the_shares_say(seconds: dict[str, float]) -> None:
+def test_the_last_stage_is_right_whatever_the_shares_say(seconds):
     """After a tenth of it; more that was reported before stands until it is true."""
     reports = reported(seconds)
     before = max(fraction for stage, _, fraction in reports if stage != "confirmation")
@@ -55,24 +53,24 @@ def test_the_last_stage_is_right_whatever_the_shares_say(seconds: dict[str, floa
         assert fraction == pytest.approx(max(spent, before), abs=0.1)
 
 
-def test_usual_times_are_reported_as_they_are() -> None:
+def test_usual_times_are_reported_as_they_are():
     for _, spent, fraction in reported({"analysis": 5.0, "runs": 3.0, "confirmation": 2.0}):
         assert fraction == pytest.approx(spent, abs=0.01)
 
 
 @pytest.mark.parametrize("seconds", [{"runs": 6.0, "confirmation": 4.0}, {"confirmation": 9.0}])
-def test_stages_that_are_left_out_have_no_share(seconds: dict[str, float]) -> None:
+def test_stages_that_are_left_out_have_no_share(seconds):
     for _, spent, fraction in reported(seconds):
         assert fraction == pytest.approx(spent, abs=0.01)
 
 
-def test_an_undeclared_stage_says_nothing() -> None:
+def test_an_undeclared_stage_says_nothing():
     paced = PacedFraction(SHARES.items())
     assert paced.at("meanwhile", 0.5, 1.0) is None
     assert paced.at("analysis", 0.5, 1.0) == 0.25
 
 
-def test_what_a_stage_says_behind_its_name_is_no_other_stage() -> None:
+def test_what_a_stage_says_behind_its_name_is_no_other_stage():
     plain, telling = PacedFraction(SHARES.items()), PacedFraction(SHARES.items())
     for fraction, elapsed in ((0.0, 1.0), (0.5, 3.0), (1.0, 5.0)):
         expected = plain.at("analysis", fraction, elapsed)
@@ -117,20 +115,20 @@ def reports_of(case: Case, folder: Path) -> list[Report]:
 
 
 @pytest.fixture(scope="module")
-def reports(tmp_path_factory: pytest.TempPathFactory) -> list[Report]:
+def reports(tmp_path_factory):
     reports_of(helical(10.0, model="3d", level="draft", positions=8), tmp_path_factory.mktemp("compiles"))
     return reports_of(helical(model="3d", level="draft"), tmp_path_factory.mktemp("measured"))
 
 
 @pytest.mark.nightly
-def test_the_fraction_is_near_the_share_of_the_time_spent(reports: list[Report]) -> None:
+def test_the_fraction_is_near_the_share_of_the_time_spent(reports):
     whole = reports[-1][0]
     error, stage = max((abs(fraction - spent / whole), stage) for spent, stage, fraction in reports)
     assert error < LARGEST_ERROR, stage
 
 
 @pytest.mark.nightly
-def test_the_fraction_never_falls_and_moves_in_small_steps(reports: list[Report]) -> None:
+def test_the_fraction_never_falls_and_moves_in_small_steps(reports):
     whole = reports[-1][0]
     assert len({fraction for *_, fraction in reports}) > 50
     for (earlier, _, before), (later, stage, after) in itertools.pairwise(reports):
@@ -138,7 +136,7 @@ def test_the_fraction_never_falls_and_moves_in_small_steps(reports: list[Report]
         assert later - earlier < LARGEST_STEP * whole, stage
 
 
-def test_a_pass_that_follows_takes_its_part_of_what_is_left() -> None:
+def test_a_pass_that_follows_takes_its_part_of_what_is_left():
     table = TableFraction(refines=True)
     table.plan({"compliance": 3.0, "contact": 1.0})
     first = [table.at(*step) for step in (("compliance", 0.5), ("compliance", 1.0), ("contact", 1.0))]

@@ -1,36 +1,30 @@
 """The scheduler: work is done once, ends for a stated reason, and leaves no process behind."""
 
-from __future__ import annotations
-
 import errno
 import itertools
 import os
 import signal
-from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
 
 import pytest
 from running_service import Bench, bench, lives, until
 from service_fake_work import SECRET
 from service_fakes import REGISTRY
 
-from host.children.launcher import ChildProcess, Ends, Launcher, start_child
+from host.children.launcher import Launcher, start_child
 from host.directories import cache_home, data_home
 from service.queue import claims
 from service.queue.claims import MAX_LOST_RUNS, Claim
 from service.queue.scheduler import Scheduler
 from service.settings import MIN_MEMORY_MB, Settings
-from service.store.results import ResultStore, StoredResult
+from service.store.results import ResultStore
 from service.worker.usage import machine_memory_mb
 from service.worker.worker import WORK
 
 
 @pytest.fixture(params=["started anew", "forked"])
-def machine(
-    tmp_path: Path, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
-) -> Iterator[Bench]:
+def machine(tmp_path, request, monkeypatch):
     """A started scheduler with two workers, started anew or forked from a warm process."""
     if request.param == "started anew":
         monkeypatch.setattr(Launcher, "launch", lambda _, ends: start_child(WORK, ends))
@@ -52,16 +46,14 @@ def worker(machine: Bench, job_key: str) -> int:
     return int(file.read_text().splitlines()[-1].split()[0])
 
 
-def test_work_is_stored_under_its_key_and_the_workspace_is_gone(machine: Bench) -> None:
+def test_work_is_stored_under_its_key_and_the_workspace_is_gone(machine):
     job = machine.ended(machine.submit(text="hello"))
     assert (job.status, job.fraction, job.attempts) == ("successful", 1.0, 1)
     assert machine.store.verified(job.key, "database").path.read_text() == "hello"
     until(lambda: not list((machine.settings.data_directory / "work").iterdir()))
 
 
-def test_a_data_directory_may_be_named_from_where_one_is(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_data_directory_may_be_named_from_where_one_is(tmp_path, monkeypatch):
     """Workers work in other folders, where the same name would mean another place."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("HOME", str(tmp_path))
@@ -74,9 +66,7 @@ def test_a_data_directory_may_be_named_from_where_one_is(
         found.close()
 
 
-def test_base_directories_that_are_relative_are_ignored(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_base_directories_that_are_relative_are_ignored(tmp_path, monkeypatch):
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.setenv("XDG_DATA_HOME", "data")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "elsewhere"))
@@ -86,42 +76,40 @@ def test_base_directories_that_are_relative_are_ignored(
     assert cache_home() == tmp_path / ".cache" / "lineofaction"
 
 
-def test_workers_are_nice_and_keep_to_one_thread(machine: Bench) -> None:
+def test_workers_are_nice_and_keep_to_one_thread(machine):
     job = machine.ended(machine.submit())
     _, niceness, threads = machine.starts(job)[0].split()
     nicest = 19  # where these tests are niced themselves
     assert (int(niceness), threads) == (min(os.nice(0) + 10, nicest), "1")
 
 
-def test_progress_is_reported_by_stage(machine: Bench) -> None:
+def test_progress_is_reported_by_stage(machine):
     job = machine.submit(mode="hang")
     until(lambda: machine.submissions.find(job.id).stage == "first")
     seen = machine.submissions.find(job.id)
     assert (seen.status, seen.stage_fraction, seen.fraction) == ("running", 0.5, 0.125)
 
 
-def test_a_dying_worker_gets_a_second_attempt(machine: Bench) -> None:
+def test_a_dying_worker_gets_a_second_attempt(machine):
     job = machine.ended(machine.submit(mode="die_once", text="late"))
     assert (job.status, job.attempts) == ("successful", 2)
     assert machine.store.verified(job.key, "database").path.read_text() == "late"
 
 
-def test_a_second_attempt_finds_what_the_first_left(machine: Bench) -> None:
+def test_a_second_attempt_finds_what_the_first_left(machine):
     job = machine.ended(machine.submit(mode="leave_and_die"))
     assert (job.status, job.attempts) == ("successful", 2)
     assert machine.store.verified(job.key, "database").path.read_text() == "left behind"
     until(lambda: not list((machine.settings.data_directory / "work").iterdir()))
 
 
-def test_attempts_are_limited_and_the_reason_is_stated(machine: Bench) -> None:
+def test_attempts_are_limited_and_the_reason_is_stated(machine):
     job = machine.ended(machine.submit(mode="die"))
     assert (job.status, job.attempts, len(machine.starts(job))) == ("failed", 2, 2)
     assert job.message == "The worker ended early with exit code 7. That was attempt 2 of 2."
 
 
-def test_a_worker_that_is_killed_from_outside_costs_no_attempt(
-    machine: Bench, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_worker_that_is_killed_from_outside_costs_no_attempt(machine, monkeypatch):
     """It is killed as often as there are attempts, and once more."""
     monkeypatch.setattr(claims, "wait_s", lambda _lost_runs: 0.0)
     job = machine.submit(mode="hang_thrice", text="late")
@@ -133,9 +121,7 @@ def test_a_worker_that_is_killed_from_outside_costs_no_attempt(
     assert (ended.status, ended.attempts) == ("successful", 1)
 
 
-def test_a_worker_that_the_system_kills_for_memory_costs_an_attempt(
-    machine: Bench, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_worker_that_the_system_kills_for_memory_costs_an_attempt(machine, monkeypatch):
     """Here as its count of such kills says."""
     counts = itertools.count()
     monkeypatch.setattr("host.children.child.memory_kills", lambda: next(counts))
@@ -149,12 +135,12 @@ def test_a_worker_that_the_system_kills_for_memory_costs_an_attempt(
     assert (ended.status, ended.message) == ("failed", text)
 
 
-def test_failures_raised_on_purpose_are_told_and_not_retried(machine: Bench) -> None:
+def test_failures_raised_on_purpose_are_told_and_not_retried(machine):
     job = machine.ended(machine.submit(mode="mesh"))
     assert (job.status, job.attempts, job.message) == ("failed", 1, "element 7 has a negative Jacobian")
 
 
-def test_bad_input_found_by_the_work_is_named_as_the_user_wrote_it(machine: Bench) -> None:
+def test_bad_input_found_by_the_work_is_named_as_the_user_wrote_it(machine):
     job = machine.ended(machine.submit(mode="input"))
     assert job.status == "failed"
     assert job.faults == (
@@ -168,7 +154,7 @@ def test_bad_input_found_by_the_work_is_named_as_the_user_wrote_it(machine: Benc
 
 
 @pytest.mark.law
-def test_the_text_of_a_defect_stays_in_the_log(machine: Bench) -> None:
+def test_the_text_of_a_defect_stays_in_the_log(machine):
     job = machine.ended(machine.submit(mode="defect"))
     logs = "".join(file.read_text() for file in (machine.settings.data_directory / "log").iterdir())
     assert SECRET in logs
@@ -176,7 +162,7 @@ def test_the_text_of_a_defect_stays_in_the_log(machine: Bench) -> None:
     assert job.reference and job.reference in job.message
 
 
-def test_dismissal_ends_the_worker_and_its_children(machine: Bench) -> None:
+def test_dismissal_ends_the_worker_and_its_children(machine):
     job = machine.submit(mode="hang")
     sleeper = grandchild(machine, job.key)
     child = worker(machine, job.key)
@@ -187,7 +173,7 @@ def test_dismissal_ends_the_worker_and_its_children(machine: Bench) -> None:
     assert machine.submissions.find(job.id).status == "dismissed"
 
 
-def test_shared_work_goes_on_until_nobody_wants_it(machine: Bench) -> None:
+def test_shared_work_goes_on_until_nobody_wants_it(machine):
     one, other = machine.submit(mode="hang"), machine.submit(mode="hang")
     sleeper = grandchild(machine, one.key)
     machine.submissions.dismiss(one.id)
@@ -200,7 +186,7 @@ def test_shared_work_goes_on_until_nobody_wants_it(machine: Bench) -> None:
     until(lambda: not lives(sleeper))
 
 
-def test_the_deadline_ends_the_work(tmp_path: Path) -> None:
+def test_the_deadline_ends_the_work(tmp_path):
     machine = bench(tmp_path, REGISTRY, deadline_s=2.0)
     machine.scheduler.start()
     job = machine.submit(mode="hang")
@@ -213,7 +199,7 @@ def test_the_deadline_ends_the_work(tmp_path: Path) -> None:
 
 
 @pytest.mark.law
-def test_work_beyond_its_memory_fails_with_the_limit_and_what_to_try(tmp_path: Path) -> None:
+def test_work_beyond_its_memory_fails_with_the_limit_and_what_to_try(tmp_path):
     """300 MB are refused to one that may have 256, and had by one that may have 1000."""
     for limit, status in ((256, "failed"), (1000, "successful")):
         machine = bench(tmp_path / str(limit), REGISTRY, memory_limit_mb=limit)
@@ -224,13 +210,13 @@ def test_work_beyond_its_memory_fails_with_the_limit_and_what_to_try(tmp_path: P
         assert ("256 MB (LOA_MEMORY_LIMIT_MB). Select a coarser level" in job.message) == (limit == 256)
 
 
-def test_a_library_that_gives_up_is_told_with_its_signal(machine: Bench) -> None:
+def test_a_library_that_gives_up_is_told_with_its_signal(machine):
     job = machine.ended(machine.submit(mode="abort"))
     assert (job.status, job.attempts) == ("failed", 2)
     assert job.message.startswith("The worker was ended by SIGABRT (it may have run out of memory).")
 
 
-def test_work_that_finds_no_room_fails_with_the_cause_and_serves_nothing(machine: Bench) -> None:
+def test_work_that_finds_no_room_fails_with_the_cause_and_serves_nothing(machine):
     job = machine.ended(machine.submit(mode="full", text="long"))
     assert (job.status, job.attempts) == ("failed", 1)
     assert "no space left in the data directory" in job.message
@@ -239,13 +225,11 @@ def test_work_that_finds_no_room_fails_with_the_cause_and_serves_nothing(machine
 
 @pytest.mark.law
 @pytest.mark.parametrize("number", [errno.ENOSPC, errno.EIO])
-def test_a_result_that_cannot_be_stored_never_leaves_its_job_running(
-    machine: Bench, monkeypatch: pytest.MonkeyPatch, number: int
-) -> None:
+def test_a_result_that_cannot_be_stored_never_leaves_its_job_running(machine, monkeypatch, number):
     """It fails, for want of room or under a number in the log, and those behind it have their turn."""
     put, failed = ResultStore.put, []
 
-    def full_once(store: ResultStore, *arguments: Any) -> StoredResult:
+    def full_once(store, *arguments):
         if failed:
             return put(store, *arguments)
         failed.append(1)
@@ -258,7 +242,7 @@ def test_a_result_that_cannot_be_stored_never_leaves_its_job_running(
     assert machine.ended(machine.submit(text="next")).status == "successful"
 
 
-def test_memory_is_the_machine_s_or_what_its_control_group_leaves(tmp_path: Path) -> None:
+def test_memory_is_the_machine_s_or_what_its_control_group_leaves(tmp_path):
     group = tmp_path / "memory.max"
     whole = machine_memory_mb(group)  # no such file
     group.write_text("max\n")
@@ -267,7 +251,7 @@ def test_memory_is_the_machine_s_or_what_its_control_group_leaves(tmp_path: Path
     assert machine_memory_mb(group) == 300
 
 
-def test_a_stop_kills_the_workers_and_loses_no_job(machine: Bench) -> None:
+def test_a_stop_kills_the_workers_and_loses_no_job(machine):
     job = machine.submit(mode="hang")
     sleeper, child = grandchild(machine, job.key), worker(machine, job.key)
     machine.scheduler.stop()
@@ -276,7 +260,7 @@ def test_a_stop_kills_the_workers_and_loses_no_job(machine: Bench) -> None:
     assert (waiting.status, waiting.attempts) == ("accepted", 0)
 
 
-def test_what_a_dead_service_left_running_is_taken_up_again(tmp_path: Path) -> None:
+def test_what_a_dead_service_left_running_is_taken_up_again(tmp_path):
     dead = bench(tmp_path, REGISTRY)
     job = dead.submit(text="found again")
     dead.claimed()  # it died right after this
@@ -293,7 +277,7 @@ def test_what_a_dead_service_left_running_is_taken_up_again(tmp_path: Path) -> N
 
 
 @pytest.fixture
-def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+def at_once(monkeypatch):
     """Let nothing wait after a run that was lost."""
     monkeypatch.setattr(claims, "wait_s", lambda _lost_runs: 0.0)
 
@@ -314,8 +298,7 @@ def fall(server: Bench, *, begun: bool = True) -> list[str]:
 
 
 def _next_beside(scheduler: Scheduler, runs: list[Claim]) -> Claim | None:
-    """Return what a scheduler begins beside runs."""
-    scheduler._running = {claim.id: SimpleNamespace(claim=claim) for claim in runs}  # type: ignore[misc]
+    scheduler._running = {claim.id: SimpleNamespace(claim=claim) for claim in runs}
     try:
         return scheduler._next()
     finally:
@@ -323,7 +306,7 @@ def _next_beside(scheduler: Scheduler, runs: list[Claim]) -> Claim | None:
 
 
 @pytest.mark.usefixtures("at_once")
-def test_ends_of_the_server_are_no_attempts(tmp_path: Path) -> None:
+def test_ends_of_the_server_are_no_attempts(tmp_path):
     machine = bench(tmp_path, REGISTRY)
     job = machine.submit(text="done")
     for _ in range(MAX_LOST_RUNS - 1):
@@ -336,7 +319,7 @@ def test_ends_of_the_server_are_no_attempts(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("at_once")
-def test_work_that_had_not_begun_has_no_part_in_the_end_of_a_server(tmp_path: Path) -> None:
+def test_work_that_had_not_begun_has_no_part_in_the_end_of_a_server(tmp_path):
     machine = bench(tmp_path, REGISTRY)
     job = machine.submit(text="done")
     for _ in range(3 * MAX_LOST_RUNS):
@@ -348,7 +331,7 @@ def test_work_that_had_not_begun_has_no_part_in_the_end_of_a_server(tmp_path: Pa
 
 
 @pytest.mark.usefixtures("at_once")
-def test_what_ends_its_server_again_and_again_is_known_by_who_ran(tmp_path: Path) -> None:
+def test_what_ends_its_server_again_and_again_is_known_by_who_ran(tmp_path):
     """Others that ran beside it are done, as soon as suspects run without others."""
     machine = bench(tmp_path, REGISTRY, workers=4)
     jobs = [machine.submit(text=text) for text in ("a", "b", "fatal", "c", "waits")]
@@ -369,7 +352,7 @@ def test_what_ends_its_server_again_and_again_is_known_by_who_ran(tmp_path: Path
     machine.close()
 
 
-def test_what_was_lost_waits_longer_each_time_and_others_go_on(tmp_path: Path) -> None:
+def test_what_was_lost_waits_longer_each_time_and_others_go_on(tmp_path):
     machine = bench(tmp_path, REGISTRY)
     lost, other = machine.submit(text="lost"), machine.submit(text="other")
     assert fall(machine) == [lost.computation]
@@ -382,7 +365,7 @@ def test_what_was_lost_waits_longer_each_time_and_others_go_on(tmp_path: Path) -
     machine.close()
 
 
-def test_the_end_of_a_child_by_itself_breaks_the_row(tmp_path: Path) -> None:
+def test_the_end_of_a_child_by_itself_breaks_the_row(tmp_path):
     machine = bench(tmp_path, REGISTRY)
     machine.submit(text="a")
     claim = machine.claimed()
@@ -397,13 +380,11 @@ def test_the_end_of_a_child_by_itself_breaks_the_row(tmp_path: Path) -> None:
     machine.close()
 
 
-def test_a_child_that_ends_before_it_begins_costs_no_attempt(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_child_that_ends_before_it_begins_costs_no_attempt(tmp_path, monkeypatch):
     """Here the first one finds no program."""
     launched: list[int] = []
 
-    def launch(_launcher: Launcher, ends: Ends) -> ChildProcess:
+    def launch(_launcher, ends):
         launched.append(1)
         return start_child("no.such.module" if len(launched) == 1 else WORK, ends)
 

@@ -1,14 +1,9 @@
 """The job table: single flight, shared dismissal, bounded queue, order."""
 
-from __future__ import annotations
-
 import uuid
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
-from pathlib import Path
-from typing import Any
 
 import pytest
 from running_service import Bench, bench
@@ -25,14 +20,14 @@ from service.store.results import Mark
 
 
 @pytest.fixture
-def machine(tmp_path: Path, database_url: str | None) -> Iterator[Bench]:
+def machine(tmp_path, database_url):
     """The table without a running scheduler, on each database."""
     found = bench(tmp_path, REGISTRY, queue_limit=3, database_url=database_url)
     yield found
     found.close()
 
 
-def test_equal_work_submitted_at_once_from_many_threads_is_one_computation(machine: Bench) -> None:
+def test_equal_work_submitted_at_once_from_many_threads_is_one_computation(machine):
     with ThreadPoolExecutor(16) as pool:
         jobs = list(pool.map(lambda _: machine.submit(text="same"), range(64)))
     assert len({job.id for job in jobs}) == 64
@@ -47,7 +42,7 @@ def reused(machine: Bench, stated: str = "{}", caller: Holder = KEYLESS_CALLER, 
     return machine.submissions.submit("fake", key, {"wish": {}}, stored=stored, caller=caller, terms=terms)
 
 
-def test_an_equal_job_of_the_caller_answers_in_place_of_a_new_one(machine: Bench) -> None:
+def test_an_equal_job_of_the_caller_answers_in_place_of_a_new_one(machine):
     with ThreadPoolExecutor(16) as pool:
         (first,) = {job.id for job in pool.map(lambda _: reused(machine), range(32))}
     others = [reused(machine, stated='{"wish": {}}'), reused(machine, caller=Holder(name="bench-3"))]
@@ -57,9 +52,7 @@ def test_an_equal_job_of_the_caller_answers_in_place_of_a_new_one(machine: Bench
     assert reused(machine).id != first
 
 
-def test_a_job_answers_for_an_equal_one_as_long_as_it_has_or_will_have_a_result(
-    machine: Bench, tmp_path: Path
-) -> None:
+def test_a_job_answers_for_an_equal_one_as_long_as_it_has_or_will_have_a_result(machine, tmp_path):
     first = reused(machine)
     claim = machine.claimed()
     assert reused(machine).id == first.id
@@ -76,16 +69,16 @@ def test_a_job_answers_for_an_equal_one_as_long_as_it_has_or_will_have_a_result(
     assert reused(machine).id != second.id
 
 
-def test_a_claim_whose_commit_was_not_answered_is_the_same_claim(machine: Bench) -> None:
+def test_a_claim_whose_commit_was_not_answered_is_the_same_claim(machine):
     """The connection broke after the commit: the step runs again and finds what it has done."""
     machine.submit(text="a")
     row = machine.claims._first()
-    begin = Claims._begin.__wrapped__  # type: ignore[attr-defined]
+    begin = Claims._begin.__wrapped__
     assert row is not None and begin(machine.claims, row) and begin(machine.claims, row)
     assert [claim.attempts for claim in machine.claims.running()] == [1]
 
 
-def test_what_is_dismissed_while_it_is_claimed_is_not_run(machine: Bench) -> None:
+def test_what_is_dismissed_while_it_is_claimed_is_not_run(machine):
     job = machine.submit(text="a")
     row = machine.claims._first()
     machine.submissions.dismiss(job.id)
@@ -93,7 +86,7 @@ def test_what_is_dismissed_while_it_is_claimed_is_not_run(machine: Bench) -> Non
     assert machine.submissions.find(job.id).status == "dismissed"
 
 
-def test_the_queue_is_bounded_but_lets_shared_work_in(machine: Bench) -> None:
+def test_the_queue_is_bounded_but_lets_shared_work_in(machine):
     for text in "abc":
         machine.submit(text=text)
     with pytest.raises(QueueFull, match="3 computations wait already"):
@@ -103,7 +96,7 @@ def test_the_queue_is_bounded_but_lets_shared_work_in(machine: Bench) -> None:
     assert machine.submit(text="d").status == "accepted"
 
 
-def test_stored_results_are_successful_at_once(machine: Bench, tmp_path: Path) -> None:
+def test_stored_results_are_successful_at_once(machine, tmp_path):
     job = machine.submit(text="kept")
     file = tmp_path / "made.nc"
     file.write_text("kept")
@@ -113,7 +106,7 @@ def test_stored_results_are_successful_at_once(machine: Bench, tmp_path: Path) -
     assert (again.status, again.fraction, again.key) == ("successful", 1.0, job.key)
 
 
-def test_work_that_ends_while_its_result_is_looked_for_is_not_done_again(machine: Bench) -> None:
+def test_work_that_ends_while_its_result_is_looked_for_is_not_done_again(machine):
     """The store did not have the result yet, and the table has the computation no more as running."""
     key, inputs = "ab" * 32, {"wish": {}}
     machine.submissions.submit("fake", key, inputs, stored=False)
@@ -127,7 +120,7 @@ def test_work_that_ends_while_its_result_is_looked_for_is_not_done_again(machine
     assert lost.status == "accepted"  # it ended before we looked, and its result is gone
 
 
-def test_failed_work_may_be_tried_anew(machine: Bench) -> None:
+def test_failed_work_may_be_tried_anew(machine):
     first = machine.submit(text="a")
     claim = machine.claimed()
     machine.claims.fail(claim, "no mesh")
@@ -136,7 +129,7 @@ def test_failed_work_may_be_tried_anew(machine: Bench) -> None:
     assert machine.submissions.find(first.id).status == "failed"
 
 
-def test_dismissed_work_cannot_end_otherwise(machine: Bench) -> None:
+def test_dismissed_work_cannot_end_otherwise(machine):
     job = machine.submit(text="a")
     claim = machine.claimed()
     machine.submissions.dismiss(job.id)
@@ -148,14 +141,14 @@ def test_dismissed_work_cannot_end_otherwise(machine: Bench) -> None:
     assert machine.claims.claim() is None
 
 
-def test_ended_jobs_stay_as_they_are(machine: Bench) -> None:
+def test_ended_jobs_stay_as_they_are(machine):
     job = machine.submit(text="a")
     claim = machine.claimed()
     machine.claims.succeed(claim)
     assert machine.submissions.dismiss(job.id).status == "successful"
 
 
-def test_the_remaining_time_follows_the_pace_and_falls_between_reports(machine: Bench) -> None:
+def test_the_remaining_time_follows_the_pace_and_falls_between_reports(machine):
     job = machine.submit(text="a")
     assert machine.submissions.find(job.id).remaining_s(datetime.now(UTC)) is None
     claim = machine.claimed()
@@ -172,7 +165,7 @@ def test_the_remaining_time_follows_the_pace_and_falls_between_reports(machine: 
     assert machine.submissions.find(job.id).remaining_s(datetime.now(UTC)) is None
 
 
-def test_pages_hold_every_job_once_the_newest_first(machine: Bench) -> None:
+def test_pages_hold_every_job_once_the_newest_first(machine):
     jobs = [machine.submit(text="same").id for _ in range(7)]
     pages, after = [], None
     for _ in range(10):
@@ -185,7 +178,7 @@ def test_pages_hold_every_job_once_the_newest_first(machine: Bench) -> None:
     assert [identifier for page in pages for identifier in page] == jobs[::-1]
 
 
-def test_an_unknown_job_is_said_to_be_unknown(machine: Bench) -> None:
+def test_an_unknown_job_is_said_to_be_unknown(machine):
     with pytest.raises(NoSuchJob, match="'nothing'"):
         machine.submissions.find("nothing")
     for odd in ("\x00", "\ud800", "a" * 36, str(uuid.uuid4())):
@@ -193,20 +186,20 @@ def test_an_unknown_job_is_said_to_be_unknown(machine: Bench) -> None:
             machine.submissions.find(odd)
 
 
-def test_jobs_survive_a_restart(machine: Bench, tmp_path: Path) -> None:
+def test_jobs_survive_a_restart(machine, tmp_path):
     job = machine.submit(text="durable")
     again = bench(tmp_path, REGISTRY, database_url=machine.settings.database_address)
     assert again.submissions.find(job.id) == machine.submissions.find(job.id)
     again.close()
 
 
-def test_a_callers_last_job_is_sought_among_its_own_alone(machine: Bench) -> None:
+def test_a_callers_last_job_is_sought_among_its_own_alone(machine):
     """By the time of all jobs of a project those of others were read, at each submission."""
     if machine.engine.dialect.name != "sqlite":
         pytest.skip("a server plans by the numbers of its rows")
     plan: list[str] = []
 
-    def explain(_connection: object, cursor: Any, statement: str, parameters: Any, *_: object) -> None:
+    def explain(_connection, cursor, statement, parameters, *_):
         rows = cursor.connection.execute(f"EXPLAIN QUERY PLAN {statement}", parameters)
         plan.extend(str(row[3]) for row in rows)
 

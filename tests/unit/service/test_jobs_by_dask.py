@@ -1,14 +1,12 @@
 """Whole jobs done by workers of a real Dask scheduler: each ends, whoever is killed meanwhile."""
 
-from __future__ import annotations
-
 import asyncio
 import errno
 import json
 import os
 import signal
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -43,7 +41,7 @@ BUSY = 10.0
 
 
 @pytest.fixture(scope="module")
-def dask(tmp_path_factory: pytest.TempPathFactory) -> Iterator[DaskProcesses]:
+def dask(tmp_path_factory):
     """Two workers with one thread each, whose data directory is that of all servers of this file."""
     folder = tmp_path_factory.mktemp("dask")
     with dask_processes(folder, 2, LOA_DATA_DIRECTORY=str(folder / "data")) as running:
@@ -51,11 +49,11 @@ def dask(tmp_path_factory: pytest.TempPathFactory) -> Iterator[DaskProcesses]:
 
 
 @pytest.fixture
-def server(dask: DaskProcesses, tmp_path: Path) -> Iterator[MakeServer]:
+def server(dask, tmp_path):
     """Return what makes servers on one table whose jobs the workers do."""
     made: list[Bench] = []
 
-    def make(**settings: Any) -> Bench:
+    def make(**settings):
         dask.await_workers(2)
         made.append(bench(tmp_path / "server", REGISTRY, scheduler=dask.address, **settings))
         made[-1].scheduler._crew = cluster.Cluster(dask.address, tmp_path.name)
@@ -67,7 +65,7 @@ def server(dask: DaskProcesses, tmp_path: Path) -> Iterator[MakeServer]:
         made[-1].submissions.dismiss(job.id)  # it would go on without a server
     made[-1].scheduler.wake()
     for file in (dask.folder / "data").glob("started_*"):
-        until(lambda file=file: not lives(int(file.read_text().split()[-3])))  # type: ignore[misc]
+        until(lambda file=file: not lives(int(file.read_text().split()[-3])))
     for file in (*(dask.folder / "data").glob("started_*"), *(dask.folder / "data").glob("grandchild_*")):
         file.unlink()
     for one in made:
@@ -98,7 +96,7 @@ def worker_of(dask: DaskProcesses, pid: int) -> int:
     return pid
 
 
-def test_a_job_is_done_by_a_worker_and_its_files_come_home(dask: DaskProcesses, server: MakeServer) -> None:
+def test_a_job_is_done_by_a_worker_and_its_files_come_home(dask, server):
     machine = server()
     job = machine.ended(machine.submit(text="hello"))
     until(lambda: dask.results() == [])
@@ -109,9 +107,7 @@ def test_a_job_is_done_by_a_worker_and_its_files_come_home(dask: DaskProcesses, 
 
 
 @pytest.mark.law
-def test_a_table_of_a_worker_is_that_of_this_machine_to_the_last_bit(
-    dask: DaskProcesses, tmp_path: Path
-) -> None:
+def test_a_table_of_a_worker_is_that_of_this_machine_to_the_last_bit(dask, tmp_path):
     tables = []
     for name, address in (("here", None), ("dask", dask.address)):
         machine = bench(tmp_path / name, default_registry(), scheduler=address)
@@ -130,7 +126,7 @@ def test_a_table_of_a_worker_is_that_of_this_machine_to_the_last_bit(
         np.testing.assert_array_equal(here, there, err_msg=field)
 
 
-def test_progress_ends_and_reasons_are_those_of_a_child_here(dask: DaskProcesses, server: MakeServer) -> None:
+def test_progress_ends_and_reasons_are_those_of_a_child_here(dask, server):
     machine = server()
     hangs = machine.submit(mode="hang")
     until(lambda: machine.submissions.find(hangs.id).stage == "first")
@@ -146,9 +142,7 @@ def test_progress_ends_and_reasons_are_those_of_a_child_here(dask: DaskProcesses
     assert SECRET in log.read_text()
 
 
-def test_a_child_over_its_memory_or_killed_ends_alone(
-    dask: DaskProcesses, server: MakeServer, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_child_over_its_memory_or_killed_ends_alone(dask, server, monkeypatch):
     monkeypatch.setattr(settlement, "MAX_LOST_RUNS", 1)
     machine, workers = server(memory_limit_mb=256, attempts=1), sorted(dask.pids())
     assert "256 MB (LOA_MEMORY_LIMIT_MB)" in machine.ended(machine.submit(mode="hog")).message
@@ -159,7 +153,7 @@ def test_a_child_over_its_memory_or_killed_ends_alone(
     assert sorted(dask.pids()) == workers
 
 
-def test_dismissal_kills_the_child_within_half_a_second(dask: DaskProcesses, server: MakeServer) -> None:
+def test_dismissal_kills_the_child_within_half_a_second(dask, server):
     machine = server()
     job = machine.submit(mode="hang")
     pids = [child(dask, job), int(note(dask, "grandchild", job).read_text())]
@@ -175,14 +169,14 @@ def test_dismissal_kills_the_child_within_half_a_second(dask: DaskProcesses, ser
     assert lives(child(dask, job))
 
 
-def test_deadline_and_cost_limit_end_the_work(dask: DaskProcesses, server: MakeServer) -> None:
+def test_deadline_and_cost_limit_end_the_work(dask, server):
     machine = server(deadline_s=2.0)
     ended = machine.ended(machine.submit(mode="hang"))
     assert ended.message.startswith("The deadline of 2 s (LOA_DEADLINE_S) passed.")
     until(lambda: not lives(child(dask, ended)))
 
 
-def test_a_cost_limit_ends_the_work(dask: DaskProcesses, server: MakeServer) -> None:
+def test_a_cost_limit_ends_the_work(dask, server):
     from service.queue.terms import Terms  # noqa: PLC0415
 
     machine = server()
@@ -193,9 +187,7 @@ def test_a_cost_limit_ends_the_work(dask: DaskProcesses, server: MakeServer) -> 
     assert ended.message.startswith("The limit of 1 CPU s (max_cost_s) was reached.")
 
 
-def test_work_whose_worker_is_killed_is_begun_again_by_another(
-    dask: DaskProcesses, server: MakeServer
-) -> None:
+def test_work_whose_worker_is_killed_is_begun_again_by_another(dask, server):
     machine = server()
     hangs, others = machine.submit(mode="hang"), [machine.submit(text=str(n)) for n in range(3)]
     first = child(dask, hangs)
@@ -210,9 +202,7 @@ def test_work_whose_worker_is_killed_is_begun_again_by_another(
     assert [machine.ended(job).status for job in others] == ["successful"] * 3
 
 
-def test_work_that_ends_its_dask_workers_again_and_again_is_given_up(
-    dask: DaskProcesses, server: MakeServer, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_work_that_ends_its_dask_workers_again_and_again_is_given_up(dask, server, monkeypatch):
     monkeypatch.setattr(settlement, "MAX_LOST_RUNS", 2)
     machine = server()
     hangs = machine.submit(mode="hang")
@@ -225,9 +215,7 @@ def test_work_that_ends_its_dask_workers_again_and_again_is_given_up(
     assert ended.attempts == 1
 
 
-def test_a_server_that_is_started_again_finds_its_tasks(
-    dask: DaskProcesses, server: MakeServer, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_server_that_is_started_again_finds_its_tasks(dask, server, monkeypatch):
     """Also where the table answers later than Dask: none is cancelled that may be wanted."""
     machine = server()
     hangs, slow = machine.submit(mode="hang"), machine.submit(mode="slow", text="found")
@@ -248,9 +236,7 @@ def test_a_server_that_is_started_again_finds_its_tasks(
     until(lambda: not lives(pid))
 
 
-def test_what_was_dismissed_while_the_server_was_away_is_cancelled(
-    dask: DaskProcesses, server: MakeServer
-) -> None:
+def test_what_was_dismissed_while_the_server_was_away_is_cancelled(dask, server):
     machine = server()
     job = machine.submit(mode="hang")
     pid = child(dask, job)
@@ -262,9 +248,7 @@ def test_what_was_dismissed_while_the_server_was_away_is_cancelled(
 
 
 @pytest.mark.law
-def test_a_scheduler_that_is_lost_costs_no_job_and_no_attempt(
-    dask: DaskProcesses, server: MakeServer
-) -> None:
+def test_a_scheduler_that_is_lost_costs_no_job_and_no_attempt(dask, server):
     machine = server(attempts=1)
     jobs = [machine.submit(mode="slow", text=f"lost {n}") for n in range(4)]
     child(dask, jobs[0])
@@ -276,7 +260,7 @@ def test_a_scheduler_that_is_lost_costs_no_job_and_no_attempt(
     assert [machine.ended(job).status for job in jobs] == ["successful"] * 4
 
 
-def test_one_worker_with_one_thread_does_a_job_and_its_parts(tmp_path: Path) -> None:
+def test_one_worker_with_one_thread_does_a_job_and_its_parts(tmp_path):
     """The job waits for parts that it gives to the scheduler whose only thread it would hold."""
     optimize = default_registry()["optimize"]
     with dask_processes(tmp_path, 1, LOA_DATA_DIRECTORY=str(tmp_path / "data")) as alone:
@@ -310,12 +294,12 @@ class Future:
 
 
 @pytest.fixture
-def dropped() -> list[str]:
+def dropped():
     return []
 
 
 @pytest.fixture
-def task(tmp_path: Path, dropped: list[str]) -> cluster.Task:
+def task(tmp_path, dropped):
     order = WorkOrder("a:b", {}, "k", tmp_path, tmp_path)
     return cluster.Task("name", order, tmp_path / "log", dropped.append)
 
@@ -323,7 +307,7 @@ def task(tmp_path: Path, dropped: list[str]) -> cluster.Task:
 def follow(task: cluster.Task, ends: Done | Exception, status: str = "finished") -> Outcome | None:
     """Let a task end so; return its outcome, None if it is followed anew."""
 
-    async def publish(*_: Any, **__: Any) -> None:
+    async def publish(*_, **__):
         return
 
     client: Any = SimpleNamespace(submit=lambda *_, **__: Future(ends, status), publish_dataset=publish)
@@ -342,7 +326,7 @@ def report(begin: str) -> dict[str, Any]:
     return {"begin": begin, "age": 7.0, "spent": 1.0, "steps": []}
 
 
-def test_a_second_beginning_ends_the_run_but_not_after_a_lost_scheduler(task: cluster.Task) -> None:
+def test_a_second_beginning_ends_the_run_but_not_after_a_lost_scheduler(task):
     task.hear(report("one"))
     assert task.age > 6.0
     task.await_anew()
@@ -353,7 +337,7 @@ def test_a_second_beginning_ends_the_run_but_not_after_a_lost_scheduler(task: cl
     assert task.finish() == Outcome(failure="The Dask worker that ran it was lost.", lost=True)
 
 
-def test_what_breaks_in_a_transfer_is_followed_anew(task: cluster.Task, dropped: list[str]) -> None:
+def test_what_breaks_in_a_transfer_is_followed_anew(task, dropped):
     assert follow(task, OSError("tcp://10.0.0.1: broken")) is None
     found = follow(task, made(Path("a.nc")))
     assert found is not None and found.products[0].file.read_bytes() == b"content"
@@ -369,16 +353,14 @@ def test_what_breaks_in_a_transfer_is_followed_anew(task: cluster.Task, dropped:
         (RuntimeError(SECRET), "could not do it; the log of the service has the reason."),
     ],
 )
-def test_what_fails_on_a_worker_is_said_in_our_words(task: cluster.Task, error: Exception, text: str) -> None:
+def test_what_fails_on_a_worker_is_said_in_our_words(task, error, text):
     found = follow(task, error, "error")
     assert found is not None and found.died
     assert text in found.failure and SECRET not in found.failure
 
 
-def test_a_full_disk_of_the_server_ends_the_job_with_that_reason(
-    task: cluster.Task, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def full(*_: Any) -> int:
+def test_a_full_disk_of_the_server_ends_the_job_with_that_reason(task, monkeypatch):
+    def full(*_):
         raise OSError(errno.ENOSPC, SECRET)
 
     monkeypatch.setattr(Path, "write_bytes", full)
@@ -387,7 +369,7 @@ def test_a_full_disk_of_the_server_ends_the_job_with_that_reason(
     assert "no space left in the data directory of the service (LOA_DATA_DIRECTORY)" in found.failure
 
 
-def test_a_worker_of_another_version_does_nothing() -> None:
+def test_a_worker_of_another_version_does_nothing():
     done = do_job(b"", {}, "", "lineofaction 0.0.9")
     assert done is not None and done.outcome.lost
     text = f"The Dask worker has lineofaction {solver_version()}"
@@ -410,13 +392,13 @@ def refused(address: str, tmp_path: Path) -> str:
     return f"{fault.bound} {fault.suggestion}"
 
 
-def test_a_scheduler_that_does_not_answer_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_scheduler_that_does_not_answer_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(dask_cluster, "CONNECT_S", 0.5)
     text = refused("tcp://127.0.0.1:1", tmp_path)
     assert "a Dask scheduler that answers" in text and "dask scheduler --port 1" in text
 
 
-def test_missing_and_other_workers_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missing_and_other_workers_are_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(dask_cluster, "CONNECT_S", 0.5)
     names = tmp_path / "names" / "lineofaction-0.0.9.dist-info"
     names.mkdir(parents=True)

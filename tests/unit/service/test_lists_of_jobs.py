@@ -1,10 +1,8 @@
 """Lists of jobs: what the database keeps for them is right after any history; their work does not grow."""
 
-from __future__ import annotations
-
 import random
 import uuid
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from datetime import UTC, datetime, timedelta
 from functools import partial
 from pathlib import Path
@@ -27,7 +25,7 @@ from service.store.results import Mark
 
 
 @pytest.fixture(scope="module", autouse=True)
-def migrated_once() -> None:
+def migrated_once():
     """Let migrations make all tables: an upgrade is part of what is tested here."""
 
 
@@ -172,9 +170,7 @@ FILTERS = [
 
 
 @pytest.mark.parametrize("few", [0, 300])
-def test_lists_are_those_of_a_look_at_every_job_after_any_history(
-    machine: Bench, monkeypatch: pytest.MonkeyPatch, few: int
-) -> None:
+def test_lists_are_those_of_a_look_at_every_job_after_any_history(machine, monkeypatch, few):
     """By either index of durations; page by page."""
     monkeypatch.setattr("service.queue.pages.FEW", few)
     history = History(machine, seed=few + 1)
@@ -192,7 +188,7 @@ def lines(connection: Connection) -> list[tuple[Any, ...]]:
     return [tuple(row) for row in connection.execute(select(listings).order_by(listings.c.job))]
 
 
-def test_an_upgrade_makes_the_lines_that_the_database_keeps(machine: Bench) -> None:
+def test_an_upgrade_makes_the_lines_that_the_database_keeps(machine):
     History(machine, seed=5).go_on(80)
     with writing(machine.engine) as connection:
         kept = lines(connection)
@@ -249,7 +245,7 @@ def filled(file: Path, count: int) -> Submissions:
 
 
 @pytest.fixture(scope="module")
-def small_and_large(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Submissions, Submissions]]:
+def small_and_large(tmp_path_factory):
     folder = tmp_path_factory.mktemp("growth")
     small, large = (filled(folder / f"{count}.sqlite3", count) for count in (10_000, 100_000))
     yield small, large
@@ -261,11 +257,11 @@ def work_of(submissions: Submissions, ask: Callable[[], object]) -> int:
     """Return the instructions of SQLite that a question takes, in tens."""
     tens = [0]
 
-    def count() -> int:
+    def count():
         tens[0] += 1
         return 0
 
-    def counted(connection: Any, _record: object) -> None:
+    def counted(connection, _record):
         connection.set_progress_handler(count, 10)
 
     event.listen(submissions._engine, "connect", counted)
@@ -299,16 +295,14 @@ MIDDLE = Mark("2026-01-01T01:00:00.000000Z", str(uuid.UUID(int=0)))
     ],
     ids=str,
 )
-def test_the_work_of_a_list_does_not_grow(
-    small_and_large: tuple[Submissions, Submissions], wanted: JobFilter, after: Mark | None
-) -> None:
+def test_the_work_of_a_list_does_not_grow(small_and_large, wanted, after):
     """From 10 000 jobs to 100 000: a look at each would be ten times the work."""
     small, large = (work_of(made, partial(made.page, 13, wanted, after)) for made in small_and_large)
     assert 0 < large < 1.3 * small + 20
     assert large < 10_000, "a tenth of an instruction a job"
 
 
-def test_the_work_of_a_submission_does_not_grow(small_and_large: tuple[Submissions, Submissions]) -> None:
+def test_the_work_of_a_submission_does_not_grow(small_and_large):
     """The computation that an equal one shares is found among all by an index."""
     work = ("fake", "f" * 64, {"wish": {}})
     numbers = [work_of(made, partial(made.submit, *work, stored=False)) for made in small_and_large]

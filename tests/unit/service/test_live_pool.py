@@ -1,12 +1,9 @@
 """The live worker: one question at a time, an obsolete one stopped, and no death of it is for long."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal
 import time
-from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -45,21 +42,19 @@ def answer(future: Future[bytes]) -> dict[str, Any]:
 
 
 class LivePool(QuestionPool):
-    """A pool with one live worker."""
-
     def __init__(self, folder: Path, times: AnswerTimes | None = None, *, idle_s: float = 600.0) -> None:
         self.worker = LiveWorker(folder, 512, times)
         super().__init__([self.worker], Limits(in_all=4), "live requests", idle_s=idle_s)
 
 
 @pytest.fixture
-def pool(tmp_path: Path) -> Iterator[LivePool]:
+def pool(tmp_path):
     made = LivePool(tmp_path, AnswerTimes(obsolete_s=0.1))
     yield made
     made.stop()
 
 
-def test_one_worker_answers_all_in_turn_and_is_nice(pool: LivePool) -> None:
+def test_one_worker_answers_all_in_turn_and_is_nice(pool):
     first = answer(pool.ask(order("echo", word="a")))
     second = answer(pool.ask(order("echo", word="b")))
     assert (first["asked"], second["asked"]) == (["a"], ["a", "b"])
@@ -70,7 +65,7 @@ def test_one_worker_answers_all_in_turn_and_is_nice(pool: LivePool) -> None:
 SLIDER = Asker(slider="slider")
 
 
-def test_an_answer_that_becomes_obsolete_is_stopped_and_the_worker_goes_on(pool: LivePool) -> None:
+def test_an_answer_that_becomes_obsolete_is_stopped_and_the_worker_goes_on(pool):
     first = answer(pool.ask(order("echo", word="a")))["pid"]
     running = pool.ask(order("hang"), SLIDER)
     until(running.running)
@@ -81,7 +76,7 @@ def test_an_answer_that_becomes_obsolete_is_stopped_and_the_worker_goes_on(pool:
     assert (found["asked"], found["pid"]) == (["a", "newest"], first)  # it has lost nothing
 
 
-def test_a_stop_breaks_off_no_import(pool: LivePool) -> None:
+def test_a_stop_breaks_off_no_import(pool):
     """Else a package stays half loaded, and every later question that needs it fails."""
     first = answer(pool.ask(order("echo", word="a")))["pid"]
     loading = pool.ask(order("load_slowly"), SLIDER)
@@ -92,7 +87,7 @@ def test_a_stop_breaks_off_no_import(pool: LivePool) -> None:
     assert answer(pool.ask(order("load_slowly"))) == {"attempts": 1}
 
 
-def test_one_that_heeds_no_stop_is_killed(tmp_path: Path) -> None:
+def test_one_that_heeds_no_stop_is_killed(tmp_path):
     pool = LivePool(tmp_path, AnswerTimes(obsolete_s=0.1, to_stop_s=0.3))
     running = pool.ask(order("deaf"), SLIDER)
     until(running.running)
@@ -103,7 +98,7 @@ def test_one_that_heeds_no_stop_is_killed(tmp_path: Path) -> None:
     pool.stop()
 
 
-def test_no_stop_hits_what_comes_after_it(pool: LivePool) -> None:
+def test_no_stop_hits_what_comes_after_it(pool):
     """Each is made obsolete about when it ends: it has its answer or is stopped, the next one is answered."""
     for k in range(40):
         older = pool.ask(order("echo", word=f"older {k}", seconds=0.1 + 2.5e-4 * k), SLIDER)
@@ -113,7 +108,7 @@ def test_no_stop_hits_what_comes_after_it(pool: LivePool) -> None:
         assert isinstance(older.exception(timeout=PATIENCE_S), Superseded | None)
 
 
-def test_work_that_serves_the_newer_question_is_not_stopped(pool: LivePool, tmp_path: Path) -> None:
+def test_work_that_serves_the_newer_question_is_not_stopped(pool, tmp_path):
     gate = tmp_path / "gate"
     running = pool.ask(
         order("echo", word="bodies", wait_for=str(gate)), SLIDER, subject="a pair", lasting=True
@@ -127,7 +122,7 @@ def test_work_that_serves_the_newer_question_is_not_stopped(pool: LivePool, tmp_
 
 
 @pytest.mark.parametrize(("name", "text"), [("die", "ended. Repeat the request"), ("hog", "512 MB")])
-def test_a_worker_that_died_is_replaced(pool: LivePool, name: str, text: str) -> None:
+def test_a_worker_that_died_is_replaced(pool, name, text):
     first = answer(pool.ask(order("echo", word="a")))["pid"]
     with pytest.raises(LiveUnavailable, match=text) as caught:
         pool.ask(order(name)).result(timeout=PATIENCE_S)
@@ -137,9 +132,7 @@ def test_a_worker_that_died_is_replaced(pool: LivePool, name: str, text: str) ->
     assert not lives(first)
 
 
-def test_one_killed_in_the_middle_of_an_answer_is_told_and_those_that_wait_are_answered(
-    pool: LivePool, tmp_path: Path
-) -> None:
+def test_one_killed_in_the_middle_of_an_answer_is_told_and_those_that_wait_are_answered(pool, tmp_path):
     gate = tmp_path / "never"
     asked = pool.ask(order("echo", word="a", wait_for=str(gate)))
     waits = pool.ask(order("echo", word="b"))
@@ -166,7 +159,7 @@ def _workers_of(service: int) -> list[int]:
     return [pid for pid in children(service) if b"live.child" in command(pid)]
 
 
-def test_sigterm_in_the_middle_of_an_answer_ends_service_and_worker(tmp_path: Path) -> None:
+def test_sigterm_in_the_middle_of_an_answer_ends_service_and_worker(tmp_path):
     """Long before the minute that an answer may take; whoever waits for it is told why there is none."""
     with python("-c", SERVE, tmp_path) as service:
         assert service.stdout is not None
@@ -182,16 +175,14 @@ def test_sigterm_in_the_middle_of_an_answer_ends_service_and_worker(tmp_path: Pa
     until(lambda: not any(lives(pid) for pid in workers))
 
 
-def test_one_killed_between_two_questions_is_not_noticed(pool: LivePool) -> None:
+def test_one_killed_between_two_questions_is_not_noticed(pool):
     first = answer(pool.ask(order("echo", word="a")))["pid"]
     os.kill(first, signal.SIGKILL)
     until(lambda: not lives(first))
     assert answer(pool.ask(order("echo", word="b")))["asked"] == ["b"]
 
 
-def test_one_that_dies_unseen_after_an_answer_is_replaced_once(
-    pool: LivePool, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_one_that_dies_unseen_after_an_answer_is_replaced_once(pool, monkeypatch):
     """A process whose threads still end looks alive when it is asked."""
     first = answer(pool.ask(order("echo", word="a")))["pid"]
     os.kill(first, signal.SIGKILL)
@@ -200,7 +191,7 @@ def test_one_that_dies_unseen_after_an_answer_is_replaced_once(
     assert answer(pool.ask(order("echo", word="b")))["pid"] != first
 
 
-def test_what_takes_too_long_is_ended(tmp_path: Path) -> None:
+def test_what_takes_too_long_is_ended(tmp_path):
     pool = LivePool(tmp_path, AnswerTimes(longest_s=1.0))
     with capture_logs() as log, pytest.raises(LiveUnavailable, match="longer than 1 s"):
         pool.ask(order("hang")).result(timeout=PATIENCE_S)
@@ -209,7 +200,7 @@ def test_what_takes_too_long_is_ended(tmp_path: Path) -> None:
     pool.stop()
 
 
-def test_an_idle_worker_ends_and_another_takes_the_next_question(tmp_path: Path) -> None:
+def test_an_idle_worker_ends_and_another_takes_the_next_question(tmp_path):
     pool = LivePool(tmp_path, idle_s=0.05)
     first = answer(pool.ask(order("echo", word="a")))["pid"]
     until(lambda: pool.worker.pid is None and not lives(first))
@@ -217,7 +208,7 @@ def test_an_idle_worker_ends_and_another_takes_the_next_question(tmp_path: Path)
     pool.stop()
 
 
-def test_a_stop_ends_the_worker_in_the_middle_of_an_answer(pool: LivePool) -> None:
+def test_a_stop_ends_the_worker_in_the_middle_of_an_answer(pool):
     asked, waits = pool.ask(order("hang")), pool.ask(order("echo", word="a"))
     until(lambda: asked.running() and pool.worker.pid is not None)
     pid = pool.worker.pid
@@ -228,7 +219,7 @@ def test_a_stop_ends_the_worker_in_the_middle_of_an_answer(pool: LivePool) -> No
     assert pid is not None and not lives(pid)
 
 
-def test_a_refusal_passes_as_it_was_told_and_a_defect_by_number(pool: LivePool, tmp_path: Path) -> None:
+def test_a_refusal_passes_as_it_was_told_and_a_defect_by_number(pool, tmp_path):
     with pytest.raises(ServiceError) as caught:
         pool.ask(order("refuse")).result(timeout=PATIENCE_S)
     facts = caught.value.as_json()
@@ -240,12 +231,12 @@ def test_a_refusal_passes_as_it_was_told_and_a_defect_by_number(pool: LivePool, 
 
 
 @pytest.mark.parametrize("number", ["nan", "inf", "-inf"])
-def test_a_number_that_json_has_not_is_a_defect(number: str) -> None:
+def test_a_number_that_json_has_not_is_a_defect(number):
     found = answer_of(LiveOrder("live_fake_work:speak", {"number": number}), note=lambda: None)
     assert found == Frame("defect")
 
 
-def test_words_and_numbers_come_as_they_are() -> None:
+def test_words_and_numbers_come_as_they_are():
     found = answer_of(LiveOrder("live_fake_work:speak", {"number": "0.3"}))
     expected = {"number": 0.3, "word": "NaN and Infinity", "list": [0.1, 1e-7, True, None, "µ"]}
     assert found.kind == "answer"
@@ -265,7 +256,7 @@ worker.answer(Question(LiveOrder("live_fake_work:hang", {})))
 """
 
 
-def test_kill_minus_nine_of_the_service_leaves_no_orphan(tmp_path: Path) -> None:
+def test_kill_minus_nine_of_the_service_leaves_no_orphan(tmp_path):
     with python("-c", SERVICE, tmp_path) as service:
         assert service.stdout is not None
         line = next(line for line in service.stdout if line.startswith("worker "))
@@ -278,7 +269,7 @@ def test_kill_minus_nine_of_the_service_leaves_no_orphan(tmp_path: Path) -> None
 # Answers that are kept.
 
 
-def test_what_is_kept_is_found_by_any_process_on_the_folder(tmp_path: Path) -> None:
+def test_what_is_kept_is_found_by_any_process_on_the_folder(tmp_path):
     folder = tmp_path / "figures"
     assert KeptAnswers(folder).find("a tag") is None
     KeptAnswers(folder).keep("a tag", b'{"title": "pair"}')
@@ -286,7 +277,7 @@ def test_what_is_kept_is_found_by_any_process_on_the_folder(tmp_path: Path) -> N
     assert KeptAnswers(folder).find("another tag") is None
 
 
-def test_what_was_not_used_for_longest_goes_first(tmp_path: Path) -> None:
+def test_what_was_not_used_for_longest_goes_first(tmp_path):
     kept = KeptAnswers(tmp_path, max_bytes=250)
     for tag in ("first", "second"):
         kept.keep(tag, tag[:1].encode() * 100)
@@ -299,7 +290,7 @@ def test_what_was_not_used_for_longest_goes_first(tmp_path: Path) -> None:
     assert kept.find("third") is not None
 
 
-def test_a_folder_that_cannot_be_written_keeps_nothing(tmp_path: Path) -> None:
+def test_a_folder_that_cannot_be_written_keeps_nothing(tmp_path):
     (tmp_path / "file").write_text("no folder", encoding="utf-8")
     kept = KeptAnswers(tmp_path / "file")
     kept.keep("a tag", b"{}")
@@ -307,7 +298,7 @@ def test_a_folder_that_cannot_be_written_keeps_nothing(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("package", ["service", "lineofaction", "host", "dynamics"])
-def test_answers_of_an_edited_program_are_others(tmp_path: Path, package: str) -> None:
+def test_answers_of_an_edited_program_are_others(tmp_path, package):
     module = tmp_path / package / "report" / "content.py"
     module.parent.mkdir(parents=True)
     module.write_text("ROOM = 1\n", encoding="utf-8")

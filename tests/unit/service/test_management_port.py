@@ -1,7 +1,5 @@
 """The management port: it tells health, readiness and metrics to those without a key, for both programs."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import socket
@@ -60,7 +58,7 @@ def status(address: str, path: str) -> int:
     return 0
 
 
-def test_a_server_with_keys_tells_them_without_one(tmp_path: Path) -> None:
+def test_a_server_with_keys_tells_them_without_one(tmp_path):
     folder = tmp_path / "data"
     folder.mkdir(mode=0o700)
     KeyFile(folder / "keys.json").add("someone")
@@ -76,7 +74,7 @@ def test_a_server_with_keys_tells_them_without_one(tmp_path: Path) -> None:
 
 
 @pytest.fixture
-def signs(tmp_path: Path) -> Iterator[tuple[Vitals, Path]]:
+def signs(tmp_path):
     """The signs of a running scheduler, and its data directory."""
     machine = bench(tmp_path, REGISTRY)
     machine.scheduler.start()
@@ -84,9 +82,7 @@ def signs(tmp_path: Path) -> Iterator[tuple[Vitals, Path]]:
     machine.close()
 
 
-def test_a_scheduler_that_ended_or_hangs_is_not_healthy(
-    signs: tuple[Vitals, Path], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_scheduler_that_ended_or_hangs_is_not_healthy(signs, monkeypatch):
     found, _ = signs
     assert found.fault_of_health() == found.fault_of_readiness() == ""
     hangs = threading.Event()
@@ -101,7 +97,7 @@ def test_a_scheduler_that_ended_or_hangs_is_not_healthy(
     assert "does not run" in found.fault_of_readiness()
 
 
-def test_what_cannot_be_written_to_is_alive_but_not_ready(signs: tuple[Vitals, Path]) -> None:
+def test_what_cannot_be_written_to_is_alive_but_not_ready(signs):
     found, folder = signs
     with ManagementServer("127.0.0.1", 0, found, bytes) as server:
         assert status(server.address, "/ready") == 200
@@ -112,7 +108,7 @@ def test_what_cannot_be_written_to_is_alive_but_not_ready(signs: tuple[Vitals, P
         assert status(server.address, "/health") == 200
 
 
-def test_a_loop_of_requests_that_is_stuck_is_not_healthy() -> None:
+def test_a_loop_of_requests_that_is_stuck_is_not_healthy():
     loop = EventLoop()
     assert loop.fault() == ""  # not yet begun
     loop.loop = asyncio.new_event_loop()
@@ -132,14 +128,14 @@ def test_a_loop_of_requests_that_is_stuck_is_not_healthy() -> None:
         loop.loop.close()
 
 
-def test_a_port_in_use_is_said(signs: tuple[Vitals, Path]) -> None:
+def test_a_port_in_use_is_said(signs):
     with socket.create_server(("127.0.0.1", 0)) as other, pytest.raises(BadInput) as caught:
         ManagementServer("127.0.0.1", other.getsockname()[1], signs[0], bytes)
     assert [fault.field for fault in caught.value.faults] == ["management_port"]
 
 
 @pytest.mark.nightly
-def test_connections_that_say_nothing_take_bounded_room(signs: tuple[Vitals, Path]) -> None:
+def test_connections_that_say_nothing_take_bounded_room(signs):
     before = threading.active_count()
     with ManagementServer("127.0.0.1", 0, signs[0], bytes) as server:
         host, _, port = server.address.removeprefix("http://").rpartition(":")

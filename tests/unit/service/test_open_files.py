@@ -1,7 +1,5 @@
 """Limits of a server within the files that it may open: lowered and said, or refused at the start."""
 
-from __future__ import annotations
-
 import socket
 import subprocess
 import sys
@@ -49,7 +47,7 @@ def healthy(port: int, held: ExitStack) -> bool:
     return answer.startswith(b"HTTP/1.1 200 ")
 
 
-def test_a_start_with_too_few_files_is_refused_by_their_name(tmp_path: Path) -> None:
+def test_a_start_with_too_few_files_is_refused_by_their_name(tmp_path):
     """It began, and then /health was reset and the log named the database damaged."""
     with serving(tmp_path, 64) as process:
         assert process.wait(PATIENCE_S) == EXIT_BAD_INPUT
@@ -58,10 +56,9 @@ def test_a_start_with_too_few_files_is_refused_by_their_name(tmp_path: Path) -> 
     assert "damaged" not in log
 
 
-def test_with_few_files_as_many_connections_are_taken_as_they_suffice_for(tmp_path: Path) -> None:
+def test_with_few_files_as_many_connections_are_taken_as_they_suffice_for(tmp_path):
     """Beyond them the connections that are idle for longest make room, and every request is answered."""
     with serving(tmp_path, 256) as process, ExitStack() as held:
-        assert process.stdout is not None
         port = int(process.stdout.readline().rpartition(":")[2])
         assert all(healthy(port, held) for _ in range(300))
     log = (tmp_path / "lines").read_text()
@@ -70,7 +67,7 @@ def test_with_few_files_as_many_connections_are_taken_as_they_suffice_for(tmp_pa
 
 
 @pytest.mark.parametrize("files", [228, 300, 996, 20_000])
-def test_limits_follow_the_number_of_files(files: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_limits_follow_the_number_of_files(files, monkeypatch):
     monkeypatch.setattr(of_process, "max_open_files", lambda: files)
     own = capacity(workers=1)
     assert own.connections == min(files - 196, 800)

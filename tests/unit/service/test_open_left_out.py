@@ -1,13 +1,10 @@
 """loa open: what it prints and writes; what it leaves out of a scene is named first and last."""
 
-from __future__ import annotations
-
 import base64
 import json
 import re
 import tomllib
 from base64 import b64encode
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,6 +13,7 @@ from click.testing import Result
 from command_line import loa
 from fastapi.testclient import TestClient
 from faulty_units import LEFT_OUT, REFUSED, TWO_STAGE
+from repository import EXAMPLES
 from rexs_reference import examples, needs_reference
 
 from lineofaction.gearbox.from_rexs.unit_answer import unit_of_rexs
@@ -38,7 +36,7 @@ def printed(file: Path, folder: Path, *options: str) -> str:
     return result.output
 
 
-def test_the_files_are_read_back_as_cases_and_scene(tmp_path: Path) -> None:
+def test_the_files_are_read_back_as_cases_and_scene(tmp_path):
     output = printed(GEARBOX, tmp_path)
     assert "239 components and values: 199 taken" in output
     for name in STAGES:
@@ -51,14 +49,14 @@ def test_the_files_are_read_back_as_cases_and_scene(tmp_path: Path) -> None:
     assert len(rows) == 1 + 239
 
 
-def test_as_json_the_report_is_an_object(tmp_path: Path) -> None:
+def test_as_json_the_report_is_an_object(tmp_path):
     facts = json.loads(printed(GEARBOX, tmp_path, "--json"))
     assert facts["cases"] == list(STAGES) and facts["scene"] is True
     assert facts["account"]["taken"] == 199
     assert any("means rigid" in line for line in facts["lines"])
 
 
-def test_a_file_that_is_none_is_refused_in_one_line(tmp_path: Path) -> None:
+def test_a_file_that_is_none_is_refused_in_one_line(tmp_path):
     file = tmp_path / "gearbox.rexs"
     file.write_text("<model", encoding="utf-8")
     result = loa("open", file, "-o", tmp_path / "out")
@@ -67,13 +65,13 @@ def test_a_file_that_is_none_is_refused_in_one_line(tmp_path: Path) -> None:
 
 
 @pytest.fixture(scope="module")
-def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+def client(tmp_path_factory):
     folder = tmp_path_factory.mktemp("data")
     with TestClient(create_app(Settings(data_directory=folder))) as found:
         yield found
 
 
-def test_the_service_answers_with_cases_scene_and_account(client: TestClient) -> None:
+def test_the_service_answers_with_cases_scene_and_account(client):
     text = base64.b64encode(GEARBOX.read_bytes()).decode()
     answer = client.post("/v1/units/open", json={"rexs_base64": text})
     assert answer.status_code == 200
@@ -84,7 +82,7 @@ def test_the_service_answers_with_cases_scene_and_account(client: TestClient) ->
     assert len(unit["lines"]) == 239 and unit["load_cases"][1]["share"] == 0.7
 
 
-def test_the_service_takes_assumptions(client: TestClient) -> None:
+def test_the_service_takes_assumptions(client):
     text = base64.b64encode(GEARBOX.read_bytes()).decode()
     body = {"rexs_base64": text, "assume": ["14.face_width=25"]}
     unit = client.post("/v1/units/open", json=body).json()
@@ -96,7 +94,7 @@ def test_the_service_takes_assumptions(client: TestClient) -> None:
 
 
 @pytest.mark.parametrize(("text", "bound"), [("????", "base64"), ("AAAA", "")])
-def test_the_service_refuses_what_is_no_file(client: TestClient, text: str, bound: str) -> None:
+def test_the_service_refuses_what_is_no_file(client, text, bound):
     answer = client.post("/v1/units/open", json={"rexs_base64": text})
     assert answer.status_code == 422
     assert bound in answer.json()["detail"]
@@ -104,7 +102,7 @@ def test_the_service_refuses_what_is_no_file(client: TestClient, text: str, boun
 
 @needs_reference
 @pytest.mark.parametrize("file", examples(), ids=lambda file: file.name)
-def test_the_reference_files_open(file: Path, tmp_path: Path) -> None:
+def test_the_reference_files_open(file, tmp_path):
     answer = loa("open", file, "-o", tmp_path, "--strict", "--json")
     facts = json.loads(answer.stdout)
     assert facts["cases"]
@@ -114,7 +112,6 @@ def test_the_reference_files_open(file: Path, tmp_path: Path) -> None:
     assert facts["scene"] is not file.name.endswith(".rexsj")
 
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 HAND = LEFT_OUT["hand of a wheel"][1](TWO_STAGE)
 
 
@@ -126,7 +123,7 @@ def opened(text: str, folder: Path, *options: str) -> Result:
 
 @pytest.mark.drawn
 @pytest.mark.parametrize("fault", LEFT_OUT)
-def test_a_unit_with_one_fault_names_what_is_left_out_first_and_last(fault: str, tmp_path: Path) -> None:
+def test_a_unit_with_one_fault_names_what_is_left_out_first_and_last(fault, tmp_path):
     file, edit, parts = LEFT_OUT[fault]
     answer = opened(edit(file), tmp_path)
     assert answer.exit_code == 3, answer.output
@@ -143,7 +140,7 @@ def test_a_unit_with_one_fault_names_what_is_left_out_first_and_last(fault: str,
 
 
 @pytest.mark.parametrize("fault", REFUSED)
-def test_a_file_that_is_no_model_is_refused_with_one_error(fault: str, tmp_path: Path) -> None:
+def test_a_file_that_is_no_model_is_refused_with_one_error(fault, tmp_path):
     file, edit, word = REFUSED[fault]
     answer = opened(edit(file), tmp_path)
     assert answer.exit_code == 2
@@ -152,7 +149,7 @@ def test_a_file_that_is_no_model_is_refused_with_one_error(fault: str, tmp_path:
     assert lines and all(line.startswith("error: ") and word in line for line in lines)
 
 
-def test_as_json_each_reason_is_a_warning(tmp_path: Path) -> None:
+def test_as_json_each_reason_is_a_warning(tmp_path):
     answer = opened(HAND, tmp_path, "--json")
     assert answer.exit_code == 3
     warnings = json.loads(answer.stdout)["warnings"]
@@ -162,7 +159,7 @@ def test_as_json_each_reason_is_a_warning(tmp_path: Path) -> None:
     assert "13 pinion 2: left hand, 16 deg" in stage and "14 wheel 2: left hand, 16 deg" in stage
 
 
-def test_an_assumption_that_the_message_names_mends_the_unit(tmp_path: Path) -> None:
+def test_an_assumption_that_the_message_names_mends_the_unit(tmp_path):
     mends = re.findall(r"--assume (\S+=\d+)", opened(HAND, tmp_path).stdout)
     assert sorted(set(mends)) == [f"{gear}.helix_angle_reference_diameter=16" for gear in (13, 14)]
     answer = opened(HAND, tmp_path, "--assume", mends[-1])
@@ -178,13 +175,13 @@ def test_an_assumption_that_the_message_names_mends_the_unit(tmp_path: Path) -> 
     assert "component 14,14,cylindrical_gear,wheel 2,helix_angle_reference_diameter,assumed" in rows
 
 
-def test_an_assumption_counts_in_load_cases_that_state_the_value(tmp_path: Path) -> None:
+def test_an_assumption_counts_in_load_cases_that_state_the_value(tmp_path):
     assert opened(TWO_STAGE, tmp_path, "--assume", "41.torque_around_u_axis=33").exit_code == 0
     cases = tomllib.loads((tmp_path / "out" / "load_cases.toml").read_text("utf-8"))["load_cases"]
     assert [case["torque_n_m"] for case in cases] == [33.0] * 4
 
 
-def test_an_assumed_place_is_an_array(tmp_path: Path) -> None:
+def test_an_assumed_place_is_an_array(tmp_path):
     file, edit, _ = LEFT_OUT["shafts too far apart"]
     assert opened(edit(file), tmp_path, "--assume", "5.support_vector=0,95.5,149").exit_code == 0
 
@@ -197,18 +194,18 @@ def test_an_assumed_place_is_an_array(tmp_path: Path) -> None:
         ("13.face_width=wide", "a finite number"),
     ],
 )
-def test_an_assumption_that_is_none_is_refused(text: str, word: str, tmp_path: Path) -> None:
+def test_an_assumption_that_is_none_is_refused(text, word, tmp_path):
     answer = opened(TWO_STAGE, tmp_path, "--assume", text)
     assert answer.exit_code == 2 and word in answer.stderr
 
 
-def test_an_assumption_that_nothing_reads_is_left_out(tmp_path: Path) -> None:
+def test_an_assumption_that_nothing_reads_is_left_out(tmp_path):
     answer = opened(TWO_STAGE, tmp_path, "--assume", "13.helix=3")
     assert answer.exit_code == 3
     assert answer.stdout.splitlines()[0].endswith('cylindrical_gear 13 "pinion 2" (helix)')
 
 
-def test_a_mark_outlives_the_text_of_the_scene_and_overrides(tmp_path: Path) -> None:
+def test_a_mark_outlives_the_text_of_the_scene_and_overrides(tmp_path):
     opened(HAND, tmp_path)
     file = InputFile(tmp_path / "out" / "scene.toml", (Override.of("run.duration_s=0.1"),))
     scene = read_model(SceneInput, file)
@@ -222,9 +219,7 @@ def test_a_mark_outlives_the_text_of_the_scene_and_overrides(tmp_path: Path) -> 
 @pytest.mark.parametrize(
     ("verb", "code"), [(("simulate", "-o", "nowhere/run.nc"), 2), (("modes", "-o", "modes.nc"), 3)]
 )
-def test_later_verbs_repeat_the_mark_before_all_else(
-    verb: tuple[str, ...], code: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_later_verbs_repeat_the_mark_before_all_else(verb, code, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     scene = (EXAMPLES / "jeffcott_scene.toml").read_text("utf-8")
     Path("scene.toml").write_text(f'left_out = ["shaft 5 (line 7): alone"]\n{scene}', encoding="utf-8")
@@ -238,12 +233,12 @@ def test_later_verbs_repeat_the_mark_before_all_else(
         assert warning["check"] == "left_out"
 
 
-def test_a_scene_without_a_mark_has_the_address_it_had() -> None:
+def test_a_scene_without_a_mark_has_the_address_it_had():
     scene = read_model(SceneInput, EXAMPLES / "jeffcott_scene.toml")
     assert "left_out" not in scene.model_dump(mode="json")
 
 
-def test_over_http_and_in_python_the_statement_comes_first(tmp_path: Path) -> None:
+def test_over_http_and_in_python_the_statement_comes_first(tmp_path):
     file = tmp_path / "unit.rexs"
     file.write_text(HAND, encoding="utf-8")
     unit = unit_of_rexs(

@@ -1,18 +1,12 @@
 """One server owns the job table; what it starts ends with it, and a lock that is lost is acquired again."""
 
-from __future__ import annotations
-
 import fcntl
 import os
 import signal
 import time
-from collections.abc import Iterator
-from pathlib import Path
-from typing import Any
 
 import pytest
 from own_process import python
-from postgres_server import PostgresServer
 from running_service import Bench, bench, lives, until
 from service_fakes import REGISTRY
 from sqlalchemy import text
@@ -24,15 +18,13 @@ from service.store.database import reading
 
 
 @pytest.fixture
-def settings(tmp_path: Path, database_url: str | None) -> Iterator[dict[str, Any]]:
+def settings(tmp_path, database_url):
     """Return the settings of servers on one table, each with a data directory of its own."""
     url = database_url or f"sqlite:///{tmp_path / 'shared.sqlite3'}"
     yield {"database_url": url, "results_url": (tmp_path / "results").as_uri()}
 
 
-def test_a_second_server_is_refused_by_name_until_the_first_has_stopped(
-    tmp_path: Path, settings: dict[str, Any]
-) -> None:
+def test_a_second_server_is_refused_by_name_until_the_first_has_stopped(tmp_path, settings):
     first = job_machinery(Settings(data_directory=tmp_path / "one", **settings), REGISTRY)
     other = Settings(data_directory=tmp_path / "other", **settings)
     with pytest.raises(BadInput) as caught:
@@ -42,14 +34,13 @@ def test_a_second_server_is_refused_by_name_until_the_first_has_stopped(
     assert "Stop that server" in str(fault.suggestion)
     reader = job_machinery(other, REGISTRY, works=False)  # upkeep goes on beside it
     reader.close()
-    assert first.scheduler is not None
     first.scheduler.start()
     first.scheduler.stop()
     job_machinery(other, REGISTRY).close()
     first.close()
 
 
-def test_two_tables_of_one_database_have_an_owner_each(tmp_path: Path, postgres: PostgresServer) -> None:
+def test_two_tables_of_one_database_have_an_owner_each(tmp_path, postgres):
     """The lock is of the table: another one, here in another schema, is another's."""
     url = postgres.emptied_database()
     first = bench(tmp_path / "one", REGISTRY, database_url=url)
@@ -65,7 +56,7 @@ def test_two_tables_of_one_database_have_an_owner_each(tmp_path: Path, postgres:
 
 
 @pytest.fixture
-def server(tmp_path: Path, postgres: PostgresServer) -> Iterator[Bench]:
+def server(tmp_path, postgres):
     """A started server on PostgreSQL with a job that hangs."""
     made = bench(tmp_path / "server", REGISTRY, database_url=postgres.emptied_database())
     made.scheduler.start()
@@ -85,9 +76,7 @@ def owners(machine: Bench) -> int:
         return int(connection.execute(text(locks)).scalar_one())
 
 
-def test_a_lock_that_is_lost_is_acquired_again_and_the_work_goes_on(
-    server: Bench, postgres: PostgresServer
-) -> None:
+def test_a_lock_that_is_lost_is_acquired_again_and_the_work_goes_on(server, postgres):
     job = server.submit(mode="hang")
     child = child_of(server, job.key)
     postgres.end_connections(str(server.settings.database_address))
@@ -100,15 +89,15 @@ def test_a_lock_that_is_lost_is_acquired_again_and_the_work_goes_on(
 
 @pytest.mark.law
 def test_who_has_lost_the_table_to_another_server_ends_its_work_and_starts_none(
-    tmp_path: Path, server: Bench, postgres: PostgresServer, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    tmp_path, server, postgres, monkeypatch
+):
     """The other one puts the work back and does it: never do two write to the table."""
     job = server.submit(mode="hang")
     child = child_of(server, job.key)
     acquire, url = server.scheduler._owner.acquire, str(server.settings.database_address)
     free: list[bool] = []
 
-    def acquire_late() -> None:
+    def acquire_late():
         until(lambda: free != [])
         acquire()
 
@@ -131,7 +120,7 @@ def test_who_has_lost_the_table_to_another_server_ends_its_work_and_starts_none(
     assert server.ended(next_one).status == "successful"
 
 
-def test_what_runs_by_the_table_but_not_here_waits_again(tmp_path: Path) -> None:
+def test_what_runs_by_the_table_but_not_here_waits_again(tmp_path):
     """A claim was committed, and no answer came however often it was tried."""
     machine = bench(tmp_path, REGISTRY)
     machine.scheduler.start()
@@ -146,7 +135,7 @@ def test_what_runs_by_the_table_but_not_here_waits_again(tmp_path: Path) -> None
     machine.close()
 
 
-def test_a_worker_waits_until_the_earlier_one_in_its_workspace_is_gone(tmp_path: Path) -> None:
+def test_a_worker_waits_until_the_earlier_one_in_its_workspace_is_gone(tmp_path):
     machine = bench(tmp_path, REGISTRY)
     job = machine.submit(text="after")
     (row,) = machine.claims.waiting()
@@ -179,7 +168,7 @@ machine.scheduler._thread.join()
 """
 
 
-def test_kill_minus_nine_leaves_no_orphan(tmp_path: Path) -> None:
+def test_kill_minus_nine_leaves_no_orphan(tmp_path):
     service = python("-c", SERVICE, tmp_path, stdout=None)
     try:
         until(lambda: any(f.read_text() for f in tmp_path.glob("grandchild_*")))

@@ -1,18 +1,15 @@
 """What the page is made of: examples that can be computed, files, drawing, TOML."""
 
-from __future__ import annotations
-
 import json
 import math
 import re
 import tomllib
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from fastapi.testclient import TestClient
+from repository import ROOT
 
 from lineofaction.gearbox.convert.case import case_json, gear_pair
 from lineofaction.gearbox.convert.checked_case import check_case
@@ -27,40 +24,39 @@ from service.page.example_cases import examples
 from service.page.files import page_file
 from service.settings import Settings
 
-ROOT = Path(__file__).parents[3]
 STATIC = ROOT / "service" / "page" / "static"
 CASES = {example.name: validated(Case, example.content) for example in examples()}
 
 
 @pytest.fixture
-def client(tmp_path: Path) -> Iterator[TestClient]:
+def client(tmp_path):
     with TestClient(create_app(Settings(data_directory=tmp_path))) as found:
         yield found
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_every_example_can_be_computed(name: str) -> None:
+def test_every_example_can_be_computed(name):
     assert check_case(CASES[name]).transverse_contact_ratio > 1.0
 
 
-def test_the_result_of_the_first_example_is_of_the_case_as_it_is_now() -> None:
+def test_the_result_of_the_first_example_is_of_the_case_as_it_is_now():
     known = json.loads((STATIC / "first.json").read_text(encoding="utf-8"))
     assert known["case"] == case_json(next(iter(CASES.values())))
 
 
-def test_examples_that_fake_the_folder_too_are_the_same() -> None:
+def test_examples_that_fake_the_folder_too_are_the_same():
     for file in (ROOT / "service" / "page" / "examples").glob("*.toml"):
         twin = ROOT / "examples" / file.name
         assert file.name == "helical_automotive.toml" or file.read_bytes() == twin.read_bytes()
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_a_case_written_as_toml_reads_back_the_same(name: str) -> None:
+def test_a_case_written_as_toml_reads_back_the_same(name):
     written = toml_text(case_json(CASES[name]))
     assert validated(Case, tomllib.loads(written)) == CASES[name]
 
 
-def test_toml_holds_every_kind_of_value() -> None:
+def test_toml_holds_every_kind_of_value():
     content = {
         "a": {
             "text": 'quote " \\ \n',
@@ -87,7 +83,7 @@ def placed(gear: dict[str, Any], z: float | None = None) -> np.ndarray:
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_the_drawn_flanks_touch_at_the_pitch_point_and_nowhere_overlap(name: str) -> None:
+def test_the_drawn_flanks_touch_at_the_pitch_point_and_nowhere_overlap(name):
     drawn = outline_json(CASES[name])
     pinion, wheel = placed(drawn["pinion"]), placed(drawn["wheel"])
     pitch_point = np.array(drawn["path_of_contact"]["points_mm"]["C"])
@@ -105,7 +101,7 @@ def test_the_drawn_flanks_touch_at_the_pitch_point_and_nowhere_overlap(name: str
 
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.parametrize("z", [-9.0, 4.0])
-def test_sections_along_the_face_touch_and_nowhere_overlap(name: str, z: float) -> None:
+def test_sections_along_the_face_touch_and_nowhere_overlap(name, z):
     drawn, modulus = outline_json(CASES[name]), CASES[name].pair.normal_module_mm
     wheel = drawn["wheel"]
     along = z - sum(wheel["face_mm"]) / 2
@@ -132,7 +128,7 @@ def _depth(point: np.ndarray, gear: dict[str, Any]) -> float:
     return r * (float(np.interp(r, radius[order], flank[order])) - abs(angle))
 
 
-def test_the_figures_of_the_pair_are_those_of_the_geometry() -> None:
+def test_the_figures_of_the_pair_are_those_of_the_geometry():
     case = CASES["helical_automotive"]
     drawn, pair = outline_json(case), gear_pair(case)
     path = drawn["path_of_contact"]["points_mm"]
@@ -141,7 +137,7 @@ def test_the_figures_of_the_pair_are_those_of_the_geometry() -> None:
     assert drawn["figures"]["total_contact_ratio"] == pytest.approx(pair.total_contact_ratio, rel=1e-12)
 
 
-def test_the_page_names_only_files_it_has_and_nothing_foreign(client: TestClient) -> None:
+def test_the_page_names_only_files_it_has_and_nothing_foreign(client):
     for file in STATIC.iterdir():
         text = file.read_text(encoding="utf-8")
         for name in re.findall(r'(?:from "\./|/page/)([\w.-]+)', text):
@@ -149,7 +145,7 @@ def test_the_page_names_only_files_it_has_and_nothing_foreign(client: TestClient
         assert set(re.findall(r"https?://[\w./]+", text)) <= {"http://www.w3.org/2000/svg"}, file.name
 
 
-def test_the_pages_are_held_to_their_own_scripts(client: TestClient) -> None:
+def test_the_pages_are_held_to_their_own_scripts(client):
     for path in ("/", "/docs"):
         answer = client.get(path)
         policy = answer.headers["content-security-policy"]
@@ -160,7 +156,7 @@ def test_the_pages_are_held_to_their_own_scripts(client: TestClient) -> None:
 
 
 @pytest.mark.parametrize("name", ["app.py", "..%2Fapp.py", "%2e%2e/settings.py", "examples", "none.js"])
-def test_no_other_file_is_served(client: TestClient, name: str) -> None:
+def test_no_other_file_is_served(client, name):
     assert client.get(f"/page/{name}").status_code == 404
 
 
@@ -173,9 +169,7 @@ def test_no_other_file_is_served(client: TestClient, name: str) -> None:
         ("scenes", "[run]\nduration_s = 1.0\nend_s = 2.0\n", "run.end_s"),
     ],
 )
-def test_text_that_is_no_case_or_scene_is_refused_by_field(
-    client: TestClient, kind: str, text: str, field: str
-) -> None:
+def test_text_that_is_no_case_or_scene_is_refused_by_field(client, kind, text, field):
     answer = client.post(f"/v1/{kind}/from-toml", json={"toml": text})
     fields = [fault["field"] for fault in answer.json()["errors"]]
     assert answer.status_code == 422 and field in fields
@@ -186,7 +180,7 @@ SCENES = ("palermo_scene", "planetary_scene", "flexible_shafts_scene", "wind_tur
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_a_scene_file_read_and_written_is_the_same_scene(client: TestClient, name: str) -> None:
+def test_a_scene_file_read_and_written_is_the_same_scene(client, name):
     text = (ROOT / "examples" / f"{name}.toml").read_text(encoding="utf-8")
     read = client.post("/v1/scenes/from-toml", json={"toml": text}).json()["scene"]
     written = client.post("/v1/scenes/to-toml", json={"inputs": {"scene": read}}).json()["toml"]
@@ -194,14 +188,14 @@ def test_a_scene_file_read_and_written_is_the_same_scene(client: TestClient, nam
     assert "sample_rate_hz" not in written or "sample_rate_hz" in text, "no defaults are added"
 
 
-def test_the_files_that_a_scene_names_are_read_with_it(client: TestClient) -> None:
+def test_the_files_that_a_scene_names_are_read_with_it(client):
     scene, case = (ROOT / "examples" / f"{name}.toml" for name in ("palermo_scene", "palermo_spur_20_20"))
     files = [FileContentInput.of(case).model_dump(mode="json")]
     read = client.post("/v1/scenes/from-toml", json={"toml": scene.read_text("utf-8"), "files": files})
     assert read.json()["scene"]["meshes"][0]["case"]["pair"]["pinion"]["teeth"] == 20
 
 
-def test_a_second_visit_reads_no_file_of_the_page() -> None:
+def test_a_second_visit_reads_no_file_of_the_page():
     names = [path.name for path in STATIC.iterdir()]
     first = [page_file(name) for name in names]
     assert len(names) > 64

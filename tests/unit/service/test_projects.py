@@ -1,7 +1,5 @@
 """Projects: each computes, keeps, finds and lists its own, whatever others have."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -54,18 +52,18 @@ def file_with(machine: Bench, content: str) -> Path:
 
 
 @pytest.mark.parametrize("project", PROJECTS)
-def test_an_address_is_read_as_it_was_written(project: str) -> None:
+def test_an_address_is_read_as_it_was_written(project):
     assert at_address(address_of(project, KEY)) == (project, KEY)
     name = new_name(project, KEY, "database", "12" * 32)
     assert ResultName.of(name) == ResultName("database", KEY, "12" * 8, project)
 
 
 @pytest.mark.parametrize("name", ["", "A", "a.b", "a/b", "..", "a" * 64, "-a", "a b", "ä"])
-def test_a_name_that_could_be_part_of_another_address_is_none(name: str) -> None:
+def test_a_name_that_could_be_part_of_another_address_is_none(name):
     assert PROJECT.fullmatch(name) is None
 
 
-def test_equal_work_is_one_computation_a_project(machine: Bench) -> None:
+def test_equal_work_is_one_computation_a_project(machine):
     jobs = [enter(machine, project) for project in PROJECTS for _ in range(2)]
     assert machine.submissions.counts() == {"accepted": len(PROJECTS)}
     assert len({job.computation for job in jobs}) == len(PROJECTS)
@@ -75,7 +73,7 @@ def test_equal_work_is_one_computation_a_project(machine: Bench) -> None:
     assert {claim and claim.key for claim in claims} == {jobs[0].key}
 
 
-def test_a_result_of_another_project_answers_nobody_at_once(machine: Bench) -> None:
+def test_a_result_of_another_project_answers_nobody_at_once(machine):
     machine.scheduler.start()
     first = enter(machine, "axle")
     assert _ended(machine, "axle", first).status == "successful"
@@ -91,10 +89,10 @@ def test_a_result_of_another_project_answers_nobody_at_once(machine: Bench) -> N
 
 def _ended(machine: Bench, project: str, job: Job) -> Job:
     jobs = SimpleNamespace(submissions=machine.submissions.within(project))
-    return Bench.ended(jobs, job)  # type: ignore[arg-type]
+    return Bench.ended(jobs, job)
 
 
-def test_jobs_are_found_listed_and_dismissed_in_their_project_alone(machine: Bench) -> None:
+def test_jobs_are_found_listed_and_dismissed_in_their_project_alone(machine):
     job = enter(machine, "axle")
     for project in (COMMON, "drum"):
         jobs = machine.submissions.within(project)
@@ -107,13 +105,13 @@ def test_jobs_are_found_listed_and_dismissed_in_their_project_alone(machine: Ben
     assert mine.dismiss(job.id).status == "dismissed"
 
 
-def test_a_name_of_a_request_is_that_of_a_project(machine: Bench) -> None:
+def test_a_name_of_a_request_is_that_of_a_project(machine):
     jobs = [enter(machine, project, "request-1") for project in PROJECTS]
     assert len({job.id for job in jobs}) == len(PROJECTS)
     assert [enter(machine, project, "request-1").id for project in PROJECTS] == [job.id for job in jobs]
 
 
-def test_results_are_listed_page_by_page_in_their_project(machine: Bench) -> None:
+def test_results_are_listed_page_by_page_in_their_project(machine):
     keys = [f"{number:064x}" for number in range(5)]
     for project in PROJECTS:
         for key in keys:
@@ -131,7 +129,7 @@ def test_results_are_listed_page_by_page_in_their_project(machine: Bench) -> Non
         ]
 
 
-def test_upkeep_is_of_all_projects(machine: Bench) -> None:
+def test_upkeep_is_of_all_projects(machine):
     for project in PROJECTS:
         file = file_with(machine, "")
         with h5py.File(file, "w") as content:
@@ -151,7 +149,7 @@ def test_upkeep_is_of_all_projects(machine: Bench) -> None:
     assert found == [True, False, True]
 
 
-def test_a_job_is_compared_with_former_ones_of_its_project(machine: Bench) -> None:
+def test_a_job_is_compared_with_former_ones_of_its_project(machine):
     job = enter(machine, "axle")
     found = [
         machine.submissions.within(project).newest(Holder(name="bench-3"), "fake") for project in PROJECTS
@@ -159,7 +157,7 @@ def test_a_job_is_compared_with_former_ones_of_its_project(machine: Bench) -> No
     assert [former and former[0] for former in found] == [None, job.id, None]
 
 
-def test_what_a_former_program_enters_is_common(machine: Bench) -> None:
+def test_what_a_former_program_enters_is_common(machine):
     """It names no column of ours."""
     machine.store.put(KEY, "database", file_with(machine, "former"))
     with writing(machine.engine) as connection:
@@ -175,7 +173,7 @@ def test_what_a_former_program_enters_is_common(machine: Bench) -> None:
     assert machine.store.within("axle").page("database", 9) == []
 
 
-def test_a_job_reads_tables_of_its_project_alone(tmp_path: Path) -> None:
+def test_a_job_reads_tables_of_its_project_alone(tmp_path):
     machine = bench(tmp_path, REGISTRY)
     file = tmp_path / "table.nc"
     small_table().to_netcdf(file)
@@ -185,7 +183,7 @@ def test_a_job_reads_tables_of_its_project_alone(tmp_path: Path) -> None:
     scene = validated(SceneInput, {**SCENE, "meshes": [{**of_table, "database_hash": KEY}]})
     claim = Claim("c", "simulate", "k", {"scene": scene.model_dump(mode="json")}, 1)
 
-    def table(project: str) -> Any:
+    def table(project):
         orders: list[WorkOrder] = []
         crew: Any = SimpleNamespace(
             begin=lambda order, *_: orders.append(order) or SimpleNamespace(log_fields={})

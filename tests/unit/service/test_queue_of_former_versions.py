@@ -4,8 +4,6 @@ tests/reference/waiting_jobs_VERSION.sql.gz are dumps of the SQLite files of dat
 twenty analyses over HTTP, from 50 to 145 N m, and did none.
 """
 
-from __future__ import annotations
-
 import gzip
 import sqlite3
 from contextlib import closing
@@ -23,7 +21,7 @@ NUMBER = 20
 
 
 @pytest.fixture(scope="module", autouse=True)
-def migrated_once() -> None:
+def migrated_once():
     """Let migrations upgrade the tables of these versions."""
 
 
@@ -38,7 +36,7 @@ def upgraded(folder: Path, version: str, change: str = "") -> Bench:
 
 @pytest.mark.law
 @pytest.mark.parametrize("version", ["0.2.0", "0.3.0.dev442"])
-def test_twenty_waiting_jobs_are_done_after_an_upgrade(tmp_path: Path, version: str) -> None:
+def test_twenty_waiting_jobs_are_done_after_an_upgrade(tmp_path, version):
     machine = upgraded(tmp_path, version)
     before = machine.submissions.page(100)
     assert [job.status for job in before] == ["accepted"] * NUMBER
@@ -53,7 +51,7 @@ def test_twenty_waiting_jobs_are_done_after_an_upgrade(tmp_path: Path, version: 
     machine.close()
 
 
-def test_what_no_longer_validates_ends_with_its_field_and_the_others_run(tmp_path: Path) -> None:
+def test_what_no_longer_validates_ends_with_its_field_and_the_others_run(tmp_path):
     """The oldest job has another number of teeth here, as if a former version had allowed it."""
     teeth = """replace(inputs, '"teeth": 20', '"teeth": -20')"""
     which = "(SELECT computation_id FROM job ORDER BY created LIMIT 1)"

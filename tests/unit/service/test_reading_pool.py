@@ -1,12 +1,9 @@
 """Readers of foreign bytes: a child a question, shares by caller, limits that end it, nothing left behind."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal
 import time
-from collections.abc import Iterator
 from concurrent.futures import Future
 from pathlib import Path
 from typing import Any
@@ -53,13 +50,13 @@ def left(pool: QuestionPool) -> list[Path]:
 
 
 @pytest.fixture
-def pool(tmp_path: Path) -> Iterator[QuestionPool]:
+def pool(tmp_path):
     made = reading_pool(tmp_path)
     yield made
     made.stop()
 
 
-def test_each_question_has_a_process_and_a_folder_that_are_gone_after_it(pool: QuestionPool) -> None:
+def test_each_question_has_a_process_and_a_folder_that_are_gone_after_it(pool):
     answers = [answer(pool.ask(order("echo", word=word))) for word in "ab"]
     assert [found["word"] for found in answers] == ["a", "b"]
     assert len({found["pid"] for found in answers}) == len({found["folder"] for found in answers}) == 2
@@ -79,9 +76,7 @@ def test_each_question_has_a_process_and_a_folder_that_are_gone_after_it(pool: Q
         ("defect", Unexpected, "unexpected failure"),
     ],
 )
-def test_a_question_that_fails_says_why_and_leaves_nothing(
-    pool: QuestionPool, tmp_path: Path, name: str, error: type[ServiceError], text: str
-) -> None:
+def test_a_question_that_fails_says_why_and_leaves_nothing(pool, tmp_path, name, error, text):
     with pytest.raises(error, match=text):
         pool.ask(order(name, word="canary")).result(timeout=PATIENCE_S)
     assert not left(pool)
@@ -104,9 +99,7 @@ HOUSINGS = [{"step_file": file} for file in FILES]
         ({"measured": {"csv": "tooth,"}}, [], "measured.csv", "tooth,"),
     ],
 )  # fmt: skip
-def test_a_file_that_ends_its_reader_is_named(
-    pool: QuestionPool, inputs: dict[str, Any], announced: list[str], field: str, value: str
-) -> None:
+def test_a_file_that_ends_its_reader_is_named(pool, inputs, announced, field, value):
     """Not by what the reader says it reads, unless that was sent."""
     with pytest.raises(BadInput) as refused:
         pool.ask(order("die_at", fields=announced, **inputs)).result(timeout=PATIENCE_S)
@@ -129,9 +122,7 @@ def test_a_file_that_ends_its_reader_is_named(
         (b"", 1, 0.1, ""),
     ],
 )
-def test_ends_that_are_not_the_files_fault_may_be_repeated(
-    sent: bytes, code: int, cpu_seconds: float, bound: str
-) -> None:
+def test_ends_that_are_not_the_files_fault_may_be_repeated(sent, code, cpu_seconds, bound):
     """A kill from outside, and an end before the order was read."""
     course, frames = Course(), FrameBuffer()
     course.take(frames.take(sent))
@@ -140,9 +131,7 @@ def test_ends_that_are_not_the_files_fault_may_be_repeated(
     assert bound in found and bool(bound) == bool(found)
 
 
-def test_cpu_time_ends_a_question_and_nobody_else_waits_for_it(
-    pool: QuestionPool, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_cpu_time_ends_a_question_and_nobody_else_waits_for_it(pool, monkeypatch):
     """Three callers loop as long as they may; the fourth is answered before them."""
     looping = [pool.ask(order("loop"), Asker(f"caller {number}")) for number in range(AT_ONCE - 1)]
     begin = time.monotonic()
@@ -156,13 +145,13 @@ def test_cpu_time_ends_a_question_and_nobody_else_waits_for_it(
 
 
 @pytest.mark.nightly
-def test_ten_seconds_of_cpu_time_are_the_limit(pool: QuestionPool) -> None:
+def test_ten_seconds_of_cpu_time_are_the_limit(pool):
     with pytest.raises(BadInput, match="read within 10 s of CPU time"):
         pool.ask(order("loop")).result(timeout=3 * PATIENCE_S)
     assert not left(pool)
 
 
-def test_a_caller_has_one_read_and_one_waiting(pool: QuestionPool) -> None:
+def test_a_caller_has_one_read_and_one_waiting(pool):
     futures = [pool.ask(order("echo", word=word, seconds=0.3), Asker("caller")) for word in "ab"]
     with pytest.raises(TooManyHeld) as refused:
         pool.ask(order("echo", word="c"), Asker("caller"))
@@ -171,7 +160,7 @@ def test_a_caller_has_one_read_and_one_waiting(pool: QuestionPool) -> None:
     assert [answer(future)["word"] for future in futures] == ["a", "b"]
 
 
-def test_so_many_wait_and_no_more(pool: QuestionPool) -> None:
+def test_so_many_wait_and_no_more(pool):
     many = LIMITS.in_all
     futures = [pool.ask(order("echo", word=str(n), seconds=0.2), Asker(f"caller {n}")) for n in range(many)]
     with pytest.raises(QueueFull):
@@ -179,7 +168,7 @@ def test_so_many_wait_and_no_more(pool: QuestionPool) -> None:
     assert [answer(future)["word"] for future in futures] == [str(number) for number in range(many)]
 
 
-def test_a_killed_reader_leaves_nothing(pool: QuestionPool) -> None:
+def test_a_killed_reader_leaves_nothing(pool):
     answer(pool.ask(order("echo", word="warm")))
     future = pool.ask(order("loop"))
     readers = pool._workers[0]._children
@@ -192,7 +181,7 @@ def test_a_killed_reader_leaves_nothing(pool: QuestionPool) -> None:
     assert not left(pool) and not lives(pid)
 
 
-def test_folders_of_a_killed_service_are_removed_and_no_others(tmp_path: Path) -> None:
+def test_folders_of_a_killed_service_are_removed_and_no_others(tmp_path):
     (tmp_path / "orphan").mkdir()
     (tmp_path / "orphan" / "file").touch()
     with locked_folder(tmp_path) as used:
@@ -201,13 +190,13 @@ def test_folders_of_a_killed_service_are_removed_and_no_others(tmp_path: Path) -
     assert not list(tmp_path.iterdir())
 
 
-def test_a_reader_sees_no_file_of_the_service(pool: QuestionPool, tmp_path: Path) -> None:
+def test_a_reader_sees_no_file_of_the_service(pool, tmp_path):
     (tmp_path / "keys.json").write_text("canary")
     with pytest.raises(Unexpected):
         pool.ask(order("peek", file=str(tmp_path / "keys.json"))).result(timeout=PATIENCE_S)
 
 
-def test_a_system_that_confines_nothing_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_system_that_confines_nothing_says_so(tmp_path, monkeypatch):
     monkeypatch.setattr("host.confinement.landlock_version", lambda: 0)
     with capture_logs() as log, TestClient(create_app(Settings(data_directory=tmp_path), REGISTRY)) as http:
         ready = http.get("/ready", headers={"Host": "localhost"})
@@ -215,9 +204,7 @@ def test_a_system_that_confines_nothing_says_so(tmp_path: Path, monkeypatch: pyt
     assert [entry["missing"] for entry in log if "confine" in entry["event"]] == [("files (Landlock)",)]
 
 
-def test_a_service_that_requires_confinement_does_not_start_without(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_service_that_requires_confinement_does_not_start_without(tmp_path, monkeypatch):
     monkeypatch.setenv("LOA_REQUIRE_CONFINEMENT", "true")
     settings = load_settings(data_directory=tmp_path)
     create_app(settings, REGISTRY)

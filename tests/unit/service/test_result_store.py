@@ -1,15 +1,11 @@
 """The result store: what is read is what was written, or it is refused; the same in every place."""
 
-from __future__ import annotations
-
 import hashlib
 import os
-from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
-from s3_server import Objects
 from sqlalchemy import event
 
 from lineofaction.gearbox.problems import BadInput, DamagedFile, NotFound, StoreUnavailable
@@ -27,12 +23,12 @@ OTHER = hashlib.sha256(b"other").hexdigest()
 
 
 @pytest.fixture(params=["directory", "s3"])
-def place(request: pytest.FixtureRequest) -> str | None:
+def place(request):
     return None if request.param == "directory" else str(request.getfixturevalue("s3_url"))
 
 
 @pytest.fixture
-def store(tmp_path: Path, database_url: str | None, place: str | None) -> Iterator[ResultStore]:
+def store(tmp_path, database_url, place):
     """An empty store, its index in each database and its files in each place."""
     engine = open_database(database_url or tmp_path / "index.sqlite3")
     yield result_store(engine, tmp_path, place)
@@ -56,7 +52,7 @@ def damage(store: ResultStore, tmp_path: Path, content: bytes) -> None:
     store.files.put(line.file, file, line.sha256)
 
 
-def test_a_result_is_found_by_its_key_and_kind(store: ResultStore, tmp_path: Path) -> None:
+def test_a_result_is_found_by_its_key_and_kind(store, tmp_path):
     put(store, tmp_path, b"table")
     stored = store.verified(KEY, "database")
     assert stored.path.read_bytes() == b"table"
@@ -66,9 +62,7 @@ def test_a_result_is_found_by_its_key_and_kind(store: ResultStore, tmp_path: Pat
     assert not (tmp_path / "made").exists()
 
 
-def test_a_damaged_file_is_never_served_and_makes_room_for_a_new_one(
-    store: ResultStore, tmp_path: Path
-) -> None:
+def test_a_damaged_file_is_never_served_and_makes_room_for_a_new_one(store, tmp_path):
     put(store, tmp_path, b"table")
     damage(store, tmp_path, b"tabla")
     with pytest.raises(DamagedFile):
@@ -79,7 +73,7 @@ def test_a_damaged_file_is_never_served_and_makes_room_for_a_new_one(
     assert store.verified(KEY, "database").path.read_bytes() == b"table"
 
 
-def test_the_first_result_of_a_key_stays(store: ResultStore, tmp_path: Path) -> None:
+def test_the_first_result_of_a_key_stays(store, tmp_path):
     """What was served never changes, though a second computation may differ in its times."""
     put(store, tmp_path, b"one")
     put(store, tmp_path, b"two")
@@ -87,10 +81,10 @@ def test_the_first_result_of_a_key_stays(store: ResultStore, tmp_path: Path) -> 
     assert not (tmp_path / "made").exists()
 
 
-def test_of_results_put_at_the_same_time_one_stays(store: ResultStore, tmp_path: Path) -> None:
+def test_of_results_put_at_the_same_time_one_stays(store, tmp_path):
     """Each has a file of its own, and the one that lost is gone."""
 
-    def put_one(number: int) -> None:
+    def put_one(number):
         file = tmp_path / f"made_{number}"
         file.write_bytes(b"%d" % number)
         store._put(KEY, "database", file)
@@ -102,12 +96,12 @@ def test_of_results_put_at_the_same_time_one_stays(store: ResultStore, tmp_path:
 
 
 @pytest.mark.parametrize("key", ["../../etc/passwd", "", KEY.upper(), KEY[:-1] + "/", "a" * 63, "\x00" * 64])
-def test_what_is_no_hash_names_no_file(tmp_path: Path, key: str) -> None:
+def test_what_is_no_hash_names_no_file(tmp_path, key):
     with pytest.raises(NotFound):
         stored_results(tmp_path).verified(key, "database")
 
 
-def test_a_lost_file_counts_as_no_result(store: ResultStore, tmp_path: Path) -> None:
+def test_a_lost_file_counts_as_no_result(store, tmp_path):
     put(store, tmp_path, b"table")
     (line,) = store.lines()
     store.files.delete(line.file)
@@ -116,12 +110,10 @@ def test_a_lost_file_counts_as_no_result(store: ResultStore, tmp_path: Path) -> 
     assert store.verified(KEY, "database").path.read_bytes() == b"again"
 
 
-def test_a_failed_put_may_be_repeated(
-    store: ResultStore, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_failed_put_may_be_repeated(store, tmp_path, monkeypatch):
     """The bytes were placed, the index was not told: the file of the work is still there."""
 
-    def fail(*_: object) -> None:
+    def fail(*_):
         raise StoreUnavailable("in mid-put")
 
     with monkeypatch.context() as broken:
@@ -134,14 +126,14 @@ def test_a_failed_put_may_be_repeated(
     store.put(KEY, "database", tmp_path / "made")  # is gone, and need not be there
 
 
-def test_a_copy_that_is_cut_off_leaves_no_result(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_copy_that_is_cut_off_leaves_no_result(tmp_path, monkeypatch):
     """On another file system the bytes are copied; the name comes when all are there."""
     store = stored_results(tmp_path)
 
-    def refuse(*_: object) -> None:
+    def refuse(*_):
         raise OSError("another file system")
 
-    def cut_off(_file: Path, target: Path) -> None:
+    def cut_off(_file, target):
         target.write_bytes(b"tab")
         raise OSError("no space left")
 
@@ -157,7 +149,7 @@ def test_a_copy_that_is_cut_off_leaves_no_result(tmp_path: Path, monkeypatch: py
     assert store.verified(KEY, "database").path.read_bytes() == b"table"
 
 
-def test_what_was_fetched_is_kept_and_a_damaged_copy_is_fetched_anew(tmp_path: Path, s3_url: str) -> None:
+def test_what_was_fetched_is_kept_and_a_damaged_copy_is_fetched_anew(tmp_path, s3_url):
     put(result_store(open_database(tmp_path / "index.sqlite3"), tmp_path / "one", s3_url), tmp_path, b"table")
     other = result_store(open_database(tmp_path / "index.sqlite3"), tmp_path / "other", s3_url)
     cached = other.verified(KEY, "database").path
@@ -166,7 +158,7 @@ def test_what_was_fetched_is_kept_and_a_damaged_copy_is_fetched_anew(tmp_path: P
     assert other.verified(KEY, "database").path.read_bytes() == b"table"
 
 
-def test_the_cache_is_bounded_and_spares_what_is_being_read(tmp_path: Path, s3_url: str) -> None:
+def test_the_cache_is_bounded_and_spares_what_is_being_read(tmp_path, s3_url):
     files = object_files(s3_url, tmp_path / "cache", 250)
     for number in range(4):
         made = tmp_path / f"made_{number}"
@@ -182,9 +174,7 @@ def test_the_cache_is_bounded_and_spares_what_is_being_read(tmp_path: Path, s3_u
     assert len(left) == 2 and held[3] in left
 
 
-def test_a_store_that_does_not_answer_is_said(
-    tmp_path: Path, s3_objects: Objects, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_store_that_does_not_answer_is_said(tmp_path, s3_objects, monkeypatch):
     monkeypatch.setattr("service.store.object_files.RETRIES", {"max_retries": 1})
     store = result_store(open_database(tmp_path / "index.sqlite3"), tmp_path, "s3://bucket/prefix")
     put(store, tmp_path, b"table")
@@ -198,7 +188,7 @@ def test_a_store_that_does_not_answer_is_said(
     assert store.verified(OTHER, "database").path.read_bytes() == b"other"
 
 
-def test_credentials_of_a_bucket_come_from_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_credentials_of_a_bucket_come_from_files(tmp_path, monkeypatch):
     for name in ("ACCESS_KEY_ID", "SECRET_ACCESS_KEY"):
         monkeypatch.delenv(f"AWS_{name}", raising=False)
         (tmp_path / name).write_text(f"of {name}\n")
@@ -216,20 +206,20 @@ def test_credentials_of_a_bucket_come_from_files(tmp_path: Path, monkeypatch: py
 
 
 @pytest.mark.parametrize("url", ["s3://", "ftp://host/folder", "file://host/folder", "results"])
-def test_a_place_that_is_none_is_refused(tmp_path: Path, url: str) -> None:
+def test_a_place_that_is_none_is_refused(tmp_path, url):
     with pytest.raises(BadInput) as caught:
         result_files(tmp_path, url)
     assert [fault.field for fault in caught.value.faults] == ["results_url"]
 
 
 @pytest.mark.parametrize("make", [lambda path: f"file://{path}/shared%20results"])
-def test_a_folder_may_be_elsewhere(tmp_path: Path, make: Callable[[Path], str]) -> None:
+def test_a_folder_may_be_elsewhere(tmp_path, make):
     store = stored_results(tmp_path / "data", results_url=make(tmp_path))
     put(store, tmp_path, b"table")
     assert store.verified(KEY, "database").path.is_relative_to(tmp_path / "shared results")
 
 
-def test_a_data_directory_serves_one_service_at_a_time(tmp_path: Path) -> None:
+def test_a_data_directory_serves_one_service_at_a_time(tmp_path):
     first, second = DirectoryLock(tmp_path), DirectoryLock(tmp_path)
     first.acquire()
     with pytest.raises(BadInput, match="another service works in it"):
@@ -239,13 +229,13 @@ def test_a_data_directory_serves_one_service_at_a_time(tmp_path: Path) -> None:
     second.release()
 
 
-def test_a_file_where_the_directory_should_be_is_refused(tmp_path: Path) -> None:
+def test_a_file_where_the_directory_should_be_is_refused(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(BadInput, match="a writable directory"):
         DirectoryLock(tmp_path / "file").acquire()
 
 
-def test_no_connection_outlives_its_transaction(tmp_path: Path) -> None:
+def test_no_connection_outlives_its_transaction(tmp_path):
     """Kept connections of ended threads were closed by nobody (Python 3.13 says so)."""
     engine = open_database(tmp_path / "index.sqlite3")
     opened, closed = [], []

@@ -1,7 +1,5 @@
 """The runbooks: each tells the same four things, names what exists, and its commands do what they say."""
 
-from __future__ import annotations
-
 import os
 import re
 import subprocess
@@ -10,6 +8,7 @@ from pathlib import Path
 
 import h5py
 import pytest
+from repository import ROOT
 from running_service import Bench, bench
 from service_fakes import FAKE, REGISTRY
 from sqlalchemy import update
@@ -22,7 +21,6 @@ from service.store.database import writing
 from service.store.maintenance import verify_store
 from service.store.results import results
 
-ROOT = Path(__file__).resolve().parents[3]
 PAGE = (ROOT / "docs" / "how-to" / "runbooks.md").read_text("utf-8")
 SECTIONS = {part.partition("\n")[0]: part for part in PAGE.split("\n## ")[1:]}
 SOURCE = "\n".join(
@@ -43,21 +41,21 @@ def anchor(title: str) -> str:
     return title.lower().replace(" ", "-")
 
 
-def test_there_are_ten_with_the_anchors_of_alarms() -> None:
+def test_there_are_ten_with_the_anchors_of_alarms():
     assert len(SECTIONS) == 10
     for title in SECTIONS:
         assert f"\n(runbook-{anchor(title)})=\n## {title}\n" in PAGE
 
 
 @pytest.mark.parametrize("title", SECTIONS)
-def test_a_runbook_tells_what_one_sees_and_does(title: str) -> None:
+def test_a_runbook_tells_what_one_sees_and_does(title):
     words = ("How it shows.", "The service itself", "What to do.", "Over when")
     places = [SECTIONS[title].find(f"**{word}**") for word in words]
     assert -1 not in places and places == sorted(places)
 
 
 @pytest.mark.parametrize("title", SECTIONS)
-def test_what_a_runbook_names_exists(title: str) -> None:
+def test_what_a_runbook_names_exists(title):
     text = SECTIONS[title]
     for metric in re.findall(r"\b(loa_[a-z_]+)", text):
         assert metric.removesuffix("_count") in SOURCE or metric.removesuffix("_total") in SOURCE, metric
@@ -73,9 +71,9 @@ def test_what_a_runbook_names_exists(title: str) -> None:
 @pytest.mark.parametrize(
     "command", sorted(set(re.findall(r"^(?:    |LOA_\w+=\S+ )?loa (.+)$", PAGE, re.MULTILINE)))
 )
-def test_a_command_is_one_of_the_program(command: str) -> None:
+def test_a_command_is_one_of_the_program(command):
     group, verb, *rest = command.split()
-    found = get_command(app).commands[group].commands[verb]  # type: ignore[attr-defined]
+    found = get_command(app).commands[group].commands[verb]
     assert found.make_context(verb, list(rest), resilient_parsing=False).command is found
 
 
@@ -110,7 +108,7 @@ def with_results(directory: Path, *texts: str) -> Bench:
     return machine
 
 
-def test_a_damaged_database_is_restored_with_the_results_that_are_newer(tmp_path: Path) -> None:
+def test_a_damaged_database_is_restored_with_the_results_that_are_newer(tmp_path):
     data = tmp_path / "data"
     with_results(data, "before").close()
     (tmp_path / "backup").mkdir()
@@ -125,7 +123,7 @@ def test_a_damaged_database_is_restored_with_the_results_that_are_newer(tmp_path
     machine.close()
 
 
-def test_room_is_made_at_once(tmp_path: Path) -> None:
+def test_room_is_made_at_once(tmp_path):
     machine = with_results(tmp_path / "data", "old", "new")
     old = machine.submit(text="old")
     with writing(machine.engine) as connection:
@@ -141,10 +139,9 @@ def test_room_is_made_at_once(tmp_path: Path) -> None:
     assert sum(name.endswith(".nc") for name in left) == 1
 
 
-def test_a_damaged_result_is_named_and_then_no_more(tmp_path: Path) -> None:
+def test_a_damaged_result_is_named_and_then_no_more(tmp_path):
     machine = with_results(tmp_path / "data", "sound", "harmed")
     line = machine.store.find(machine.submit(text="harmed").key, "database")
-    assert line is not None
     (tmp_path / "data" / "results" / line.file).write_bytes(b"tabla")
     machine.close()
     first = follow("Result damaged", tmp_path)

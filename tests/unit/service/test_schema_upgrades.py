@@ -1,21 +1,16 @@
 """Upgrades of the schema: nothing is lost, and what a newer program made is left alone."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import re
 import sqlite3
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from inspect import getsource as inspect_source
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
 
 import pytest
-from alembic.operations import Operations
 from command_line import loa
 from fastapi.testclient import TestClient
 from postgres_server import PostgresServer
@@ -61,7 +56,7 @@ IDENTIFIERS = [f"00000000-0000-4000-8000-00000000000{n}" for n in range(4)]
 
 
 @pytest.fixture(scope="module", autouse=True)
-def migrated_once() -> None:
+def migrated_once():
     """Let migrations make all tables: they are what is tested here."""
 
 
@@ -87,7 +82,7 @@ def fill(file: Path, results: Path) -> None:
         old.commit()
 
 
-def test_a_data_directory_without_numbers_is_upgraded_and_keeps_all(tmp_path: Path) -> None:
+def test_a_data_directory_without_numbers_is_upgraded_and_keeps_all(tmp_path):
     fill(tmp_path / "service.sqlite3", tmp_path / "results")
     machine = bench(tmp_path, REGISTRY)
     assert Schema(machine.engine).revision() == REVISIONS[-1]
@@ -103,9 +98,7 @@ def test_a_data_directory_without_numbers_is_upgraded_and_keeps_all(tmp_path: Pa
     machine.close()
 
 
-def test_a_table_of_before_gets_its_headline_when_it_is_listed(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_table_of_before_gets_its_headline_when_it_is_listed(tmp_path, monkeypatch):
     file, place = tmp_path / "service.sqlite3", tmp_path / "results" / "database" / KEYS[2][:2]
     fill(file, tmp_path / "results")
     table = small_table()
@@ -118,7 +111,7 @@ def test_a_table_of_before_gets_its_headline_when_it_is_listed(
         old.commit()
     read: list[SteDatabase] = []
 
-    def noted(found: SteDatabase) -> dict[str, Any]:
+    def noted(found):
         read.append(found)
         return headline_json(found)
 
@@ -132,9 +125,7 @@ def test_a_table_of_before_gets_its_headline_when_it_is_listed(
     assert len(read) == 1, "kept: the second list reads no table"
 
 
-def test_a_table_that_cannot_be_read_is_listed_and_read_once(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_table_that_cannot_be_read_is_listed_and_read_once(tmp_path, monkeypatch):
     fill(tmp_path / "service.sqlite3", tmp_path / "results")  # its table is no netCDF file
     with closing(sqlite3.connect(tmp_path / "service.sqlite3")) as old:
         old.execute("UPDATE computation SET process = 'analyze'")
@@ -149,7 +140,7 @@ def test_a_table_that_cannot_be_read_is_listed_and_read_once(
 
 
 @pytest.fixture
-def fresh(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Engine]:
+def fresh(tmp_path, request):
     server: PostgresServer | None = request.getfixturevalue("postgres") if request.param else None
     engine = database_engine(server.new_database() if server else tmp_path / "new.sqlite3")
     yield engine
@@ -160,14 +151,14 @@ both = pytest.mark.parametrize("fresh", [False, True], ids=["sqlite", "postgresq
 
 
 @both
-def test_upgrades_at_the_same_time_are_one(fresh: Engine) -> None:
+def test_upgrades_at_the_same_time_are_one(fresh):
     with ThreadPoolExecutor(4) as pool:
         list(pool.map(lambda _: Schema(fresh).upgrade(), range(4)))
     assert Schema(fresh).revision() == REVISIONS[-1]
 
 
 @both
-def test_the_steps_make_the_tables_that_the_program_declares(fresh: Engine) -> None:
+def test_the_steps_make_the_tables_that_the_program_declares(fresh):
     assert Schema(fresh).revision() is None
     Schema(fresh).upgrade()
     found = inspect(fresh)
@@ -189,7 +180,7 @@ def number(engine: Engine, **numbers: str) -> None:
 
 
 @both
-def test_a_newer_schema_that_only_adds_is_used_and_left_alone(fresh: Engine) -> None:
+def test_a_newer_schema_that_only_adds_is_used_and_left_alone(fresh):
     """A former program starts, and starts again, on what the newer one has made."""
     Schema(fresh).upgrade()
     number(fresh, schema_version="9999")
@@ -199,7 +190,7 @@ def test_a_newer_schema_that_only_adds_is_used_and_left_alone(fresh: Engine) -> 
 
 
 @both
-def test_programs_that_lease_find_a_schema_that_they_do_not_know(fresh: Engine) -> None:
+def test_programs_that_lease_find_a_schema_that_they_do_not_know(fresh):
     """They compare this one number with their own steps, up to 0014: two owners would share the table."""
     Schema(fresh).upgrade()
     with fresh.begin() as connection:
@@ -207,7 +198,7 @@ def test_programs_that_lease_find_a_schema_that_they_do_not_know(fresh: Engine) 
 
 
 @both
-def test_a_newer_schema_is_refused_and_left_alone(fresh: Engine) -> None:
+def test_a_newer_schema_is_refused_and_left_alone(fresh):
     Schema(fresh).upgrade()
     number(fresh, schema_version="9999", alembic_version="9998")
     url = fresh.url.render_as_string(hide_password=False)
@@ -217,10 +208,10 @@ def test_a_newer_schema_is_refused_and_left_alone(fresh: Engine) -> None:
     assert Schema(fresh).revision() == "9999"
 
 
-def test_a_step_that_fails_leaves_the_old_schema(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_step_that_fails_leaves_the_old_schema(tmp_path, monkeypatch):
     """All or nothing: the tables made before the failure are gone again."""
 
-    def fail(_op: Operations) -> None:
+    def fail(_op):
         raise RuntimeError("in mid-upgrade")
 
     monkeypatch.setattr(migrations, "STEPS", {**migrations.STEPS, REVISIONS[-1]: fail})
@@ -231,7 +222,7 @@ def test_a_step_that_fails_leaves_the_old_schema(tmp_path: Path, monkeypatch: py
     assert inspect(engine).get_table_names() == []
 
 
-def test_steps_that_other_programs_live_through_only_add() -> None:
+def test_steps_that_other_programs_live_through_only_add():
     """Programs from `USABLE_SINCE` on read and write what they did: tables and columns stay.
 
     Indexes, which no statement names, may go.
@@ -244,7 +235,7 @@ def test_steps_that_other_programs_live_through_only_add() -> None:
 
 
 @both
-def test_rows_of_a_program_that_knows_no_newer_column_are_taken(fresh: Engine) -> None:
+def test_rows_of_a_program_that_knows_no_newer_column_are_taken(fresh):
     Schema(fresh).upgrade()
     facts = "'c', 'fake', 'k', '{}', 'accepted', '', 0, 0, '', '[]', '', 0, '', ''"
     names = (
@@ -263,7 +254,7 @@ def test_rows_of_a_program_that_knows_no_newer_column_are_taken(fresh: Engine) -
             assert connection.execute(text(f"SELECT count(*) FROM {table}")).scalar() == 1
 
 
-def test_the_numbers_count_the_steps() -> None:
+def test_the_numbers_count_the_steps():
     """Steps behind a schema are those of larger numbers, compared as texts."""
     assert tuple(f"{number:04d}" for number in range(1, len(STEPS) + 1)) == REVISIONS
 
@@ -272,9 +263,7 @@ def test_the_numbers_count_the_steps() -> None:
 
 
 @pytest.mark.parametrize("kind", ["sqlite", "postgresql"])
-def test_a_new_database_is_made_and_then_up_to_date(
-    kind: str, tmp_path: Path, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_new_database_is_made_and_then_up_to_date(kind, tmp_path, request, monkeypatch):
     monkeypatch.setenv("LOA_DATA_DIRECTORY", str(tmp_path))
     if kind == "postgresql":
         server: PostgresServer = request.getfixturevalue("postgres")
@@ -289,7 +278,7 @@ def test_a_new_database_is_made_and_then_up_to_date(
     assert "geheim" not in before.output + after.output
 
 
-def test_a_server_that_does_not_answer_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_server_that_does_not_answer_is_said(tmp_path, monkeypatch):
     monkeypatch.setenv("LOA_DATABASE_URL", f"postgresql://loa:geheim@/loa?host={tmp_path}")
     answer = loa("database", "status")
     assert answer.exit_code == 4

@@ -1,14 +1,11 @@
 """Before a service or a verb loads the libraries that compute: what it answers, loads later, and sets."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from importlib import import_module
-from pathlib import Path
 from threading import Barrier
 
 import pytest
@@ -21,13 +18,13 @@ from service.worker.process import default_registry
 HEAVY_PACKAGES = {"gmsh", "skfem", "numba", "scipy", "xarray", "h5py", "matplotlib", "plotly"}
 
 
-def test_the_app_is_made_without_the_libraries_that_compute() -> None:
+def test_the_app_is_made_without_the_libraries_that_compute():
     code = f"import sys, service.app; print(sorted({HEAVY_PACKAGES!r} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
 
 
-def test_everything_that_is_called_by_name_exists() -> None:
+def test_everything_that_is_called_by_name_exists():
     for process in default_registry().values():
         for entry in (process.entry, *_names(process.prepare), *_names(process.name_result)):
             module, _, name = entry.partition(":")
@@ -40,13 +37,13 @@ def _names(function: object) -> tuple[str, ...]:
     return tuple(cell.cell_contents for cell in cells if ":" in str(cell.cell_contents))
 
 
-def test_what_is_called_by_name_gets_its_arguments() -> None:
+def test_what_is_called_by_name_gets_its_arguments():
     assert on_demand("math:gcd")(12, 18) == 6
     with pytest.raises(AttributeError):
         on_demand("math:nothing")()
 
 
-def test_the_rest_is_loaded_behind() -> None:
+def test_the_rest_is_loaded_behind():
     thread = warm_up()
     thread.join()
     assert set(HEAVY) <= set(sys.modules)
@@ -64,7 +61,7 @@ commands.main()
 
 
 @pytest.mark.parametrize("set_by_user", [{}, {"OMP_NUM_THREADS": "3"}], ids=["nothing set", "three threads"])
-def test_libraries_find_it_before_they_are_loaded(set_by_user: dict[str, str]) -> None:
+def test_libraries_find_it_before_they_are_loaded(set_by_user):
     bare = {name: value for name, value in os.environ.items() if name not in ONE_THREAD}
     done = subprocess.run(
         [sys.executable, "-c", CALLED], env=bare | set_by_user, capture_output=True, text=True, check=True
@@ -87,7 +84,7 @@ def named(): return __name__
 """
 
 
-def test_modules_are_loaded_one_after_the_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_modules_are_loaded_one_after_the_other(tmp_path, monkeypatch):
     """By the thread that loads what requests will need, and by two that are asked meanwhile."""
     names = ["loaded_first", "loaded_on_demand", "loaded_beside_it"]
     for name in names:
@@ -97,7 +94,7 @@ def test_modules_are_loaded_one_after_the_other(tmp_path: Path, monkeypatch: pyt
     monkeypatch.setattr(sys, "being_loaded", order, raising=False)
     together = Barrier(2)
 
-    def ask(name: str) -> str:
+    def ask(name):
         together.wait()
         return str(on_demand(f"{name}:named")())
 

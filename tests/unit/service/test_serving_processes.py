@@ -1,7 +1,5 @@
 """The command line in a process of its own: serving, stopping, interrupting."""
 
-from __future__ import annotations
-
 import errno
 import json
 import os
@@ -26,7 +24,6 @@ LOA = ("-m", "lineofaction.cli")
 def serving(folder: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
     """Serve on a free port; gives the process and its address."""
     process = python(*LOA, "serve", "--port", 0, "--data-directory", folder, stderr=subprocess.PIPE)
-    assert process.stdout is not None
     line = process.stdout.readline()
     assert line, process.communicate()
     yield process, line.rpartition(" ")[2].strip()
@@ -36,13 +33,13 @@ def serving(folder: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
 
 
 @pytest.fixture
-def server(tmp_path: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
+def server(tmp_path):
     with serving(tmp_path / "served") as found:
         yield found
 
 
 @pytest.fixture(scope="module")
-def lasting(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Path, str]]:
+def lasting(tmp_path_factory):
     """The data directory and the address of a server that all tests of the file may ask."""
     folder = tmp_path_factory.mktemp("service") / "served"
     with serving(folder) as (_, address):
@@ -50,7 +47,7 @@ def lasting(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Path, st
         yield folder, address
 
 
-def test_a_server_starts_serves_and_stops_clean(server: tuple[subprocess.Popen[str], str]) -> None:
+def test_a_server_starts_serves_and_stops_clean(server):
     process, address = server
     host, _, port = address.removeprefix("http://").rpartition(":")
     socket.create_connection((host, int(port)), timeout=PATIENCE_S).close()  # it listens before it says so
@@ -93,14 +90,14 @@ def _healthy(address: str) -> bool:
 
 
 @pytest.mark.law
-def test_a_stopped_server_leaves_no_worker(server: tuple[subprocess.Popen[str], str], tmp_path: Path) -> None:
+def test_a_stopped_server_leaves_no_worker(server, tmp_path):
     process, address = server
     until(lambda: _healthy(address))
     job = loa("submit", ROOT / "examples/palermo_spur_20_20.toml", "--service", address, "--json")
     assert json.loads(job.stdout)["process"] == "analyze"
     workers: list[int] = []
 
-    def found() -> bool:
+    def found():
         workers.extend(children(process.pid))
         return bool(workers)
 
@@ -115,26 +112,26 @@ def test_a_stopped_server_leaves_no_worker(server: tuple[subprocess.Popen[str], 
     assert {path: mode for path, mode in modes.items() if mode != (0o700 if path.is_dir() else 0o600)} == {}
 
 
-def test_a_second_server_in_the_same_directory_is_refused(lasting: tuple[Path, str]) -> None:
+def test_a_second_server_in_the_same_directory_is_refused(lasting):
     result = loa("serve", "--port", "0", "--data-directory", lasting[0])
     assert result.exit_code == 2
     assert "another service works in it" in result.stderr
 
 
-def test_a_port_in_use_is_said(lasting: tuple[Path, str], tmp_path: Path) -> None:
+def test_a_port_in_use_is_said(lasting, tmp_path):
     port = lasting[1].rpartition(":")[2]
     result = loa("serve", "--port", port, "--data-directory", tmp_path / "other")
     assert result.exit_code == 2
     assert f"port = {port}: must be a free port" in result.stderr
 
 
-def test_interrupting_is_clean(tmp_path: Path) -> None:
+def test_interrupting_is_clean(tmp_path):
     fifo = tmp_path / "case.toml"
     os.mkfifo(fifo)  # the command waits for its case, so the signal comes while it works
     process = python(*LOA, "analyze", fifo, "-o", tmp_path / "ste.nc", stderr=subprocess.PIPE)
     writer: list[int] = []
 
-    def reads() -> bool:
+    def reads():
         assert process.poll() is None, process.communicate()
         try:
             writer.append(os.open(fifo, os.O_WRONLY | os.O_NONBLOCK))

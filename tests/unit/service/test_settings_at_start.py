@@ -1,9 +1,5 @@
 """Settings of the service that are refused, or read as unset, at its start."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import pytest
 import structlog.testing
 
@@ -12,9 +8,7 @@ from service.settings import _FORMER, Settings, load_settings, note_former_setti
 
 
 @pytest.mark.parametrize("address", ["tcp://gears.example:8786", "ws://[2001:db8::1]:8786"])
-def test_plain_text_beyond_this_machine_is_refused_unless_said(
-    address: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_plain_text_beyond_this_machine_is_refused_unless_said(address, monkeypatch):
     """Who reaches the port runs code with the rights of the service."""
     monkeypatch.setattr("service.settings.find_spec", lambda _: object())
     with pytest.raises(BadInput) as caught:
@@ -27,13 +21,13 @@ def test_plain_text_beyond_this_machine_is_refused_unless_said(
     assert load_settings(scheduler=address).scheduler == address
 
 
-def test_an_empty_name_of_the_key_file_is_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_empty_name_of_the_key_file_is_none(tmp_path, monkeypatch):
     """Compose passes variables that are not set as empty ones."""
     monkeypatch.setenv("LOA_KEYS_FILE", "")
     assert load_settings(data_directory=tmp_path).key_file == tmp_path / "keys.json"
 
 
-def test_settings_of_earlier_versions_are_named_in_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_settings_of_earlier_versions_are_named_in_one_line(monkeypatch):
     """Else jobs would run on this machine, and nobody would know why."""
     monkeypatch.setenv("LOA_DASK_SCHEDULER", "tls://gears.example:8786")
     monkeypatch.setenv("LOA_LEASE_S", "60")
@@ -45,7 +39,7 @@ def test_settings_of_earlier_versions_are_named_in_one_line(monkeypatch: pytest.
     assert "one server owns a job table" in line["settings"]["LOA_LEASE_S"]
 
 
-def test_a_former_setting_is_no_setting_and_an_empty_one_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_former_setting_is_no_setting_and_an_empty_one_is_none(monkeypatch):
     fields = {f"LOA_{name.upper()}" for name in Settings.model_fields}
     assert not fields & set(_FORMER)
     for name in _FORMER:

@@ -1,14 +1,9 @@
 """Each statement ends by its deadline, on each database; what needs longer says so."""
 
-from __future__ import annotations
-
 import math
 import time
-from pathlib import Path
 
 import pytest
-from postgres_server import PostgresServer
-from running_service import Bench
 from sqlalchemy import Engine, text
 
 from lineofaction.gearbox.problems import DatabaseUnavailable
@@ -36,7 +31,7 @@ class Asking:
             connection.execute(ENDLESS).scalar()
 
 
-def test_an_endless_question_ends_once_and_the_next_is_answered(machine: Bench) -> None:
+def test_an_endless_question_ends_once_and_the_next_is_answered(machine):
     asking = Asking(machine.engine.execution_options(deadline_s=0.3))
     begin = time.monotonic()
     with pytest.raises(DatabaseUnavailable, match="has not answered in time"):
@@ -47,9 +42,7 @@ def test_an_endless_question_ends_once_and_the_next_is_answered(machine: Bench) 
         assert connection.execute(text("SELECT 1")).scalar() == 1
 
 
-def test_a_statement_without_a_word_has_the_usual_deadline(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_statement_without_a_word_has_the_usual_deadline(tmp_path, monkeypatch):
     monkeypatch.setattr(dialects, "DEADLINE_S", 0.02)
     engine = open_database(tmp_path / "index.sqlite3")
     with pytest.raises(DatabaseUnavailable):
@@ -59,7 +52,7 @@ def test_a_statement_without_a_word_has_the_usual_deadline(
     engine.dispose()
 
 
-def test_a_server_has_the_usual_deadline(postgres: PostgresServer) -> None:
+def test_a_server_has_the_usual_deadline(postgres):
     engine = database_engine(postgres.new_database())
     with engine.begin() as connection:
         assert connection.execute(text("SHOW statement_timeout")).scalar() == f"{dialects.DEADLINE_S:g}s"

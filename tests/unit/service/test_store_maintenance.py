@@ -1,13 +1,9 @@
 """Verification and collection: what is needed stays, also while the service works."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os
 import threading
-from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from running_service import Bench, bench
@@ -30,8 +26,7 @@ KEYS = [hashlib.sha256(bytes([n])).hexdigest() for n in range(4)]
 
 
 @pytest.fixture(params=["directory", "s3"])
-def machine(tmp_path: Path, database_url: str | None, request: pytest.FixtureRequest) -> Iterator[Bench]:
-    """The job machinery, on each database and with each place of results."""
+def machine(tmp_path, database_url, request):
     place = None if request.param == "directory" else str(request.getfixturevalue("s3_url"))
     found = bench(tmp_path / "data", REGISTRY, database_url=database_url, results_url=place)
     yield found
@@ -83,7 +78,7 @@ def age(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("service.queue.retention.GRACE_S", -60.0)
 
 
-def test_every_file_is_compared_and_what_differs_is_set_aside(machine: Bench) -> None:
+def test_every_file_is_compared_and_what_differs_is_set_aside(machine):
     names = [put(machine, key, b"table") for key in KEYS]
     (draft := machine.settings.data_directory / "other").write_bytes(b"tabla")
     machine.store.files.put(names[0], draft, hashlib.sha256(b"tabla").hexdigest())
@@ -97,9 +92,7 @@ def test_every_file_is_compared_and_what_differs_is_set_aside(machine: Bench) ->
     assert verify_store(machine.store).damaged == ()
 
 
-def test_orphans_and_half_written_files_go_and_all_else_stays(
-    machine: Bench, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_orphans_and_half_written_files_go_and_all_else_stays(machine, monkeypatch):
     name = put(machine, KEYS[0], b"table")
     lost = put(machine, KEYS[1], b"lost")
     machine.store.files.delete(lost)
@@ -121,7 +114,7 @@ def test_orphans_and_half_written_files_go_and_all_else_stays(
     assert machine.store.verified(KEYS[0], "database").path.read_bytes() == b"table"
 
 
-def test_what_was_not_asked_for_expires_with_its_jobs(machine: Bench) -> None:
+def test_what_was_not_asked_for_expires_with_its_jobs(machine):
     old, asked, shown = (done(machine, text) for text in ("old", "asked", "shown"))
     waiting = machine.submit(text="waits")
     let_time_pass(machine)
@@ -141,15 +134,13 @@ def test_what_was_not_asked_for_expires_with_its_jobs(machine: Bench) -> None:
     assert machine.submissions.counts() == {"accepted": 2, "successful": 1}
 
 
-def test_a_result_that_is_asked_for_while_it_is_looked_at_stays(
-    machine: Bench, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_result_that_is_asked_for_while_it_is_looked_at_stays(machine, monkeypatch):
     """The index was read, then the result was put again: the line is no more what was seen."""
     put(machine, KEYS[0], b"table")
     let_time_pass(machine)
     has = machine.store.files.has
 
-    def put_meanwhile(name: str) -> bool:
+    def put_meanwhile(name):
         monkeypatch.undo()
         put(machine, KEYS[0], b"table")
         return has(name)
@@ -159,12 +150,11 @@ def test_a_result_that_is_asked_for_while_it_is_looked_at_stays(
     assert machine.store.verified(KEYS[0], "database").path.read_bytes() == b"table"
 
 
-def test_workspaces_and_logs_of_ended_work_go(machine: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_workspaces_and_logs_of_ended_work_go(machine, monkeypatch):
     directory = machine.settings.data_directory
     ended, failed, running = (machine.submit(text=text) for text in ("ended", "failed", "running"))
     claims = [machine.claims.claim() for _ in range(3)]
     for claim in claims:
-        assert claim is not None
         (directory / "work" / claim.id).mkdir(parents=True)
         (directory / "log").mkdir(exist_ok=True)
         (directory / "log" / f"{claim.id}.log").write_text("said")
@@ -181,12 +171,12 @@ def test_workspaces_and_logs_of_ended_work_go(machine: Bench, monkeypatch: pytes
     assert ended.id != failed.id != running.id
 
 
-def test_collection_beside_writers_loses_nothing(machine: Bench) -> None:
+def test_collection_beside_writers_loses_nothing(machine):
     """Results are put and read while rounds of collection come and go."""
     stop = threading.Event()
     names = set()
 
-    def collect() -> None:
+    def collect():
         while not stop.is_set():
             list(retention(machine).collect(0.5))
 
@@ -204,7 +194,7 @@ def test_collection_beside_writers_loses_nothing(machine: Bench) -> None:
     assert verify_store(machine.store).sound == 12
 
 
-def test_the_verbs_tell_and_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_verbs_tell_and_do(tmp_path, monkeypatch):
     monkeypatch.setenv("LOA_DATA_DIRECTORY", str(tmp_path))
     machine = bench(tmp_path, REGISTRY)
     names = [put(machine, key, b"table") for key in KEYS[:2]]

@@ -1,7 +1,5 @@
 """What follows from a row of the registry, what a study takes, and answers that are as declared."""
 
-from __future__ import annotations
-
 import json
 from inspect import signature
 from pathlib import Path
@@ -10,7 +8,7 @@ from typing import Any
 import pytest
 from study_service import prepared
 
-from fe_contact import SteDatabase, analyze
+from fe_contact import analyze
 from lineofaction.client import LineOfActionClient
 from lineofaction.client.offers import offers
 from lineofaction.gearbox.convert.answers import metadata_json, summary_json
@@ -27,7 +25,6 @@ from lineofaction.gearbox.schemas.outline import OutlineBody
 from lineofaction.gearbox.schemas.plan import PlanBody
 from lineofaction.gearbox.studies.computation import Computation
 from lineofaction.gearbox.studies.deflect import Inputs
-from lineofaction.gearbox.study import Study
 from lineofaction.report.document import stored_study
 from lineofaction.report.presentation import Presentation, presentation_of
 from service.live.work import live_plan
@@ -39,7 +36,7 @@ EVERY = pytest.mark.parametrize("study", STUDIES.values(), ids=list(STUDIES))
 
 
 @EVERY
-def test_it_has_its_parts(study: Study) -> None:
+def test_it_has_its_parts(study):
     assert issubclass(study.inputs, BoundaryModel)
     assert isinstance(study.run, Computation) and isinstance(presentation_of(study), Presentation)
     assert sum(share for _, share in study.stages) == pytest.approx(1.0)
@@ -47,7 +44,7 @@ def test_it_has_its_parts(study: Study) -> None:
 
 
 @EVERY
-def test_the_client_has_a_process_that_says_what_it_takes(study: Study) -> None:
+def test_the_client_has_a_process_that_says_what_it_takes(study):
     with LineOfActionClient("http://127.0.0.1:9") as client:
         process = getattr(client, study.package)
     expected = "study" if study.takes.from_file else "options"
@@ -55,7 +52,7 @@ def test_the_client_has_a_process_that_says_what_it_takes(study: Study) -> None:
     assert process.__doc__ == study.description
 
 
-def test_a_call_that_does_not_fit_is_told_what_would() -> None:
+def test_a_call_that_does_not_fit_is_told_what_would():
     with LineOfActionClient("http://127.0.0.1:9") as client:
         calls: Any = client
         for wrong in (
@@ -67,7 +64,7 @@ def test_a_call_that_does_not_fit_is_told_what_would() -> None:
                 wrong()
 
 
-def test_the_client_has_the_processes_of_the_service_and_no_others() -> None:
+def test_the_client_has_the_processes_of_the_service_and_no_others():
     processes = default_registry()
     assert list(offers()) == list(processes)
     for name, offer in offers().items():
@@ -77,7 +74,7 @@ def test_the_client_has_the_processes_of_the_service_and_no_others() -> None:
 
 
 @EVERY
-def test_its_files_are_known_from_those_of_others(study: Study) -> None:
+def test_its_files_are_known_from_those_of_others(study):
     file = study.run.file
     assert file.values
     assert all(stored_study({file.attribute: value, "title": "any"}) is study for value in file.values)
@@ -88,7 +85,7 @@ UNIT = Path(__file__).parents[3] / "examples" / "two_stage_gearbox.rexs"
 ROTOR = UNIT.with_name("jeffcott_scene.toml")
 
 
-def test_load_cases_of_an_opened_unit_are_those_of_their_file(tmp_path: Path) -> None:
+def test_load_cases_of_an_opened_unit_are_those_of_their_file(tmp_path):
     unit = OpenedUnit.of(read_rexs(UNIT))
     body = UnitBody.model_validate(unit_json(unit))
     file = tmp_path / "load_cases.toml"
@@ -106,7 +103,7 @@ def test_load_cases_of_an_opened_unit_are_those_of_their_file(tmp_path: Path) ->
     assert [case["torque_n_m"] for case in by_model["load_cases"]] == [50.0, 80.0, 30.0]
 
 
-def test_a_path_as_text_is_refused_with_what_to_do() -> None:
+def test_a_path_as_text_is_refused_with_what_to_do():
     with pytest.raises(BadInput, match=r"pathlib\.Path"):
         offers()["deflect"].inputs(ROTOR, "load_cases.toml")
 
@@ -119,7 +116,7 @@ def through_json(answer: dict[str, Any]) -> Any:
 
 
 @pytest.mark.parametrize("name", ["helical_ev_23_67", "industrial_spur_21_59"])
-def test_plans_and_drawings_are_as_declared(name: str, tmp_path: Path) -> None:
+def test_plans_and_drawings_are_as_declared(name, tmp_path):
     case = read_model(Case, EXAMPLES / f"{name}.toml")
     plan = through_json(
         live_plan({"case": case.model_dump(mode="json"), "time_budget_s": None, "cache": str(tmp_path)})
@@ -129,7 +126,7 @@ def test_plans_and_drawings_are_as_declared(name: str, tmp_path: Path) -> None:
     assert OutlineBody.model_validate(drawing).model_dump(mode="json") == drawing
 
 
-def test_a_search_has_the_complaint_of_the_case_as_objective_unless_one_is_stated() -> None:
+def test_a_search_has_the_complaint_of_the_case_as_objective_unless_one_is_stated():
     complaint = {"frequency_hz": 800.0, "speed_rpm": 1200.0, "torque_n_m": 0.1}  # 20 teeth: harmonic 2
     search = default_registry()["optimize"]
     answered = prepared(search, case={**CASE, "complaint": complaint})
@@ -138,7 +135,7 @@ def test_a_search_has_the_complaint_of_the_case_as_objective_unless_one_is_state
     assert stated["objective"] == {"kind": "worst", "weights": []}
 
 
-def test_a_plan_has_the_cost_of_the_study_that_is_named(tmp_path: Path) -> None:
+def test_a_plan_has_the_cost_of_the_study_that_is_named(tmp_path):
     question = {"case": CASE, "time_budget_s": None, "cache": str(tmp_path)}
     plan = through_json(live_plan({**question, "study": "optimize"}))
     assert plan["study"]["cpu_seconds"] > 0.0 and "designs at" in plan["study"]["words"]
@@ -152,12 +149,12 @@ TORQUES = [30.0, 60.0, 110.0, 230.0]
 
 
 @pytest.fixture(scope="module")
-def table() -> SteDatabase:
+def table():
     pair = gear_pair(Case.model_validate(CASE))
     return analyze(pair, torques=TORQUES, level="draft", positions=8, model="plane_strain")
 
 
-def test_torques_come_back_as_they_were_typed(table: SteDatabase) -> None:
+def test_torques_come_back_as_they_were_typed(table):
     """The table holds forces: torque to force and back leaves a last digit."""
     assert table.torque.tolist() != TORQUES
     assert metadata_json(table)["torque_n_m"] == TORQUES

@@ -42,14 +42,14 @@ NOTHING_STORED = SimpleNamespace(find=lambda *_: None)
 
 
 @pytest.fixture(autouse=True)
-def small_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
+def small_tasks(monkeypatch):
     """Cut small tables as large ones are."""
     monkeypatch.setattr(contact_lines, "TASK_SECONDS", 1e-4)
     monkeypatch.setattr(dispatch, "START_SECONDS", 0.0)
 
 
 @pytest.fixture(scope="module")
-def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def data(tmp_path_factory):
     return tmp_path_factory.mktemp("service")
 
 
@@ -58,7 +58,7 @@ def done(
 ) -> Path:
     """Do the work of a process as its worker would; return the file it made."""
     given = process.inputs.model_validate_json(json.dumps(inputs))
-    prepared = process.prepare(given, NOTHING_STORED)  # type: ignore[arg-type]
+    prepared = process.prepare(given, NOTHING_STORED)
     workspace = workspace or Path(mkdtemp(dir=data))
     order = WorkOrder(process.entry, prepared, "0" * 64, workspace, data, scheduler=scheduler)
     module, _, name = process.entry.partition(":")
@@ -100,12 +100,10 @@ class Recording:
     ],
     ids=lambda given: given.id if isinstance(given, Process) else "",
 )
-def test_these_jobs_give_their_tasks_to_the_cluster(
-    process: Process, further: dict[str, Any], task: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_these_jobs_give_their_tasks_to_the_cluster(process, further, task, tmp_path, monkeypatch):
     recording = Recording()
 
-    def connected(address: str, spent: RunCost) -> Any:
+    def connected(address, spent):
         assert address == ADDRESS
         return recording
 
@@ -114,9 +112,7 @@ def test_these_jobs_give_their_tasks_to_the_cluster(
     assert task in recording.functions and recording.closed
 
 
-def test_a_job_whose_cluster_is_away_is_done_here_and_says_so(
-    data: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_a_job_whose_cluster_is_away_is_done_here_and_says_so(data, monkeypatch, caplog):
     pytest.importorskip("distributed", reason="the extra dask is not installed")
     monkeypatch.setattr(dask_cluster, "CONNECT_S", 0.2)
     asked = {"case": CASE}
@@ -131,9 +127,7 @@ def test_a_job_whose_cluster_is_away_is_done_here_and_says_so(
     assert "cluster away, the job goes on here" in told.getMessage() and ADDRESS in told.getMessage()
 
 
-def test_a_job_without_tasks_does_not_look_for_the_cluster(
-    data: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_job_without_tasks_does_not_look_for_the_cluster(data, monkeypatch):
     monkeypatch.setattr(dispatch, "START_SECONDS", 1e3)
     monkeypatch.setattr(cluster, "_connected", None)  # were it called, it would be a TypeError
     assert done(ANALYZE, {"case": CASE}, data, ADDRESS).exists()
@@ -154,9 +148,7 @@ class Dying(Recording):
             yield function(shared, item)
 
 
-def test_a_second_attempt_takes_up_the_table_of_the_first(
-    tmp_path: Path, data: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_second_attempt_takes_up_the_table_of_the_first(tmp_path, data, monkeypatch):
     many = CASE["accuracy"] | {"positions": 64}
     inputs = {"case": {**CASE, "accuracy": many, "errors": {"center_distance_change_mm": [0.0, 0.08]}}}
     first, second, alone = Dying(6), Dying(1000), Dying(1000)
@@ -172,7 +164,7 @@ def test_a_second_attempt_takes_up_the_table_of_the_first(
         np.testing.assert_array_equal(getattr(again, name), getattr(whole, name), err_msg=name)
 
 
-def test_what_a_worker_warns_of_is_in_the_log_of_the_service(tmp_path: Path) -> None:
+def test_what_a_worker_warns_of_is_in_the_log_of_the_service(tmp_path):
     with capture_logs() as log:
         machine = bench(tmp_path, REGISTRY, workers=1)
         machine.scheduler.start()
@@ -184,7 +176,7 @@ def test_what_a_worker_warns_of_is_in_the_log_of_the_service(tmp_path: Path) -> 
     assert warning["reason"] == "the cluster is away" and warning["log_level"] == "warning"
 
 
-def test_the_address_comes_from_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_address_comes_from_the_environment(monkeypatch):
     monkeypatch.setattr("service.settings.find_spec", lambda _: object())
     monkeypatch.setenv("LOA_SCHEDULER", "tls://gears.example:8786")
     assert load_settings().scheduler == "tls://gears.example:8786"
@@ -195,7 +187,7 @@ def test_the_address_comes_from_the_environment(monkeypatch: pytest.MonkeyPatch)
 @pytest.mark.parametrize(
     "address", ["gears.example:8786", "http://gears.example:8786", "tcp://gears.example"]
 )
-def test_what_is_no_address_is_refused_at_the_start(address: str) -> None:
+def test_what_is_no_address_is_refused_at_the_start(address):
     with pytest.raises(BadInput) as caught:
         load_settings(scheduler=address)
     (fault,) = caught.value.faults
@@ -203,7 +195,7 @@ def test_what_is_no_address_is_refused_at_the_start(address: str) -> None:
     assert "tcp://host:8786" in fault.bound and "LOA_SCHEDULER" in str(fault.suggestion)
 
 
-def test_an_address_without_the_extra_is_refused_at_the_start(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_address_without_the_extra_is_refused_at_the_start(monkeypatch):
     monkeypatch.setattr("service.settings.find_spec", lambda _: None)
     with pytest.raises(BadInput, match="extra dask"):
         load_settings(scheduler="tls://gears.example:8786")

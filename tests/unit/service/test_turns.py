@@ -1,7 +1,5 @@
 """Whose turn it is: keys in turn, sliders within a key, submissions first, nobody refused for another."""
 
-from __future__ import annotations
-
 import random
 from itertools import pairwise
 
@@ -22,12 +20,11 @@ def turns(**limits: int) -> Turns:
 
 def asked_next(line: Turns) -> str:
     found = line.next()
-    assert found is not None
     line.ended(found)
     return str(found.order.inputs["word"])
 
 
-def test_a_flood_of_one_key_lets_each_other_key_have_every_second_turn() -> None:
+def test_a_flood_of_one_key_lets_each_other_key_have_every_second_turn():
     line = turns()
     for number in range(40):
         line.enter(question("flood", word=f"flood {number}"))
@@ -38,26 +35,25 @@ def test_a_flood_of_one_key_lets_each_other_key_have_every_second_turn() -> None
     ]
 
 
-def test_a_key_has_one_answered_at_a_time() -> None:
+def test_a_key_has_one_answered_at_a_time():
     line = turns()
     for key in "aab":
         line.enter(question(key, word=key))
     first, second = line.next(), line.next()
-    assert first is not None and second is not None
     assert (first.asker.key, second.asker.key) == ("a", "b")
     assert line.next() is None
     line.ended(first)
     assert asked_next(line) == "a"
 
 
-def test_callers_without_a_key_are_answered_at_the_same_time() -> None:
+def test_callers_without_a_key_are_answered_at_the_same_time():
     line = turns()
     for word in "ab":
         line.enter(question(word=word))
     assert line.next() is not None and line.next() is not None
 
 
-def test_a_slider_that_never_rests_keeps_its_turn() -> None:
+def test_a_slider_that_never_rests_keeps_its_turn():
     line = turns()
     oldest = question("key", "slider", word="oldest")
     line.enter(oldest)
@@ -67,7 +63,7 @@ def test_a_slider_that_never_rests_keeps_its_turn() -> None:
     assert [asked_next(line), asked_next(line)] == ["newest", "other"]
 
 
-def test_the_name_of_a_slider_means_nothing_beside_another_key() -> None:
+def test_the_name_of_a_slider_means_nothing_beside_another_key():
     line = turns()
     for key in "ab":
         line.enter(question(key, "slider", word=key))
@@ -78,11 +74,10 @@ def test_the_name_of_a_slider_means_nothing_beside_another_key() -> None:
     assert asked_next(line) == "b again"
 
 
-def test_the_answer_to_an_older_question_of_a_slider_is_obsolete() -> None:
+def test_the_answer_to_an_older_question_of_a_slider_is_obsolete():
     line = turns()
     line.enter(question("key", "slider"))
     running = line.next()
-    assert running is not None
     line.enter(question("key"))
     line.enter(question("key", "another"))
     assert not running.obsolete
@@ -90,7 +85,7 @@ def test_the_answer_to_an_older_question_of_a_slider_is_obsolete() -> None:
     assert running.obsolete
 
 
-def test_submissions_come_first_and_hold_their_own_number() -> None:
+def test_submissions_come_first_and_hold_their_own_number():
     line = turns(submissions=2)
     line.enter(question("key", word="slider"))
     for word in ("first", "second"):
@@ -100,7 +95,7 @@ def test_submissions_come_first_and_hold_their_own_number() -> None:
     assert [asked_next(line) for _ in range(3)] == ["first", "second", "slider"]
 
 
-def test_a_key_is_refused_for_its_own_sake_alone() -> None:
+def test_a_key_is_refused_for_its_own_sake_alone():
     line = turns(outstanding=64)
     for number in range(64):
         line.enter(question("flood", f"slider {number}"))
@@ -111,7 +106,7 @@ def test_a_key_is_refused_for_its_own_sake_alone() -> None:
     line.enter(question("victim"))
 
 
-def test_so_many_are_held_in_all() -> None:
+def test_so_many_are_held_in_all():
     line = turns(in_all=3)
     for key in "abc":
         line.enter(question(key))
@@ -120,7 +115,7 @@ def test_so_many_are_held_in_all() -> None:
         line.enter(question("d"))
 
 
-def test_random_askers_are_all_answered_in_turn() -> None:
+def test_random_askers_are_all_answered_in_turn():
     """Between two answers of a key each other key that waits has one."""
     draw, line = random.Random(75), turns()
     for _ in range(300):

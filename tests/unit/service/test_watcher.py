@@ -1,15 +1,10 @@
 """The watcher of jobs: all followers get every state at the cost of one, and an outage is outlasted."""
 
-from __future__ import annotations
-
 import threading
-from collections.abc import Iterator
 from contextlib import ExitStack
-from pathlib import Path
 
 import pytest
-from postgres_server import PostgresServer
-from running_service import Bench, bench, until
+from running_service import bench, until
 from service_fakes import REGISTRY
 from sqlalchemy import delete, event
 
@@ -21,7 +16,7 @@ from service.store.database import database_engine, writing
 
 
 @pytest.fixture
-def watcher(machine: Bench, monkeypatch: pytest.MonkeyPatch) -> Iterator[Watcher[Job]]:
+def watcher(machine, monkeypatch):
     """A watcher as of another process: it has connections of its own, and looks when it hears alone."""
     monkeypatch.setattr(watching, "NET_S", 1e6)
     engine = database_engine(machine.settings.database_address or machine.settings.data_directory / FILE)
@@ -34,7 +29,7 @@ def watcher(machine: Bench, monkeypatch: pytest.MonkeyPatch) -> Iterator[Watcher
 FILE = "service.sqlite3"
 
 
-def test_every_follower_gets_every_state_in_order(machine: Bench, watcher: Watcher[Job]) -> None:
+def test_every_follower_gets_every_state_in_order(machine, watcher):
     job, received = machine.submit(text="a"), [list[Job | None]() for _ in range(5)]
     with ExitStack() as following:
         for each in received:
@@ -59,9 +54,7 @@ def _status(received: list[Job | None]) -> str:
     return received[-1].status if received and received[-1] is not None else ""
 
 
-def test_a_state_that_was_reached_before_anybody_followed_is_reported(
-    machine: Bench, watcher: Watcher[Job]
-) -> None:
+def test_a_state_that_was_reached_before_anybody_followed_is_reported(machine, watcher):
     job = machine.submit(text="a")
     machine.claims.succeed(machine.claimed())
     received: list[Job | None] = []
@@ -70,7 +63,18 @@ def test_a_state_that_was_reached_before_anybody_followed_is_reported(
     assert _status(received) == "successful"
 
 
-def test_a_dismissal_is_reported_to_those_of_that_job_alone(machine: Bench, watcher: Watcher[Job]) -> None:
+def test_a_job_that_waits_is_reported_as_its_turn_comes(machine, watcher):
+    machine.submit(text="a")
+    job = machine.submit(text="b")
+    received: list[Job | None] = []
+    with watcher.following(job, received.append):
+        claim = machine.claimed()
+        machine.claims.succeed(claim)
+        until(lambda: received and received[-1] is not None and received[-1].ahead == 0)
+    assert {state.mark for state in received if state} == {job.updated + "/0"}
+
+
+def test_a_dismissal_is_reported_to_those_of_that_job_alone(machine, watcher):
     mine, other = machine.submit(text="same"), machine.submit(text="same")
     received: list[Job | None] = []
     others: list[Job | None] = []
@@ -82,7 +86,7 @@ def test_a_dismissal_is_reported_to_those_of_that_job_alone(machine: Bench, watc
     assert [_status([state]) for state in others] == ["running"]
 
 
-def test_two_hundred_followers_cost_the_questions_of_one(machine: Bench, watcher: Watcher[Job]) -> None:
+def test_two_hundred_followers_cost_the_questions_of_one(machine, watcher):
     pair, claims = [machine.submit(text=text) for text in "ab"], [machine.claimed() for _ in range(2)]
     heard = threading.Semaphore(0)
     received: list[Job | None] = []
@@ -103,9 +107,7 @@ def test_two_hundred_followers_cost_the_questions_of_one(machine: Bench, watcher
     assert sum("computation.inputs" in statement for statement in statements) <= 2
 
 
-def test_what_is_not_heard_is_seen(
-    machine: Bench, watcher: Watcher[Job], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_is_not_heard_is_seen(machine, watcher, monkeypatch):
     deaf = type(
         "Deaf", (), {"received": lambda self: bool(threading.Event().wait(0.02)), "close": lambda self: None}
     )
@@ -122,7 +124,7 @@ def test_what_is_not_heard_is_seen(
     assert _status(received) == "dismissed"
 
 
-def test_a_job_that_is_removed_ends_its_streams(machine: Bench, watcher: Watcher[Job]) -> None:
+def test_a_job_that_is_removed_ends_its_streams(machine, watcher):
     job, received = machine.submit(text="a"), list[Job | None]()
     with watcher.following(job, received.append):
         with writing(machine.engine) as connection:
@@ -131,7 +133,7 @@ def test_a_job_that_is_removed_ends_its_streams(machine: Bench, watcher: Watcher
     assert received.count(None) == 1
 
 
-def test_without_followers_there_is_no_thread(machine: Bench, watcher: Watcher[Job]) -> None:
+def test_without_followers_there_is_no_thread(machine, watcher):
     job = machine.submit(text="a")
     for _ in range(2):
         with watcher.following(job, lambda _: None):
@@ -139,7 +141,7 @@ def test_without_followers_there_is_no_thread(machine: Bench, watcher: Watcher[J
         until(lambda: watcher._thread is None)
 
 
-def test_a_stop_tells_all_who_follow(machine: Bench, watcher: Watcher[Job]) -> None:
+def test_a_stop_tells_all_who_follow(machine, watcher):
     received: list[Job | None] = []
     with watcher.following(machine.submit(text="a"), received.append):
         watcher.stop()
@@ -147,9 +149,7 @@ def test_a_stop_tells_all_who_follow(machine: Bench, watcher: Watcher[Job]) -> N
 
 
 @pytest.mark.law
-def test_lost_connections_lose_no_state(
-    postgres: PostgresServer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_lost_connections_lose_no_state(postgres, tmp_path, monkeypatch):
     monkeypatch.setattr(watching, "NET_S", 1e6)  # by what is heard, or after the loss, alone
     url = postgres.emptied_database()
     machine = bench(tmp_path, REGISTRY, database_url=url)

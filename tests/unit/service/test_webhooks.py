@@ -1,7 +1,5 @@
 """Calls about jobs: claims on each database, addresses that may be called, settings, signatures."""
 
-from __future__ import annotations
-
 import base64
 import socket
 from concurrent.futures import ThreadPoolExecutor
@@ -27,7 +25,7 @@ def succeeded(machine: Bench, text: str) -> str:
     return job.id
 
 
-def test_a_call_is_claimed_once_and_an_origin_has_one_at_a_time(machine: Bench) -> None:
+def test_a_call_is_claimed_once_and_an_origin_has_one_at_a_time(machine):
     made = Calls(machine.engine)
     jobs = [succeeded(machine, str(n)) for n in range(4)]
     for n, job in enumerate(jobs):
@@ -42,14 +40,11 @@ def test_a_call_is_claimed_once_and_an_origin_has_one_at_a_time(machine: Bench) 
     assert made.claim() is None
 
 
-def test_a_call_whose_maker_died_is_made_again_and_late_news_of_it_are_ignored(
-    machine: Bench, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_call_whose_maker_died_is_made_again_and_late_news_of_it_are_ignored(machine, monkeypatch):
     monkeypatch.setattr(calls, "LEASE_S", -1.0)  # over at once
     made, job = Calls(machine.engine), succeeded(machine, "a")
     made.enter(job, {"success": "https://host.example/"})
     first, again = made.claim(), made.claim()
-    assert first is not None and again is not None
     assert (first.id, first.attempts, again.attempts) == (again.id, 1, 2)
     made.deliver(first, "late")
     assert [(call.state, call.message) for call in made.of(job)] == [("waiting", "")]
@@ -58,7 +53,7 @@ def test_a_call_whose_maker_died_is_made_again_and_late_news_of_it_are_ignored(
     assert made.claim() is None
 
 
-def test_calls_wait_for_the_state_of_their_job_and_for_each_other(machine: Bench) -> None:
+def test_calls_wait_for_the_state_of_their_job_and_for_each_other(machine):
     made, job = Calls(machine.engine), machine.submit(text="a")
     uris = dict.fromkeys(("inProgress", "success", "failed"), "https://host.example/")
     made.enter(job.id, uris)
@@ -80,7 +75,7 @@ def test_calls_wait_for_the_state_of_their_job_and_for_each_other(machine: Bench
     }
 
 
-def test_pauses_grow_and_end(machine: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_pauses_grow_and_end(machine, monkeypatch):
     made, job = Calls(machine.engine), succeeded(machine, "a")
     made.enter(job, {"success": "https://host.example/"})
     call = made.claim()
@@ -107,7 +102,7 @@ PRIVATE = [
 
 
 @pytest.mark.parametrize("address", PRIVATE)
-def test_no_name_leads_to_a_private_address(monkeypatch: pytest.MonkeyPatch, address: str) -> None:
+def test_no_name_leads_to_a_private_address(monkeypatch, address):
     assert not requests.is_public(address)
     entry = (socket.AF_INET, socket.SOCK_STREAM, 0, "", (address, 80))
     monkeypatch.setattr(socket, "getaddrinfo", lambda *_args, **_more: [entry])
@@ -116,20 +111,20 @@ def test_no_name_leads_to_a_private_address(monkeypatch: pytest.MonkeyPatch, add
 
 
 @pytest.mark.parametrize("address", ["93.184.216.34", "2606:2800:220:1::1", "::ffff:93.184.216.34"])
-def test_public_addresses_are_called(address: str) -> None:
+def test_public_addresses_are_called(address):
     assert requests.is_public(address)
 
 
-def test_the_address_that_was_looked_at_is_the_one_connected_to(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_address_that_was_looked_at_is_the_one_connected_to(monkeypatch):
     """A name that resolves to another address the next time is not asked a next time."""
     answers = iter(["93.184.216.34", "127.0.0.1"])
     connected: list[Any] = []
 
-    def resolved(*_args: object, **_more: object) -> list[Any]:
+    def resolved(*_args, **_more):
         return [(socket.AF_INET, socket.SOCK_STREAM, 0, "", (next(answers), 80))]
 
     class Recorded(socket.socket):
-        def connect(self, address: Any) -> None:
+        def connect(self, address):
             connected.append(address)
             raise ConnectionRefusedError
 
@@ -152,14 +147,14 @@ def test_the_address_that_was_looked_at_is_the_one_connected_to(monkeypatch: pyt
         ({"webhook_origins": "https://a.example:x", "webhook_secret": SECRET}, "webhook_origins"),
     ],
 )
-def test_settings_that_cannot_be_used_are_refused(options: dict[str, str], field: str) -> None:
+def test_settings_that_cannot_be_used_are_refused(options, field):
     with pytest.raises(BadInput) as caught:
         load_settings(**options)
     assert [fault.field for fault in caught.value.faults] == [field]
     assert SECRET not in str(caught.value)
 
 
-def test_origins_are_those_of_the_settings() -> None:
+def test_origins_are_those_of_the_settings():
     settings = Settings(
         webhook_origins="https://Hooks.example.com, http://[::1]:8080/", webhook_secret=SECRET
     )
@@ -168,7 +163,7 @@ def test_origins_are_those_of_the_settings() -> None:
     assert Settings().origins == frozenset()
 
 
-def test_the_signature_is_that_of_the_standard() -> None:
+def test_the_signature_is_that_of_the_standard():
     """The example of Standard Webhooks' own libraries."""
     key = secret_bytes("whsec_MfKQ9r8GKYqrTwjUPD8ILPZIo2LaLaSw")
     headers = signed_headers(key, "msg_p5jXN8AQM9LWM0D4loKWxJek", 1614265330, b'{"test": 2432232314}')

@@ -1,7 +1,5 @@
 """What another version left in the job table: it runs under the name of this one, or says why not."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 
@@ -35,7 +33,7 @@ def entered_by(machine: Bench, job: Job, version: str, **columns: Any) -> Job:
 
 
 @pytest.mark.parametrize("version", ["", OLDER])
-def test_waiting_work_of_an_older_version_keeps_its_identifier_and_runs(machine: Bench, version: str) -> None:
+def test_waiting_work_of_an_older_version_keeps_its_identifier_and_runs(machine, version):
     jobs = [entered_by(machine, machine.submit(text=text), version) for text in "ab"]
     left = machine.settings.data_directory / "work" / jobs[0].computation
     left.mkdir(parents=True)
@@ -48,7 +46,7 @@ def test_waiting_work_of_an_older_version_keeps_its_identifier_and_runs(machine:
     assert [machine.store.verified(job.key, "database").path.read_text() for job in jobs] == ["a", "b"]
 
 
-def test_what_an_older_version_ran_runs_again(machine: Bench) -> None:
+def test_what_an_older_version_ran_runs_again(machine):
     job = machine.submit(text="a")
     machine.claims.put_back(machine.claimed(), "The worker was ended by SIGKILL.", counted=True)
     machine.claimed()  # for its last attempt
@@ -57,7 +55,7 @@ def test_what_an_older_version_ran_runs_again(machine: Bench) -> None:
     assert (machine.ended(job).status, machine.ended(job).attempts) == ("successful", 2)
 
 
-def test_work_that_this_version_refuses_ends_with_field_and_reason(machine: Bench) -> None:
+def test_work_that_this_version_refuses_ends_with_field_and_reason(machine):
     refused = {"wish": {"mode": "write", "text": "a", "number": 11.0}}
     one, gone, good = (machine.submit(text=text) for text in ("one", "gone", "good"))
     entered_by(machine, one, OLDER, inputs=json.dumps(refused))
@@ -71,7 +69,7 @@ def test_work_that_this_version_refuses_ends_with_field_and_reason(machine: Benc
     assert machine.ended(good).status == "successful"
 
 
-def test_a_field_that_is_gone_is_forgiven_where_the_caller_did_not_state_it(machine: Bench) -> None:
+def test_a_field_that_is_gone_is_forgiven_where_the_caller_did_not_state_it(machine):
     """Normalized inputs name every field of their version."""
     stated = {"wish": {"text": "as stated"}}
     former = {"wish": {"mode": "write", "text": "as stated", "number": 0.0, "color": "red"}}
@@ -85,7 +83,7 @@ def test_a_field_that_is_gone_is_forgiven_where_the_caller_did_not_state_it(mach
     assert [fault["field"] for fault in machine.ended(other).faults] == ["wish.color"]
 
 
-def test_renewed_work_joins_its_equal_of_this_version(machine: Bench) -> None:
+def test_renewed_work_joins_its_equal_of_this_version(machine):
     """Also one that has the result already; priority and limit are those of the more generous."""
     older = [
         entered_by(machine, machine.submit(text="same"), version, key=key * 64)
@@ -106,7 +104,7 @@ def test_renewed_work_joins_its_equal_of_this_version(machine: Bench) -> None:
     assert len(machine.starts(newer)) == 1
 
 
-def test_a_batch_of_an_older_version_is_done_and_who_subscribed_is_told(machine: Bench) -> None:
+def test_a_batch_of_an_older_version_is_done_and_who_subscribed_is_told(machine):
     cases = [BatchCase(key * 64, {"wish": {"text": key}}) for key in "ab"]
     batch = machine.submissions.entry().batch("fake", cases, now())
     for job in machine.submissions.children(batch):
@@ -120,7 +118,7 @@ def test_a_batch_of_an_older_version_is_done_and_who_subscribed_is_told(machine:
     assert call is not None and (call.job, call.event) == (batch, "success")
 
 
-def test_work_of_one_name_in_both_versions_goes_on_for_who_submits_it_to_the_newer(machine: Bench) -> None:
+def test_work_of_one_name_in_both_versions_goes_on_for_who_submits_it_to_the_newer(machine):
     """A table has the same hash in all versions with one solver: its end would end the new job too."""
     older = machine.submit(text="same")
     entered_by(machine, older, OLDER, key=older.key)
@@ -130,8 +128,8 @@ def test_work_of_one_name_in_both_versions_goes_on_for_who_submits_it_to_the_new
     assert claim is not None and (claim.id, claim.program) == (older.computation, solver_version())
 
 
-def test_a_request_repeated_after_an_upgrade_is_the_same_job(machine: Bench) -> None:
-    def named(key: str) -> str:
+def test_a_request_repeated_after_an_upgrade_is_the_same_job(machine):
+    def named(key):
         return machine.submissions.submit("fake", key, {}, stored=False, name="mine").id
 
     first = named("a" * 64)
@@ -144,7 +142,7 @@ def test_a_request_repeated_after_an_upgrade_is_the_same_job(machine: Bench) -> 
 
 @pytest.mark.drawn
 @pytest.mark.parametrize("name", [*INPUTS, *(f"{name} of a scene" for name in ("ablate", "frontier"))])
-def test_normalized_inputs_are_inputs_of_the_same_work(machine: Bench, name: str) -> None:
+def test_normalized_inputs_are_inputs_of_the_same_work(machine, name):
     """A job is submitted again with the inputs that it shows: that is the same work."""
     process = default_registry()[name.partition(" ")[0]]
     sent = INPUTS[process.id] if name in INPUTS else {"scene": SCENE}

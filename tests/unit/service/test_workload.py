@@ -1,10 +1,7 @@
 """Figures of the load: each computation is counted once, on the one database, and stays counted."""
 
-from __future__ import annotations
-
 from datetime import UTC, datetime, timedelta
 from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -47,7 +44,7 @@ def counts(histogram: Durations) -> dict[str, int]:
     return {le: step for (le, _), step in zip(histogram.buckets, steps, strict=True) if step}
 
 
-def test_ends_are_counted_by_outcome_in_the_class_of_their_duration(machine: Bench) -> None:
+def test_ends_are_counted_by_outcome_in_the_class_of_their_duration(machine):
     for number, seconds in enumerate((0.0, 90.0, 100.0, 9000.0)):
         machine.claims.succeed(begun(machine, f"case {number}", seconds))
     machine.claims.fail(begun(machine, "bad", 30.0), "no mesh")
@@ -60,7 +57,7 @@ def test_ends_are_counted_by_outcome_in_the_class_of_their_duration(machine: Ben
     assert found["successful"].seconds == pytest.approx(9190.0, abs=40.0)
 
 
-def test_an_end_that_is_said_twice_is_counted_once(machine: Bench) -> None:
+def test_an_end_that_is_said_twice_is_counted_once(machine):
     """As when the answer to a commit was lost, or another scheduler was quicker."""
     claim = begun(machine, "once")
     for _ in range(2):
@@ -69,7 +66,7 @@ def test_an_end_that_is_said_twice_is_counted_once(machine: Bench) -> None:
     assert {outcome: counts(one) for outcome, one in ended(machine).items()} == {"successful": {"1.0": 1}}
 
 
-def test_dismissed_work_is_counted_if_it_had_begun(machine: Bench) -> None:
+def test_dismissed_work_is_counted_if_it_had_begun(machine):
     waits = machine.submit(text="waits")
     machine.submissions.dismiss(waits.id)
     assert ended(machine) == {}
@@ -81,7 +78,7 @@ def test_dismissed_work_is_counted_if_it_had_begun(machine: Bench) -> None:
     assert {outcome: counts(one) for outcome, one in ended(machine).items()} == {"dismissed": {"1.0": 1}}
 
 
-def test_attempts_add_up(machine: Bench) -> None:
+def test_attempts_add_up(machine):
     claim = begun(machine, "dies once")
     machine.claims.put_back(claim, "died", counted=True)
     again = machine.claimed()
@@ -90,7 +87,7 @@ def test_attempts_add_up(machine: Bench) -> None:
     assert ended(machine)["successful"].attempts == 3
 
 
-def test_counts_outlive_what_they_count(machine: Bench) -> None:
+def test_counts_outlive_what_they_count(machine):
     machine.claims.succeed(begun(machine, "old"))
     with writing(machine.engine) as connection:
         long_ago = "2020-01-01T00:00:00.000000Z"
@@ -104,7 +101,7 @@ def test_counts_outlive_what_they_count(machine: Bench) -> None:
     assert ended(machine) == before
 
 
-def test_all_services_of_a_database_tell_the_same(machine: Bench, tmp_path: Path) -> None:
+def test_all_services_of_a_database_tell_the_same(machine, tmp_path):
     address: Any = machine.settings.database_address or f"sqlite:///{tmp_path / 'service.sqlite3'}"
     other = bench(tmp_path / "other", REGISTRY, database_url=address)
     machine.claims.succeed(begun(machine, "here"))
@@ -117,7 +114,7 @@ def test_all_services_of_a_database_tell_the_same(machine: Bench, tmp_path: Path
     other.close()
 
 
-def test_the_oldest_that_waits_has_its_age(machine: Bench) -> None:
+def test_the_oldest_that_waits_has_its_age(machine):
     read = WorkloadReader(machine.engine).read
     assert read().oldest_waiting_s == 0.0
     machine.submit(text="old")
@@ -128,7 +125,7 @@ def test_the_oldest_that_waits_has_its_age(machine: Bench) -> None:
     assert read().oldest_waiting_s < 100.0
 
 
-def test_results_are_added_up_by_kind(machine: Bench, tmp_path: Path) -> None:
+def test_results_are_added_up_by_kind(machine, tmp_path):
     for number, (kind, size) in enumerate((("database", 10), ("database", 300), ("frontier", 7))):
         file = tmp_path / "made"
         file.write_bytes(bytes(size))

@@ -1,14 +1,11 @@
 """Writers of one file take turns in the order in which they came, each within its patience."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
-from pathlib import Path
 from threading import Event, Thread
 
 import pytest
-from running_service import Bench, until
+from running_service import until
 from sqlalchemy import Engine, event
 
 from lineofaction.gearbox.problems import Busy
@@ -38,7 +35,7 @@ def number_waiting(engine: Engine) -> int:
 
 
 @pytest.mark.law
-def test_writers_are_served_in_the_order_in_which_they_came(tmp_path: Path) -> None:
+def test_writers_are_served_in_the_order_in_which_they_came(tmp_path):
     """SQLite alone lets in whoever tries when the file happens to be free.
 
     They wait with their connections open: opened within the turns these let half as many write in a time.
@@ -52,13 +49,13 @@ def test_writers_are_served_in_the_order_in_which_they_came(tmp_path: Path) -> N
     threads = []
     for number in range(WRITERS):
 
-        def work(number: int = number) -> None:
+        def work(number=number):
             served.append(number)
             time.sleep(0.005)
 
         threads.append(Thread(target=Writer(engine).write, args=(work,)))
         threads[-1].start()
-        until(lambda number=number: number_waiting(engine) == number + 1)  # type: ignore[misc]
+        until(lambda number=number: number_waiting(engine) == number + 1)
     assert len(opened) == 1 + WRITERS
     release.set()
     for thread in (first, *threads):
@@ -67,7 +64,7 @@ def test_writers_are_served_in_the_order_in_which_they_came(tmp_path: Path) -> N
     engine.dispose()
 
 
-def test_one_whose_turn_does_not_come_is_told_that_the_service_is_busy(machine: Bench) -> None:
+def test_one_whose_turn_does_not_come_is_told_that_the_service_is_busy(machine):
     if machine.engine.dialect.name != "sqlite":
         pytest.skip("a server has many writers")
     writer = Writer(machine.engine)
@@ -81,10 +78,10 @@ def test_one_whose_turn_does_not_come_is_told_that_the_service_is_busy(machine: 
     writer.write(lambda: None, patience_ms=200)
 
 
-def test_patience_is_one_in_the_queue_and_at_the_file() -> None:
+def test_patience_is_one_in_the_queue_and_at_the_file():
     queue, left = WriterQueue(), list[float]()
 
-    def wait() -> None:
+    def wait():
         with queue.turn(60.0) as left_s:
             left.append(left_s)
 
@@ -97,10 +94,10 @@ def test_patience_is_one_in_the_queue_and_at_the_file() -> None:
     assert left[0] < 59.9
 
 
-def test_one_that_gives_up_leaves_its_place_and_one_ahead_is_the_next() -> None:
+def test_one_that_gives_up_leaves_its_place_and_one_ahead_is_the_next():
     queue, served = WriterQueue(), list[str]()
 
-    def wait(name: str, ahead: bool) -> None:
+    def wait(name, ahead):
         with queue.turn(60.0, ahead=ahead):
             served.append(name)
 
@@ -110,7 +107,7 @@ def test_one_that_gives_up_leaves_its_place_and_one_ahead_is_the_next() -> None:
             pass
         for number, thread in enumerate(threads):
             thread.start()
-            until(lambda number=number: len(queue._waiting) == number + 1)  # type: ignore[misc]
+            until(lambda number=number: len(queue._waiting) == number + 1)
     for thread in threads:
         thread.join()
     assert served == ["ahead", "one", "other"]
@@ -118,7 +115,7 @@ def test_one_that_gives_up_leaves_its_place_and_one_ahead_is_the_next() -> None:
         assert left_s == 0.0
 
 
-def test_a_turn_that_ends_by_an_error_is_given_on() -> None:
+def test_a_turn_that_ends_by_an_error_is_given_on():
     queue = WriterQueue()
     with pytest.raises(ValueError, match="defect"), queue.turn(1.0):
         raise ValueError("defect")

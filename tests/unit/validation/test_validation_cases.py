@@ -1,7 +1,5 @@
 """`loa validate`: cases are files, data that is missing is no agreement, a difference needs its cause."""
 
-from __future__ import annotations
-
 import json
 from contextlib import suppress
 from dataclasses import replace
@@ -65,7 +63,7 @@ def validated_file(folder: Path, value: str, why: str = "") -> tuple[int, dict[s
     return ran.exit_code, case["comparisons"][0]
 
 
-def test_at_least_a_dozen_cases_have_a_source_a_licence_and_rows_or_data() -> None:
+def test_at_least_a_dozen_cases_have_a_source_a_licence_and_rows_or_data():
     cases = [read_case(path) for path in CASES.values()]
     assert len(cases) >= 12
     for case in cases:
@@ -75,14 +73,14 @@ def test_at_least_a_dozen_cases_have_a_source_a_licence_and_rows_or_data() -> No
 
 
 @pytest.mark.parametrize("name", QUICK)
-def test_published_numbers_are_met(name: str) -> None:
+def test_published_numbers_are_met(name):
     outcome = run_case(read_case(CASES[name]), no_verb)
     assert outcome.comparisons, outcome.reason
     assert all(row.agrees for row in outcome.comparisons)
 
 
 @pytest.mark.parametrize("name", LISTED)
-def test_listed_and_measured_numbers_are_met_where_the_data_is(name: str) -> None:
+def test_listed_and_measured_numbers_are_met_where_the_data_is(name):
     outcome = run_case(read_case(CASES[name]), no_verb)
     if outcome.reason == NO_DATA:
         pytest.skip("the data of others is not here")
@@ -93,16 +91,14 @@ def test_listed_and_measured_numbers_are_met_where_the_data_is(name: str) -> Non
 
 @pytest.mark.nightly
 @pytest.mark.parametrize("name", sorted(set(CASES) - {*QUICK, *LISTED}))
-def test_every_difference_has_its_cause(name: str) -> None:
+def test_every_difference_has_its_cause(name):
     ran = loa("validate", name, "--json")
     (case,) = json.loads(ran.stdout)["cases"]
     assert ran.exit_code == 0, case
     assert case["comparisons"] or case["reason"] == NO_DATA
 
 
-def test_without_its_data_a_case_is_not_run_and_agrees_with_nothing(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_without_its_data_a_case_is_not_run_and_agrees_with_nothing(monkeypatch, tmp_path):
     monkeypatch.setenv(REFERENCE, str(tmp_path))
     case = read_case(CASES["stplus_fzg_c"]).model_copy(update={"data": "of_nobody.csv"})
     outcome = run_case(case, no_verb)
@@ -110,7 +106,7 @@ def test_without_its_data_a_case_is_not_run_and_agrees_with_nothing(
     assert "not run: data not found" in markdown([outcome])
 
 
-def test_a_file_of_anybody_is_a_case_and_a_difference_needs_its_cause(tmp_path: Path) -> None:
+def test_a_file_of_anybody_is_a_case_and_a_difference_needs_its_cause(tmp_path):
     code, row = validated_file(tmp_path, "1.5568")
     assert (code, row["verdict"]) == (0, "agrees")
     code, row = validated_file(tmp_path, "1.60")
@@ -120,7 +116,7 @@ def test_a_file_of_anybody_is_a_case_and_a_difference_needs_its_cause(tmp_path: 
     assert (code, row["verdict"], row["why"]) == (0, "differs", "a misprint")
 
 
-def test_agreement_is_a_difference_within_the_sum_of_both_errors() -> None:
+def test_agreement_is_a_difference_within_the_sum_of_both_errors():
     row = Comparison("force", "N", 100.0, 1.0, 101.4, 0.5)
     assert row.agrees
     assert not replace(row, ours=101.6).agrees
@@ -128,7 +124,7 @@ def test_agreement_is_a_difference_within_the_sum_of_both_errors() -> None:
 
 
 @pytest.mark.parametrize(("text", "error"), [("1.5568", 5e-5), ("2660", 0.5), ("1.50e3", 5.0)])
-def test_a_printed_number_is_good_to_half_of_its_last_digit(text: str, error: float) -> None:
+def test_a_printed_number_is_good_to_half_of_its_last_digit(text, error):
     assert last_digit(text) == pytest.approx(error, rel=1e-12)
 
 
@@ -140,7 +136,7 @@ def test_a_printed_number_is_good_to_half_of_its_last_digit(text: str, error: fl
         ('verb = "geometry CASE"\nmeasured = true\n[[compared]]\nquantity = "x"', "value"),
     ],
 )
-def test_a_file_with_a_wrong_field_is_refused_by_it(tmp_path: Path, change: str, field: str) -> None:
+def test_a_file_with_a_wrong_field_is_refused_by_it(tmp_path, change, field):
     file = tmp_path / "wrong.toml"
     file.write_text(f'title = "t"\nsource = "s"\nlicence = "l"\nassumed = []\n{change}', encoding="utf-8")
     with pytest.raises(BadInput, match=field):
@@ -170,7 +166,7 @@ def test_a_file_with_a_wrong_field_is_refused_by_it(tmp_path: Path, change: str,
         ('verb = "geometry CASE"\nname = "rikor_forces"', "name"),
     ],
 )
-def test_a_file_of_a_stranger_reaches_nothing_but_its_numbers(tmp_path: Path, line: str, field: str) -> None:
+def test_a_file_of_a_stranger_reaches_nothing_but_its_numbers(tmp_path, line, field):
     file = tmp_path / "stranger.toml"
     file.write_text(f'title = "t"\nsource = "s"\nlicence = "l"\nassumed = []\n{line}', encoding="utf-8")
     with pytest.raises(BadInput, match=field):
@@ -179,7 +175,7 @@ def test_a_file_of_a_stranger_reaches_nothing_but_its_numbers(tmp_path: Path, li
 
 
 @pytest.mark.parametrize("name", ["pairs:analyze", "pairs:no_such", "sector_series:root_stress"])
-def test_a_function_that_is_not_made_for_cases_is_not_called(name: str) -> None:
+def test_a_function_that_is_not_made_for_cases_is_not_called(name):
     case = read_case(CASES["nafems_cylinder"]).model_copy(
         update={"function": f"lineofaction.validation.computed.{name}", "arguments": {}}
     )
@@ -188,7 +184,7 @@ def test_a_function_that_is_not_made_for_cases_is_not_called(name: str) -> None:
     assert "a function that lineofaction.validation.computed." in outcome.reason
 
 
-def test_damaged_files_end_in_one_error(tmp_path: Path) -> None:
+def test_damaged_files_end_in_one_error(tmp_path):
     """Cuts, exchanged lines, other bytes and deep or long tables of a case of the program, by seed."""
     text, draw = CASES["rikor_forces"].read_bytes(), Random(20261130)
     for number in range(100):

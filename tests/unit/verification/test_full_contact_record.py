@@ -1,19 +1,15 @@
 """Records of full contact: what is solved for them, and what they cannot hold."""
 
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np
 import pytest
 from analysis_requests import table_request
 
-from fe_contact import Gear, GearPair
+from fe_contact import Gear, GearPair, Status, TableAxes
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.studies.full_contact_record import FACE, PLANE, full_contact_records
 from fe_contact.errors import SolveError
-from fe_contact.options import TableAxes
-from fe_contact.types import Status
 from model_studies.progress import unreported
 from verification import full_contact_record as recording
 from verification.full_contact import FullContactPoint, FullContactTable, solve_full_contact
@@ -27,7 +23,7 @@ FORCES = [200.0, 500.0]
 def solved_table(
     torques: list[float], positions: list[float], failed: tuple[int, ...] = ()
 ) -> FullContactTable:
-    def point(number: int, position: float, torque: float) -> FullContactPoint:
+    def point(number, position, torque):
         if number in failed:
             return FullContactPoint.failed(Status.ITERATION_LIMIT, "cut back too often", 9, torque)
         lag = 1e-7 * torque
@@ -42,7 +38,7 @@ def solved_table(
     )
 
 
-def test_all_loads_are_solved_at_equally_spaced_positions(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_all_loads_are_solved_at_equally_spaced_positions(monkeypatch):
     monkeypatch.setattr(
         recording,
         "solve_full_contact",
@@ -57,8 +53,8 @@ def test_all_loads_are_solved_at_equally_spaced_positions(monkeypatch: pytest.Mo
     assert record.seconds_per_solve == pytest.approx(4 * 5.0 / 8)
 
 
-def test_misaligned_gears_are_solved_over_the_face(monkeypatch: pytest.MonkeyPatch) -> None:
-    def solved(_pair, torques, positions, misalignments, **_):  # type: ignore[no-untyped-def]
+def test_misaligned_gears_are_solved_over_the_face(monkeypatch):
+    def solved(_pair, torques, positions, misalignments, **_):
         return (solved_table(torques, positions),) * len(misalignments)
 
     monkeypatch.setattr(recording, "solve_full_contact_over_face", solved)
@@ -69,7 +65,7 @@ def test_misaligned_gears_are_solved_over_the_face(monkeypatch: pytest.MonkeyPat
     assert record.transmission_error.shape == (2, 2, len(FORCES))
 
 
-def test_no_solution_at_all_is_an_error_with_its_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_solution_at_all_is_an_error_with_its_reason(monkeypatch):
     monkeypatch.setattr(
         recording,
         "solve_full_contact",
@@ -79,7 +75,7 @@ def test_no_solution_at_all_is_an_error_with_its_reason(monkeypatch: pytest.Monk
         record_full_contact(check_request(PAIR, TableAxes(normal_forces=FORCES)), 2, unreported)
 
 
-def test_what_it_cannot_hold_is_said() -> None:
+def test_what_it_cannot_hold_is_said():
     assert full_contact_refusal(check_request(PAIR, TableAxes(normal_forces=[9.0]))) is None
     wider = dataclasses.replace(GEAR, face_width=9e-3)
     beside = check_request(
@@ -93,7 +89,7 @@ def test_what_it_cannot_hold_is_said() -> None:
     assert "helical" in str(full_contact_refusal(check_request(tilted, TableAxes(normal_forces=[9.0]))))
 
 
-def test_the_record_of_the_accuracy_study_is_what_is_solved_today() -> None:
+def test_the_record_of_the_accuracy_study_is_what_is_solved_today():
     """One position of the 20/20 pair of the examples, under the least and the largest load."""
     gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
     record = full_contact_records()[0]

@@ -1,7 +1,5 @@
 """The condensed peer against resolved full contact of two independent codes, and against its own meshes."""
 
-from __future__ import annotations
-
 import csv
 from pathlib import Path
 
@@ -34,7 +32,7 @@ def rows(torque: float) -> dict[float, tuple[float, float]]:
     "torque",
     [t if t == 100.0 else pytest.param(t, marks=pytest.mark.nightly) for t in TARGETS],
 )
-def test_positions_under_one_load(torque: float, record_figure, monkeypatch) -> None:
+def test_positions_under_one_load(torque, record_figure, monkeypatch):
     """Of the codes, too, a plain ring at the root circle stands for all teeth but five."""
     monkeypatch.setattr(gear_boundary, "RAISED", 0.0)
     expected = [rows(torque)[driven] for driven in DRIVEN]
@@ -50,14 +48,14 @@ def test_positions_under_one_load(torque: float, record_figure, monkeypatch) -> 
 
 
 @pytest.mark.law
-def test_all_loads_come_from_one_compliance() -> None:
+def test_all_loads_come_from_one_compliance():
     """Meshed for one load or for all: the same within what meshes differ by."""
     alone = solve_full_contact(PAIR, [100.0], [0.2]).transmission_error[0, 0]
     among = solve_full_contact(PAIR, list(TARGETS), [0.2]).transmission_error[0, 2]
     assert among == pytest.approx(alone, rel=5e-4)
 
 
-def test_meshes_twice_as_fine_change_little(record_figure) -> None:
+def test_meshes_twice_as_fine_change_little(record_figure):
     """At a tip edge, which decides."""
     coarse, fine = (solve_full_contact(PAIR, [400.0], [0.2], Resolution(n)) for n in (3.0, 6.0))
     change = 100.0 * np.abs(coarse.transmission_error / fine.transmission_error - 1.0).max()
@@ -67,7 +65,7 @@ def test_meshes_twice_as_fine_change_little(record_figure) -> None:
 
 
 @pytest.mark.law
-def test_pressure_is_that_of_hertz() -> None:
+def test_pressure_is_that_of_hertz():
     """Of the reference: 755.9 MPa at the pitch point, 592.5 MPa in double contact, within 0.2 % of Hertz."""
     found = solve_full_contact(PAIR, [100.0], [0.0, 0.5])
     for (point,), expected in zip(found.points, (755.9e6, 592.5e6), strict=True):

@@ -1,7 +1,5 @@
 """The plane corrected for a finite width against three dimensions, on held-out pairs."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -57,7 +55,7 @@ SCENES = {
 
 def solved(contact: PairContact, model: object, force: float) -> np.ndarray:
     """STE (P,) in m."""
-    solution = contact.solve(model, POSITION, np.array([force]))[1]  # type: ignore[arg-type]
+    solution = contact.solve(model, POSITION, np.array([force]))[1]
     assert solution.converged
     return solution.deflection[:, 0]
 

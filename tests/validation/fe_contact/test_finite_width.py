@@ -1,7 +1,5 @@
 """Gears of finite width: against plane strain, and published sensitivities."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

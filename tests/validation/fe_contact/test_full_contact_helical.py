@@ -1,7 +1,5 @@
 """Helical full contact against that of spur pairs over the face, and tables over the face against it."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -30,7 +28,7 @@ ADDED = 0.06
 @pytest.mark.nightly
 @pytest.mark.law
 @pytest.mark.xfail(reason="0.20 % under the lightest load; 31 hats across a line leave 0.17 %")
-def test_without_helix_it_is_full_contact_over_the_face(record_figure) -> None:
+def test_without_helix_it_is_full_contact_over_the_face(record_figure):
     case = face_cases()[1]
     tables = solve_full_contact_helical(case.pair, case.torques, FACE_POSITIONS, case.misalignments)
     for misalignment, table in zip(case.misalignments, tables, strict=True):
@@ -43,7 +41,7 @@ def test_without_helix_it_is_full_contact_over_the_face(record_figure) -> None:
 
 
 @pytest.mark.nightly
-def test_stated_errors_of_tables_cover_full_contact(record_figure) -> None:
+def test_stated_errors_of_tables_cover_full_contact(record_figure):
     found = assessed()
     assert len(found) == 8
     for quantity, name in enumerate(("means", "peak-to-peak")):
@@ -55,7 +53,7 @@ def test_stated_errors_of_tables_cover_full_contact(record_figure) -> None:
 @pytest.mark.nightly
 @pytest.mark.law
 @pytest.mark.xfail(reason="0.20 % of 19/52, where full contact over the face is 0.05 to 0.3 % stiffer")
-def test_means_of_tables_over_the_face_are_those_of_full_contact(record_figure) -> None:
+def test_means_of_tables_over_the_face_are_those_of_full_contact(record_figure):
     off = [np.maximum(one.true[0] - one.own[0], 0.0) / one.value[0] for one in assessed()]
     worst = 100.0 * float(np.max(off))
     record_figure("worst mean of tables over the face", worst, f"at most {MEAN} %", "%", SOURCE)
@@ -65,7 +63,7 @@ def test_means_of_tables_over_the_face_are_those_of_full_contact(record_figure) 
 @pytest.mark.nightly
 @pytest.mark.law
 @pytest.mark.xfail(reason="0.10 %; the error of full contact on plain profiles is not known")
-def test_reliefs_add_to_the_mean_what_they_add_in_full_contact(record_figure) -> None:
+def test_reliefs_add_to_the_mean_what_they_add_in_full_contact(record_figure):
     case, at = helical_cases()[2], POSITIONS[::2]
     plain = {gear: without_reliefs(getattr(case.pair, gear)) for gear in ("pinion", "wheel")}
     means = []

@@ -1,11 +1,9 @@
 """Three dimensions against full contact over the face: external and internal spur pairs, misaligned too."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
-from benchmarks.full_contact_over_face import AssessedFace, assess, face_cases
+from benchmarks.full_contact_over_face import assess, face_cases
 from fe_contact import Gear, GearPair
 from verification.full_contact import Resolution, solve_full_contact, solve_full_contact_over_face
 
@@ -22,11 +20,11 @@ LIMIT = 0.15
         pytest.param(face_cases()[1:2], id="23/31"),
     ],
 )
-def assessed(request: pytest.FixtureRequest) -> list[AssessedFace]:
+def assessed(request):
     return [one for case in request.param for one in assess(case)]
 
 
-def test_points_on_the_line_of_action(assessed, record_figure) -> None:
+def test_points_on_the_line_of_action(assessed, record_figure):
     for one in assessed:
         off = np.maximum(np.abs(one.difference) - one.own, 0.0)[:, 1:] / one.level[1:]
         worst = 100.0 * float(off.max())
@@ -35,7 +33,7 @@ def test_points_on_the_line_of_action(assessed, record_figure) -> None:
         assert worst < LIMIT
 
 
-def test_stated_errors_cover_points_and_curves(assessed, record_figure) -> None:
+def test_stated_errors_cover_points_and_curves(assessed, record_figure):
     covered = 100.0 * float(np.mean([one.covered for one in assessed]))
     pairs = " and ".join(dict.fromkeys(one.case.name for one in assessed))
     record_figure(f"points covered in 3-D, {pairs}", covered, "at least 90 %", "%", SOURCE)
@@ -47,7 +45,7 @@ def test_stated_errors_cover_points_and_curves(assessed, record_figure) -> None:
 
 
 @pytest.mark.law
-def test_the_face_is_softer_than_plane_strain(record_figure) -> None:
+def test_the_face_is_softer_than_plane_strain(record_figure):
     gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
     pair, mesh = GearPair(gear, gear, center_distance=80e-3), Resolution(2.0, 4.0, 2)
     plane = solve_full_contact(pair, [100.0], [0.05], mesh).transmission_error

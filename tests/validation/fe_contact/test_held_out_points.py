@@ -1,15 +1,12 @@
 """The table against solves at positions and loads it does not hold."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from spur_gears import PAIR
 
-from fe_contact import analyze
+from fe_contact import TableAxes, analyze
 from fe_contact.analysis.pairs.pair_contact import pair_contact
 from fe_contact.analysis.request.request_check import check_request
-from fe_contact.options import TableAxes
 from fe_contact.planning.plan import make_plan
 
 TORQUES = np.geomspace(10.0, 400.0, 12)
@@ -26,7 +23,7 @@ def held_out(tmp_path_factory):
     contact = pair_contact(pair, plan, cache)
     position = np.random.default_rng(0).random(800)
 
-    def errors(force: np.ndarray) -> np.ndarray:
+    def errors(force):
         solved = contact.solve(checked.model, position, force)[1].deflection
         return np.abs(table.ste(position[:, None], force) - solved) / np.ptp(solved, axis=0)
 

@@ -1,7 +1,5 @@
 """The condensed peer against CalculiX on the same meshes, where it is installed: penalty against none."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest
@@ -36,7 +34,7 @@ SOURCE = "CalculiX, surface-to-surface penalty contact, the same mesh"
 @pytest.mark.nightly  # tests/unit/verification/full_contact/test_full_contact.py holds one pair against it
 @pytest.mark.skipif(CALCULIX is None, reason="CalculiX (ccx) is not installed")
 @pytest.mark.parametrize("name", CASES)
-def test_two_contact_solvers_agree_on_one_mesh(name: str, record_figure) -> None:
+def test_two_contact_solvers_agree_on_one_mesh(name, record_figure):
     assert CALCULIX is not None
     pair, torque, position = CASES[name]
     point = solve_position(CALCULIX, pair, float(pair.normal_force(torque)), position, 300.0, MESH)

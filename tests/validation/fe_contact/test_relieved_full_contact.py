@@ -1,7 +1,5 @@
 """Pairs with long reliefs, in ring gears and of soft wheels against full finite-element contact."""
 
-from __future__ import annotations
-
 import csv
 import math
 from dataclasses import replace
@@ -25,7 +23,7 @@ BESIDE_IT = {50.0: (0.25, 4.11104), 100.0: (0.25, 8.01536), 400.0: (0.25, 30.429
 
 
 @pytest.fixture(scope="module")
-def database() -> SteDatabase:
+def database():
     """30 um over the last 3.5 mm of roll, on both gears of the 20/20 pair."""
     plain = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
     begins = math.hypot(plain.base_radius, plain.tip_roll_length - 3.5e-3)
@@ -93,7 +91,7 @@ FACE_PEER = "full contact over the face, 2 elements in a Hertz half-width, 3 lay
 
 
 @pytest.fixture(scope="module")
-def off_over_the_face(tmp_path_factory: pytest.TempPathFactory) -> dict[float, np.ndarray]:
+def off_over_the_face(tmp_path_factory):
     """How far tables over the face are off the peer, um by torque and position."""
     off, cache = {}, tmp_path_factory.mktemp("bodies")
     request = {"model": "3d", "level": "draft", "receipt": "minimal", "cache": cache}
@@ -174,7 +172,7 @@ MEAN_AND_SWING = {15.0: (1.40369, 0.72818), 50.0: (4.32183, 2.22615), 150.0: (11
 
 
 @pytest.fixture(scope="module")
-def ring_database() -> SteDatabase:
+def ring_database():
     """24 teeth in a ring of 72, to 333 N/mm; the edges touch in corners of 120 and 106 degrees."""
     pinion = Gear(24, 2e-3, 20e-3, bore_diameter=24e-3)
     ring = RingGear(72, 2e-3, 20e-3, rim_diameter=164e-3, addendum_coefficient=0.85)
@@ -257,7 +255,7 @@ def test_the_stated_errors_of_a_soft_gear_hold_and_are_not_much_too_large(record
 def test_what_unlike_gears_leave_out_grows_with_the_load_and_with_the_unlikeness():
     """The source "method", of the mean beyond the floor: patches follow flanks, little is left at 5 N m."""
 
-    def stated(table: SteDatabase, torque: float) -> np.ndarray:
+    def stated(table, torque):
         curve = table.curve(torque=torque)
         own = curve.mean.value, curve.peak_to_peak.value
         method = table.curve_error[AT_NODES.index(METHOD), :2, list(table.torque).index(torque), 0, 0]

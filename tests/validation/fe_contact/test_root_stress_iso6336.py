@@ -1,10 +1,7 @@
 """Root stress beside the nominal tooth-root stress of ISO 6336-3, method B, and its critical section."""
 
-from __future__ import annotations
-
 import math
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -109,7 +106,7 @@ def pair_and_section(
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_the_critical_section_is_the_standards(case: tuple[int, int, float, float, float]) -> None:
+def test_the_critical_section_is_the_standards(case):
     """Half the chord between the 30 degree tangents, from the generated fillet."""
     pair, section = pair_and_section(*case)
     profile = tooth_profile(pair.pinion)
@@ -118,7 +115,7 @@ def test_the_critical_section_is_the_standards(case: tuple[int, int, float, floa
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_the_line_of_the_standard_is_the_standards(case: tuple[int, int, float, float, float]) -> None:
+def test_the_line_of_the_standard_is_the_standards(case):
     """The nominal stress beside computed ones, by another way through the generated fillet."""
     pair, section = pair_and_section(*case)
     torque = 100.0
@@ -129,9 +126,7 @@ def test_the_line_of_the_standard_is_the_standards(case: tuple[int, int, float, 
 
 @pytest.mark.law
 @pytest.mark.parametrize("case", [CASES[0], CASES[1], CASES[4]])
-def test_finite_elements_beside_the_nominal_stress(
-    case: tuple[int, int, float, float, float], record_figure: Callable[..., None]
-) -> None:
+def test_finite_elements_beside_the_nominal_stress(case, record_figure):
     """Published comparisons scatter by about 10 %; the standard is on the safe side with large shifts.
 
     Method B takes the section at the 30 degree tangent and a notch factor fitted to gears like these.

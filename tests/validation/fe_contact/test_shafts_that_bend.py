@@ -1,7 +1,5 @@
 """Shafts that bend, through the whole analysis: what they shift and tilt, and in proportion to what."""
 
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np

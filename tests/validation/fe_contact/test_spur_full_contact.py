@@ -8,8 +8,6 @@ them 0.1 to 0.16 % softer than whole gears. The error of the method is that on b
 tables, which are of whole gears, lie below by so much.
 """
 
-from __future__ import annotations
-
 import csv
 from dataclasses import dataclass, replace
 from functools import cache
@@ -18,10 +16,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fe_contact import Gear, GearPair, SteDatabase, analyze
+from fe_contact import AnalysisOptions, Gear, GearPair, SteDatabase, TableAxes, analyze
 from fe_contact.analysis.pairs.pair_contact import pair_contact
 from fe_contact.analysis.request.request_check import check_request
-from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning.plan import make_plan
 
 REFERENCE = Path(__file__).parents[2] / "reference" / "spur_20_20_full_contact.csv"
@@ -71,7 +68,7 @@ def spur_pair() -> GearPair:
 
 
 @pytest.fixture(scope="module")
-def database() -> SteDatabase:
+def database():
     return analyze(spur_pair(), torques=[10, 50, 100, 200, 400], model="plane_strain")
 
 

@@ -1,7 +1,5 @@
 """Tip edges that touch off the line of action, against full contact."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -21,7 +19,7 @@ AT_EDGES = (-0.08, 0.0)
 
 @pytest.mark.law
 @pytest.mark.parametrize("name", ["24/72, ring", "31/90, ring"])
-def test_no_position_of_a_ring_gear_is_off(name: str, record_figure) -> None:
+def test_no_position_of_a_ring_gear_is_off(name, record_figure):
     """0.20 and 0.41 % at worst where strips at edges had the length of one load, and teeth only turned."""
     (case,) = (one for one in full_contact_cases() if one.name == name)
     position, exact, _ = reference(name)
@@ -36,7 +34,7 @@ def pointed_pair() -> GearPair:
     """14/84 teeth, the pinion 0.2 modules wide at its tip."""
     teeth = (14, 84)
 
-    def involute(angle: float) -> float:
+    def involute(angle):
         return math.tan(angle) - angle
 
     target = involute(PRESSURE_ANGLE) + 2.0 * math.tan(PRESSURE_ANGLE) * sum(SHIFTS) / sum(teeth)
@@ -61,7 +59,7 @@ def pointed_pair() -> GearPair:
 
 
 @pytest.mark.law
-def test_the_edge_of_a_pointed_pinion(record_figure) -> None:
+def test_the_edge_of_a_pointed_pinion(record_figure):
     """-0.56 and -0.38 % at worst before: it moves less along its flank than if the gear turned."""
     pair = pointed_pair()
     exact = solve_full_contact(pair, list(TORQUES), list(AT_EDGES)).transmission_error

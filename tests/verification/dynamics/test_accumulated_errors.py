@@ -7,13 +7,12 @@ import pytest
 
 from benchmarks.accumulated_error_cases import ACCUMULATING, STEADY, scenes
 from benchmarks.accumulated_errors import MAX, MIN, stated_run
+from dynamics import Integration, Outputs, RunResult, simulate, simulate_to_file
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import SolveError
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.integrators.method_choice import choose_method
-from dynamics.results import RunResult
-from dynamics.scene import Integration, Outputs
-from dynamics.simulation import interrupted_run, simulate, simulate_to_file
+from dynamics.simulation import interrupted_run
 from dynamics.simulation.long_run_error import RunPair, blind_windows, finer_run, level_error
 from dynamics.types import RunStatus
 from lineofaction.hardcases.dynamics.bouncing_mass import bounce, cycle

@@ -4,8 +4,6 @@ The mesh force acts along the line on which its points of application move. Alon
 change the moments of its axial part and of friction alone; both are in the tables.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -14,12 +12,11 @@ import pytest
 from geared_scenes import BASE_RADIUS, RPM, gear_pair_scene, with_gear, with_mesh
 from sliced_face import rigid_share_database, sliced_database
 
+from dynamics import Scene, TimeLaw
 from dynamics.assembly.assemble import System, assemble
 from dynamics.integrators import static_equilibrium
-from dynamics.loads import TimeLaw
 from dynamics.mechanism.rotor import build_rotor
 from dynamics.motion.force_balance import force_balance
-from dynamics.scene import Scene
 from fe_contact.ste.load_levels import SMOOTHING
 
 PITCH = 2.0 * math.pi * BASE_RADIUS / 20
@@ -68,7 +65,7 @@ def along(system: System) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 @pytest.mark.law
 @pytest.mark.parametrize("sense", [1, -1])
 @pytest.mark.parametrize("way", [-0.8, 0.0, 0.6])
-def test_along_the_path_of_contact_a_spur_force_has_the_same_moments(way: float, sense: int) -> None:
+def test_along_the_path_of_contact_a_spur_force_has_the_same_moments(way, sense):
     """Two pairs a base pitch apart share the load: force times lever on both gears, wherever they touch."""
     scene = scene_of(sense=sense)
     system = assemble(scene)
@@ -88,7 +85,7 @@ def test_along_the_path_of_contact_a_spur_force_has_the_same_moments(way: float,
 @pytest.mark.law
 @pytest.mark.parametrize("sense", [1, -1])
 @pytest.mark.parametrize("helix", [0.35, -0.35])
-def test_a_helical_force_is_moved_along_face_and_path(helix: float, sense: int) -> None:
+def test_a_helical_force_is_moved_along_face_and_path(helix, sense):
     """Its axial part has the lever xi: all six components on both gears, and what a fixed point lacks."""
     face, xi = 4e-3, 0.6 * PITCH  # along the face of the table, which runs against z for the sense +1
     scene = scene_of(helix, sense, face - xi * math.tan(helix))
@@ -109,7 +106,7 @@ def test_a_helical_force_is_moved_along_face_and_path(helix: float, sense: int) 
 @pytest.mark.law
 @pytest.mark.parametrize("sense", [1, -1])
 @pytest.mark.parametrize("position", [0.1, 0.5, 0.9])
-def test_friction_acts_at_the_points_of_contact(position: float, sense: int) -> None:
+def test_friction_acts_at_the_points_of_contact(position, sense):
     """mu F c_j across the line of action at each pair, in the sense of its side of the pitch point."""
     table = rigid_share_database().force_table()
     scene = gear_pair_scene(table, speed=TimeLaw.constant(sense * 900.0 * RPM))

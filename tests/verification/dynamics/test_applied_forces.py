@@ -1,9 +1,6 @@
 """Forces by time, speed and angle, fixed in space or turning: closed forms of linear systems."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -83,7 +80,7 @@ def rotor(*forces: AppliedForce, unbalances: tuple[Unbalance, ...] = ()) -> Scen
 
 
 @pytest.mark.parametrize("sense", [1.0, -1.0])
-def test_orders_of_torque_twist_a_train_in_response_steady_state_and_run(sense: float) -> None:
+def test_orders_of_torque_twist_a_train_in_response_steady_state_and_run(sense):
     """The angle counts about +z: turned the other way the phases lead instead of lagging."""
     system = assemble(train(sense))
     assert static_equilibrium(system).displacement == pytest.approx([MEAN * TORQUE / TORSION])
@@ -103,7 +100,7 @@ def test_orders_of_torque_twist_a_train_in_response_steady_state_and_run(sense: 
     assert run.energy.relative < 1e-6
 
 
-def test_a_turn_given_in_values_goes_through_them() -> None:
+def test_a_turn_given_in_values_goes_through_them():
     values = np.array([3.0, -1.0, 2.0, 0.5, 0.0, 7.0, 1.0, 1.0])
     for count in (8, 7):
         course = Orders.table("rotor", values[:count].tolist())
@@ -112,7 +109,7 @@ def test_a_turn_given_in_values_goes_through_them() -> None:
         assert course.turns == 1
 
 
-def test_a_force_by_the_square_of_speed_that_turns_is_an_unbalance() -> None:
+def test_a_force_by_the_square_of_speed_that_turns_is_an_unbalance():
     """Along the axis parts add: they stand still."""
     turning = AppliedForce(
         "heavy spot",
@@ -130,7 +127,7 @@ def test_a_force_by_the_square_of_speed_that_turns_is_an_unbalance() -> None:
     assert runs[0] == pytest.approx(runs[1], abs=1e-9)
 
 
-def test_the_first_order_of_its_own_angle_stands_still_in_a_force_that_turns() -> None:
+def test_the_first_order_of_its_own_angle_stands_still_in_a_force_that_turns():
     """cos(a + p) (cos a, sin a) is (cos p, -sin p)/2, and a second order."""
     turning = AppliedForce(
         "rub",
@@ -158,7 +155,7 @@ def test_the_first_order_of_its_own_angle_stands_still_in_a_force_that_turns() -
     ],
 )
 @pytest.mark.parametrize("turns_with", [None, "rotor"])
-def test_work_is_accounted_for(course: Callable[[str], object], turns_with: str | None) -> None:
+def test_work_is_accounted_for(course, turns_with):
     """Of a force and a moment of all directions, on a rotor that tilts and moves along its axis."""
     force = AppliedForce(
         "all",
@@ -167,7 +164,7 @@ def test_work_is_accounted_for(course: Callable[[str], object], turns_with: str 
         (30.0, -20.0, 5.0),
         (2.0, 1.0, 3.0),
         course("rotor"),
-        turns_with,  # type: ignore[arg-type]
+        turns_with,
     )
     scene = rotor(force)
     held = tuple(replace(bushing, axial_stiffness=STIFFNESS) for bushing in scene.bushings)
@@ -176,7 +173,7 @@ def test_work_is_accounted_for(course: Callable[[str], object], turns_with: str 
     assert run.energy.turnover > 1e-3
 
 
-def test_a_force_by_time_starts_at_rest_under_its_first_value() -> None:
+def test_a_force_by_time_starts_at_rest_under_its_first_value():
     step = AppliedForce("belt", "rotor", 0.2, (0.0, 500.0, 0.0), course=TimeLaw((0.0, 0.1), (1.0, 1.0)))
     run = simulate(rotor(step))
     assert run.displacement[1] == pytest.approx(np.full(run.time.size, 500.0 / STIFFNESS), rel=1e-9)
@@ -185,13 +182,13 @@ def test_a_force_by_time_starts_at_rest_under_its_first_value() -> None:
 @pytest.mark.parametrize(
     ("order", "field"), [((0.0,), "order[0]"), ((math.pi,), "order[0]"), ((1.0, 2.0), "amplitude")]
 )
-def test_orders_that_never_repeat_are_refused(order: tuple[float, ...], field: str) -> None:
+def test_orders_that_never_repeat_are_refused(order, field):
     with pytest.raises(InputError) as refused:
         Orders("rotor", order, (1.0,), (0.0,))
     assert refused.value.field == field
 
 
-def test_shafts_that_a_load_names_exist_and_turn() -> None:
+def test_shafts_that_a_load_names_exist_and_turn():
     ripple = Orders("stator", (2.0,), (1.0,), (0.0,))
     for force, field in (
         (AppliedForce("f", "rotor", 0.1, (1.0, 0.0, 0.0), turns_with="stator"), "forces[0].turns_with"),

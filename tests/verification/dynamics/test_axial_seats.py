@@ -1,7 +1,5 @@
 """Ball bearings whose ring slides in its seat: no axial force, and the laws of an elastic contact."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -28,12 +26,12 @@ def displacements(number: int) -> np.ndarray:
 
 
 @pytest.fixture(scope="module")
-def fixed() -> LoadedBearing:
+def fixed():
     return LoadedBearing(ROW)
 
 
 @pytest.fixture(scope="module")
-def floating() -> LoadedBearing:
+def floating():
     return LoadedBearing(ROW, locating="none")
 
 
@@ -41,7 +39,7 @@ def unpressed(fixed: LoadedBearing, d: np.ndarray) -> np.ndarray:
     """Return the displacement with z where the locating bearing carries no axial force."""
     far = 2.0 * LEVER * float(np.hypot(d[3], d[4]))
 
-    def thrust(z: float) -> float:
+    def thrust(z):
         return float(fixed.evaluate((*d[:2], z, *d[3:]), ANGLE).force[2])
 
     return np.array([*d[:2], brentq(thrust, -far, far, xtol=1e-20, rtol=1e-15), *d[3:]])
@@ -53,9 +51,7 @@ def condensed(at: Reaction) -> np.ndarray:
     return np.asarray(at.tangent[np.ix_(OTHERS, OTHERS)] - across @ across.T / at.tangent[2, 2])
 
 
-def test_a_floating_ring_stands_where_the_locating_bearing_has_no_axial_force(
-    fixed: LoadedBearing, floating: LoadedBearing
-) -> None:
+def test_a_floating_ring_stands_where_the_locating_bearing_has_no_axial_force(fixed, floating):
     for d in displacements(30):
         free, at = floating.evaluate(d, ANGLE), fixed.evaluate(unpressed(fixed, d), ANGLE)
         radial = float(np.hypot(*free.force[:2]))
@@ -74,7 +70,7 @@ def test_a_floating_ring_stands_where_the_locating_bearing_has_no_axial_force(
         assert found == pytest.approx(wanted, abs=1e-7 * np.abs(wanted).max())
 
 
-def test_the_axial_displacement_of_a_floating_bearing_changes_nothing(floating: LoadedBearing) -> None:
+def test_the_axial_displacement_of_a_floating_bearing_changes_nothing(floating):
     for d in displacements(5):
         at, moved = floating.evaluate(d), floating.evaluate(d + AWAY)
         np.testing.assert_array_equal(moved.force, at.force)
@@ -83,7 +79,7 @@ def test_the_axial_displacement_of_a_floating_bearing_changes_nothing(floating: 
 
 
 @pytest.mark.parametrize("locating", ["none", "positive", "negative"])
-def test_force_and_tangent_are_derivatives_of_the_energy(locating: str) -> None:
+def test_force_and_tangent_are_derivatives_of_the_energy(locating):
     loaded, slid = LoadedBearing(ROW, locating=locating), 0
     unit, h = np.diag(SCALE), 2e-9
     for d in displacements(10):
@@ -101,7 +97,7 @@ def test_force_and_tangent_are_derivatives_of_the_energy(locating: str) -> None:
     assert slid == 10 if locating == "none" else 0 < slid < 10
 
 
-def test_the_tangent_pushes_back(floating: LoadedBearing) -> None:
+def test_the_tangent_pushes_back(floating):
     """The energy has no hollows: every motion is resisted, or none."""
     for d in displacements(30):
         tangent = np.diag(SCALE) @ floating.evaluate(d).tangent @ np.diag(SCALE)
@@ -109,9 +105,7 @@ def test_the_tangent_pushes_back(floating: LoadedBearing) -> None:
         assert minimum > -1e-12 * maximum
 
 
-def test_across_the_axis_a_floating_bearing_is_the_locating_one(
-    fixed: LoadedBearing, floating: LoadedBearing
-) -> None:
+def test_across_the_axis_a_floating_bearing_is_the_locating_one(fixed, floating):
     for d in displacements(5):
         across = (*d[:2], 0.0, 0.0, 0.0)
         at, free = fixed.evaluate(across, ANGLE), floating.evaluate(across, ANGLE)
@@ -123,9 +117,7 @@ def test_across_the_axis_a_floating_bearing_is_the_locating_one(
 
 
 @pytest.mark.parametrize("side", SIDES)
-def test_a_seat_holds_in_its_direction_alone(
-    side: str, fixed: LoadedBearing, floating: LoadedBearing
-) -> None:
+def test_a_seat_holds_in_its_direction_alone(side, fixed, floating):
     seat, held = LoadedBearing(ROW, locating=side), 0
     for d in displacements(20):
         at = seat.evaluate(d, ANGLE)
@@ -140,7 +132,7 @@ def test_a_seat_holds_in_its_direction_alone(
 
 
 @pytest.mark.parametrize("side", SIDES)
-def test_the_mirrored_seat_answers_with_the_mirrored_force(side: str) -> None:
+def test_the_mirrored_seat_answers_with_the_mirrored_force(side):
     other, mirror = {"positive": "negative", "negative": "positive"}[side], np.array([1, 1, -1, -1, -1])
     seats = [LoadedBearing(ROW, locating=name) for name in (side, other)]
     for d in displacements(10):
@@ -150,14 +142,14 @@ def test_the_mirrored_seat_answers_with_the_mirrored_force(side: str) -> None:
         assert image == pytest.approx(mirror * force, rel=1e-9, abs=1e-9)
 
 
-def test_a_floating_bearing_carries_a_radial_load_and_a_moment(floating: LoadedBearing) -> None:
+def test_a_floating_bearing_carries_a_radial_load_and_a_moment(floating):
     load = np.array([3000.0, -500.0, 0.0, 4.0, 6.0])
     d = floating.displacement(load, ANGLE)
     assert d[2] == 0.0  # nothing resists it
     assert floating.evaluate(d, ANGLE).force == pytest.approx(load, rel=1e-9, abs=1e-8)
 
 
-def test_a_row_with_a_contact_angle_does_not_float() -> None:
+def test_a_row_with_a_contact_angle_does_not_float():
     angular = replace(ROW, contact_angle=math.radians(25.0))
     tapered = RollerBearing(17, 9e-3, 13.6e-3, 65e-3, contact_angle=0.25)
     for row in (angular, tapered):

@@ -1,7 +1,5 @@
 """The pair in its bushings, by this package's integrator and by Exudyn's, on the same mesh-force table."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -9,10 +7,8 @@ import pytest
 from geared_scenes import RPM, gear_pair_scene, spring_table, with_bushings, with_gear, with_mesh
 
 from benchmarks.exudyn_scene import run_in_exudyn
+from dynamics import Integration, Outputs, TimeLaw, simulate
 from dynamics.errors import InputError
-from dynamics.loads import TimeLaw
-from dynamics.scene import Integration, Outputs
-from dynamics.simulation import simulate
 
 pytest.importorskip("exudyn", reason="Exudyn is not installed: pip install exudyn")
 

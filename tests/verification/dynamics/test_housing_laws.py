@@ -3,8 +3,6 @@
 Scenes are pairs without gyroscopic moments in a housing of random full matrices.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 
@@ -12,11 +10,10 @@ import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene, spring_table, square_wave_table
 
+from dynamics import Housing, TimeLaw
 from dynamics.assembly.assemble import assemble
-from dynamics.joints import Housing
 from dynamics.linearize import HarmonicResponse, harmonic_response
-from dynamics.loads import AppliedForce, TimeLaw
-from dynamics.loads.load_course import Orders
+from dynamics.loads import AppliedForce, Orders
 
 NAMES = ("input.left", "input.right", "output.left", "output.right")
 ON = {"lateral": "on", "axial": "on", "tilt": "on", "housing_modes": "on", "gyroscopic": "off"}
@@ -71,28 +68,28 @@ ALONG = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
     ("first", "second"),
     [(("input", "x"), ("output", "y")), (("input", "y"), ("output", "z")), (("input", "z"), ("input", "x"))],
 )
-def test_what_a_force_here_moves_there_a_force_there_moves_here(first, second) -> None:
+def test_what_a_force_here_moves_there_a_force_there_moves_here(first, second):
     there = moved(pushed((first[0], ALONG[first[1]])), ".".join(second))
     here = moved(pushed((second[0], ALONG[second[1]])), ".".join(first))
     assert_same(there, here)
     assert np.all(np.abs(there) > 0.0)
 
 
-def test_vibrations_by_two_forces_add_up() -> None:
+def test_vibrations_by_two_forces_add_up():
     a, b = ("input", (300.0, 0.0, 0.0)), ("output", (0.0, -200.0, 50.0))
     for quantity in ("displacement", "bearing_force", "mesh_force"):
         parts = [getattr(pushed(*chosen), quantity) for chosen in ((a,), (b,))]
         assert_same(getattr(pushed(a, b), quantity), parts[0] + parts[1])
 
 
-def test_vibrations_grow_with_the_force_and_with_the_error_of_the_mesh() -> None:
+def test_vibrations_grow_with_the_force_and_with_the_error_of_the_mesh():
     one, seven = (pushed(("input", (size, 0.0, 0.0))).bearing_force for size in (1.0, 7.0))
     assert_same(seven, 7.0 * one)
     small, large = (response(scene_on(spring_table(4e8, ripple))).bearing_force for ripple in (1e-8, 5e-8))
     assert_same(large, 5.0 * small)
 
 
-def test_the_load_presses_the_mesh_and_moves_no_vibration_of_a_spring() -> None:
+def test_the_load_presses_the_mesh_and_moves_no_vibration_of_a_spring():
     """The ripple of its error is the same under any load; the mean forces follow the load."""
     light, heavy = (response(scene_on(spring_table(4e8, 1e-8), torque=load)) for load in (50.0, 400.0))
     assert_same(heavy.mean_force, 8.0 * light.mean_force)
@@ -100,7 +97,7 @@ def test_the_load_presses_the_mesh_and_moves_no_vibration_of_a_spring() -> None:
         assert_same(getattr(heavy, quantity), getattr(light, quantity))
 
 
-def test_an_order_at_a_speed_is_its_double_at_half_the_speed() -> None:
+def test_an_order_at_a_speed_is_its_double_at_half_the_speed():
     """Motion per exciting error depends on the frequency alone."""
     speeds = np.array([75.0, 150.0, 300.0])
     found = harmonic_response(assemble(scene_on(square_wave_table())), speeds, 4)

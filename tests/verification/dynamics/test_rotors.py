@@ -1,7 +1,5 @@
 """Rotors: geared, unbalanced, and scenes of textbooks."""
 
-from __future__ import annotations
-
 import math
 import tomllib
 from dataclasses import replace
@@ -9,12 +7,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from repository import EXAMPLES
 
 from dynamics.assembly.assemble import System, assemble
 from dynamics.bearings import Bushing
 from dynamics.integrators import static_equilibrium
 from dynamics.joints import FreeRotation, ImposedRotation
-from dynamics.linearize import ForcedResponse, forced_response, natural_modes
+from dynamics.linearize import forced_response, natural_modes
 from dynamics.loads import LoadTorque, TimeLaw, Unbalance
 from dynamics.motion.observation import observe
 from dynamics.periodic.period_map import periodic_problem
@@ -110,16 +109,14 @@ BY_ROSS = {
 
 
 @pytest.fixture(scope="module")
-def response() -> ForcedResponse:
+def response():
     """Return the response up to the first order of the mesh, in which both shafts' orders lie."""
     return forced_response(assemble(dynamic_scene(scene_of(EXAMPLE)[0], {})), SPEEDS, orders=1)
 
 
 @pytest.mark.drawn
 @pytest.mark.parametrize(("unbalance", "speed"), BY_ROSS)
-def test_bearing_and_mesh_forces_are_those_of_ross(
-    response: ForcedResponse, unbalance: str, speed: float
-) -> None:
+def test_bearing_and_mesh_forces_are_those_of_ross(response, unbalance, speed):
     """Complex amplitudes within 0.1 %, each of them; the mesh carries order 1 of either shaft."""
     assert response.order == pytest.approx([1.0 / TEETH[0], 1.0 / TEETH[1]])
     order, at = ("generator", "turbine").index(unbalance), SPEEDS.index(speed)
@@ -160,7 +157,7 @@ def whirl(speed: np.ndarray) -> np.ndarray:
     return np.asarray(force / (STIFFNESS - MASS * speed**2 + 1j * DAMPING * speed))
 
 
-def test_the_response_has_amplitude_and_phase_through_the_critical_speed() -> None:
+def test_the_response_has_amplitude_and_phase_through_the_critical_speed():
     speed = np.linspace(0.2, 2.0, 19) * CRITICAL
     response = forced_response(assemble(rotor()), speed, orders=3)
     x, y = response.freedom.index("rotor.x"), response.freedom.index("rotor.y")
@@ -170,7 +167,7 @@ def test_the_response_has_amplitude_and_phase_through_the_critical_speed() -> No
 
 
 @pytest.mark.parametrize("part", [0.5, 0.95, 1.0, 1.05, 1.8])
-def test_the_steady_state_runs_on_the_circle(part: float) -> None:
+def test_the_steady_state_runs_on_the_circle(part):
     """Amplitude and phase to 1e-6, the drive's torque the work lost in the bearings."""
     speed = part * CRITICAL
     problem = periodic_problem(assemble(rotor()), speed, steps_per_cycle=120)
@@ -183,7 +180,7 @@ def test_the_steady_state_runs_on_the_circle(part: float) -> None:
     )
 
 
-def test_a_run_settles_on_the_circle() -> None:
+def test_a_run_settles_on_the_circle():
     speed = 0.9 * CRITICAL
     run = simulate(rotor(speed, 2.5))
     here = run.displacement[0] + 1j * run.displacement[1]
@@ -197,7 +194,7 @@ def test_a_run_settles_on_the_circle() -> None:
 
 
 @pytest.mark.parametrize("method", ["implicit", "explicit"])
-def test_a_rotor_that_torques_alone_turn_pays_for_its_whirl(method: str) -> None:
+def test_a_rotor_that_torques_alone_turn_pays_for_its_whirl(method):
     """Braked through the critical speed: what the motion across gains comes from the rotation."""
     scene = replace(
         rotor(),
@@ -216,7 +213,7 @@ def test_a_rotor_that_torques_alone_turn_pays_for_its_whirl(method: str) -> None
     assert run.speed[0, -1] < 1.2 * CRITICAL - 3.0 * braked  # most of the loss is the whirl's
 
 
-def test_forces_and_accelerations_of_an_unbalance_agree() -> None:
+def test_forces_and_accelerations_of_an_unbalance_agree():
     """Of M q'' + ... = F(q''): Lagrange's equations written out for x, y and the angle."""
     system, u = _free(), 20.0 * UNBALANCE
     q, v = np.array([[1e-3, -2e-3, 0.4]]), np.array([[0.3, 0.5, 7.0]])
@@ -246,7 +243,7 @@ def _free() -> System:
     return assemble(scene)
 
 
-def test_gravity_sags_the_rotor_and_leaves_its_frequencies() -> None:
+def test_gravity_sags_the_rotor_and_leaves_its_frequencies():
     """In statics, in a steady state, in a run; the unbalance's weight turns the drive once a turn."""
     light = rotor(0.9 * CRITICAL)
     heavy = replace(light, gravity=(0.0, -9.81, 0.0), duration=2.5)
@@ -269,7 +266,6 @@ def test_gravity_sags_the_rotor_and_leaves_its_frequencies() -> None:
 # Textbook benchmarks as scene files: what their sources and independent computations say.
 
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 ROTATIONAL = (1475.75, 1930.35, 2658.32, 7462.80, 11775.27)
 TRANSLATIONAL = (743.16, 1102.42, 1896.02, 2276.38, 6986.30, 9647.91)
 
@@ -278,7 +274,7 @@ def example(name: str) -> Scene:
     return dynamic_scene(scene_of(EXAMPLES / name)[0], {})
 
 
-def test_the_planetary_set_of_lin_and_parker_has_its_natural_frequencies() -> None:
+def test_the_planetary_set_of_lin_and_parker_has_its_natural_frequencies():
     """Lin and Parker 1999, three planets: one of each rotational, two of each translational mode, Hz."""
     found = natural_modes(assemble(example("lin_parker_planetary_scene.toml"))).frequency
     expected = np.sort([*ROTATIONAL, *np.repeat(TRANSLATIONAL, 2)])
@@ -289,7 +285,7 @@ def test_the_planetary_set_of_lin_and_parker_has_its_natural_frequencies() -> No
 @pytest.mark.parametrize(
     ("frequency", "rms"), [(0.5, 0.011759), (0.85, 0.181301), (1.0, 0.133083), (1.6, 0.057716)]
 )
-def test_the_oscillator_with_backlash_has_the_converged_response(frequency: float, rms: float) -> None:
+def test_the_oscillator_with_backlash_has_the_converged_response(frequency, rms):
     """Over W = 1 and more, and below the jumps, both branches are one; rms in half backlashes of 50 um."""
     text = tomllib.loads((EXAMPLES / "backlash_oscillator_scene.toml").read_text("utf-8"))
     shift = (frequency - 1.0) * text["drives"][0]["speed_rpm"][0]

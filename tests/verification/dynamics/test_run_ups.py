@@ -1,7 +1,5 @@
 """Runs at changing speed: up a ramp, through resonances, their phase and their samples."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 
@@ -18,24 +16,23 @@ from geared_scenes import (
     with_mesh,
 )
 
+from dynamics import (
+    CoastFlank,
+    FreeRotation,
+    Integration,
+    LoadTorque,
+    Outputs,
+    Scene,
+    TimeLaw,
+    mesh_orders,
+    simulate,
+)
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.integrators import integrate, static_equilibrium
-from dynamics.joints import FreeRotation
 from dynamics.linearize import harmonic_response
-from dynamics.loads import LoadTorque, TimeLaw
-from dynamics.meshes import CoastFlank
-from dynamics.orders import (
-    find_peaks,
-    highest_valid_order,
-    mesh_orders,
-    order_track,
-    sidebands,
-    window_spectrum,
-)
+from dynamics.orders import find_peaks, highest_valid_order, order_track, sidebands, window_spectrum
 from dynamics.periodic import Instability, follow_branch, motion, periodic_problem, sweep
-from dynamics.scene import Integration, Outputs, Scene
-from dynamics.simulation import simulate
 
 # The run-up of the 20/20 pair: both techniques overlap, mean force, spectrum of the bearing force.
 

@@ -7,8 +7,7 @@ from pathlib import Path
 import numpy as np
 from small_table import small_table
 
-from dynamics.scene import Integration
-from dynamics.simulation import simulate
+from dynamics import Integration, simulate
 from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.scene import SceneInput

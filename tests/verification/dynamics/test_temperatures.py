@@ -1,7 +1,5 @@
 """The size of temperatures in the ledger against the scene solved with and without them."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -63,7 +61,7 @@ def rest(scene, effect):
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_the_ledger_states_what_an_ablation_changes(name) -> None:
+def test_the_ledger_states_what_an_ablation_changes(name):
     changes, effect = SCENES[name]
     scene = warm_pair(**({"table": distant(square_wave_table())} | changes))
     on, off = (rest(replace(scene, effects={**scene.effects, effect: at}), effect) for at in ("on", "off"))

@@ -3,33 +3,29 @@
 On substitute tables: forces at rest follow from the balance of torques, whatever the tables.
 """
 
-from __future__ import annotations
-
 import math
 import tomllib
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from repository import EXAMPLES
 from small_table import small_table
 
+from dynamics import Scene, simulate
 from dynamics.assembly.assemble import assemble
 from dynamics.integrators import static_equilibrium
 from dynamics.mechanism.phases import frame_turns
 from dynamics.motion.observation import local_state
-from dynamics.scene import Scene
-from dynamics.simulation import simulate
 from fe_contact.ste import PairGeometry
 from lineofaction.gearbox.convert.checked_case import check_case
 from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 Change = Callable[[dict[str, Any]], object]
 
 

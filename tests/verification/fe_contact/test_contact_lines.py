@@ -1,7 +1,5 @@
 """Contact lines: what slices and points keep exactly, and how fast the ripple of helical pairs converges."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path
@@ -10,13 +8,12 @@ import numpy as np
 import pytest
 from analysis_requests import table_request
 
-from fe_contact import FlankModification, Gear, GearPair
+from fe_contact import FlankModification, Gear, GearPair, Run
 from fe_contact.analysis.pairs.operating_points import OperatingPoint, operating_points
 from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.tables import condensed_bodies
 from fe_contact.contact import ContactModel, PatchRule, Slices, contact_candidates, solve_contact
-from fe_contact.options import Run
 from model_studies.stage_clock import StageClock
 
 LOAD = np.array([2500.0])
@@ -73,7 +70,7 @@ def deflection(place: OperatingPoint, slices: int) -> np.ndarray:
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("bodies")
 
 

@@ -1,7 +1,5 @@
 """Derivatives of transmission error and load arm: of the contact, of the flanks, of the quantities."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace
@@ -66,11 +64,11 @@ def internal() -> InternalGearPair:
 
 
 @pytest.fixture(scope="module")
-def condensed(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], CondensedPair]:
+def condensed(tmp_path_factory):
     """Bodies of the pairs, each found once."""
     cache, known = tmp_path_factory.mktemp("bodies"), {}
 
-    def of(name: str) -> CondensedPair:
+    def of(name):
         if name not in known:
             pair = crowned_spur() if name == "crowned" else PAIRS[name]()
             model = "plane_strain" if name in IN_PLANE else "3d"

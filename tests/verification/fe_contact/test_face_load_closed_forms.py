@@ -1,15 +1,13 @@
 """Contact over the face against closed forms: uncoupled slices, tilting shafts, lengths of contact lines."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 
 import numpy as np
 import pytest
 
-from fe_contact import FlankModification, Gear, GearPair
-from fe_contact.analysis.flanks.load_distribution import LoadDistribution, load_distribution
+from fe_contact import FlankModification, Gear, GearPair, LoadDistribution, Material, Shaft
+from fe_contact.analysis.flanks.load_distribution import load_distribution
 from fe_contact.contact import (
     ContactModel,
     ContactProblem,
@@ -24,8 +22,6 @@ from fe_contact.contact import (
 from fe_contact.effects.flank_modification import ModificationGap
 from fe_contact.effects.misalignment import MisalignmentGap
 from fe_contact.effects.shaft_compliance import SeatCompliance, ShaftCompliance
-from fe_contact.geometry import Shaft
-from fe_contact.material import Material
 
 SOURCE = "thin slices, closed form"
 WIDTH = 20e-3

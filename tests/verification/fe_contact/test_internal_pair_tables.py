@@ -1,7 +1,5 @@
 """Tables of internal pairs: kinematics, Hertz, scaling, mirror images, the rack that both kinds end in."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import lru_cache
@@ -36,7 +34,7 @@ def table(pair: ParallelAxes, model: str = "plane_strain", **more: Any) -> SteDa
     return analyze(pair, torques=TORQUES, level="draft", positions=16, model=model, **more)
 
 
-def test_conjugate_flanks_have_no_error_without_load_at_any_center_distance() -> None:
+def test_conjugate_flanks_have_no_error_without_load_at_any_center_distance():
     tight = replace(PAIR, center_distance=PAIR.center_distance - 20e-6)
     found = analyze(
         tight,
@@ -54,7 +52,7 @@ def test_conjugate_flanks_have_no_error_without_load_at_any_center_distance() ->
 
 
 @pytest.mark.law
-def test_planetary_set_has_finite_tables_that_keep_the_laws() -> None:
+def test_planetary_set_has_finite_tables_that_keep_the_laws():
     """Sun 24, planet 36, ring 96: both meshes share the planet and the center distance."""
     assert SUN.center_distance == pytest.approx(PAIR.center_distance, rel=1e-12)
     for pair, model in ((SUN, "plane_strain"), (PAIR, "plane_strain"), (PAIR, "3d")):
@@ -68,7 +66,7 @@ def test_planetary_set_has_finite_tables_that_keep_the_laws() -> None:
         assert found.pairs_in_contact.min() >= 1
 
 
-def test_three_dimensions_exceed_plane_strain_as_they_do_in_external_pairs(record_figure: Any) -> None:
+def test_three_dimensions_exceed_plane_strain_as_they_do_in_external_pairs(record_figure):
     excess = max(
         table(PAIR, "3d").mean(torque=t).value / table(PAIR).mean(torque=t).value - 1.0 for t in TORQUES
     )
@@ -76,7 +74,7 @@ def test_three_dimensions_exceed_plane_strain_as_they_do_in_external_pairs(recor
     assert 0.02 < excess < 0.03
 
 
-def test_the_corrected_plane_stands_in_for_three_dimensions(record_figure: Any) -> None:
+def test_the_corrected_plane_stands_in_for_three_dimensions(record_figure):
     apart = max(
         abs(table(PAIR, "auto").mean(torque=t).value / table(PAIR, "3d").mean(torque=t).value - 1.0)
         for t in TORQUES
@@ -85,7 +83,7 @@ def test_the_corrected_plane_stands_in_for_three_dimensions(record_figure: Any) 
     assert apart < 0.01
 
 
-def test_pressure_at_the_pitch_point_is_hertz_with_the_hollow_flank() -> None:
+def test_pressure_at_the_pitch_point_is_hertz_with_the_hollow_flank():
     found = flank_results(PAIR, *point_request(torque=60.0, level="draft", model="plane_strain"), at=[0.0])
     at = int(np.flatnonzero(found.pair == 0)[0])
     assert found.roll_length_2[0, at, 0] - found.roll_length_1[0, at, 0] == pytest.approx(
@@ -106,7 +104,7 @@ def scaled(gear: Any, factor: float) -> Any:
 
 
 @pytest.mark.law
-def test_lengths_by_s_and_forces_by_s_squared_scale_the_table() -> None:
+def test_lengths_by_s_and_forces_by_s_squared_scale_the_table():
     large = InternalGearPair(scaled(PLANET, 4.0), scaled(RING, 4.0))
     found = analyze(
         large, torques=[64.0 * t for t in TORQUES], level="draft", positions=16, model="plane_strain"
@@ -152,7 +150,7 @@ def misaligned(pair: ParallelAxes, growth: float = 20e-6) -> tuple[np.ndarray, n
 
 
 @pytest.mark.law
-def test_large_wheels_with_teeth_outwards_and_inwards_end_in_the_same_rack(record_figure: Any) -> None:
+def test_large_wheels_with_teeth_outwards_and_inwards_end_in_the_same_rack(record_figure):
     """What tells them apart falls with 1/z: curvature, tooth shape, rim. Hands and faces must agree."""
     apart, offset = np.empty((2, 2, 3))
     for i, teeth in enumerate((100, 300)):
@@ -166,7 +164,7 @@ def test_large_wheels_with_teeth_outwards_and_inwards_end_in_the_same_rack(recor
     assert offset[1].max() < 3e-3
 
 
-def test_opposite_hands_are_mirror_images() -> None:
+def test_opposite_hands_are_mirror_images():
     pairs = [
         InternalGearPair(*(replace(gear, helix_angle=angle) for gear in (PLANET, RING)))
         for angle in (0.25, -0.25)

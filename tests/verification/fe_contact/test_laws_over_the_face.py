@@ -1,7 +1,5 @@
 """Laws of tables over the face: symmetries of space, scaling, and loads that grow."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 
@@ -44,14 +42,14 @@ def test_opposite_hand_is_the_mirror_image():
 
 @pytest.mark.parametrize("hand", [1, 0, -1], ids=["right hand", "spur", "left hand"])
 @pytest.mark.law
-def test_the_moment_of_the_load_is_what_a_misalignment_works_on(hand: int) -> None:
+def test_the_moment_of_the_load_is_what_a_misalignment_works_on(hand):
     """d STE/dm at constant force is d(F arm)/dF / b; the face centroid is the arm of straight teeth alone."""
     force, skew = np.array([1900.0, 2000.0, 2100.0]), np.array([14.5e-6, 15e-6, 15.5e-6])
     table = analyze(helical(hand), normal_forces=force, misalignments=skew, level="draft", positions=12)
     ste = table.static_transmission_error[:, 1, :, 0]
     by_tilt = (ste[:, 2] - ste[:, 0]) / (skew[2] - skew[0])
 
-    def of_moment(arm: np.ndarray) -> np.ndarray:
+    def of_moment(arm):
         moment = force[:, None] * arm[..., 0] / table.geometry.face_width
         return np.asarray((moment[:, 2, 1] - moment[:, 0, 1]) / (force[2] - force[0]))
 
@@ -70,10 +68,10 @@ def arm_of_pairs(table: SteDatabase) -> np.ndarray:
     return np.asarray(table.face_centroid * (1.0 + twist**2) - twist * along)
 
 
-def test_a_tilted_pair_has_the_ripple_of_gears_that_were_rotated_in_space(monkeypatch) -> None:
+def test_a_tilted_pair_has_the_ripple_of_gears_that_were_rotated_in_space(monkeypatch):
     """At 60 um, 3 mrad: gaps of the rigid tilted helicoids between the same bodies. A helix slope has not."""
 
-    def ripples() -> np.ndarray:
+    def ripples():
         table = draft(helical(), force=6000.0, misalignments=[-60e-6, 60e-6])
         return np.ptp(table.static_transmission_error[:, 0, :, 0], axis=0)
 

@@ -1,9 +1,6 @@
 """Root stress under refinement, its stated error, and the middle of a wide gear against plane strain."""
 
-from __future__ import annotations
-
 import functools
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -44,7 +41,7 @@ def refined(factor: float) -> np.ndarray:
 
 
 @pytest.mark.law
-def test_the_plane_converges(record_figure: Callable[..., None]) -> None:
+def test_the_plane_converges(record_figure):
     errors = {f: refined(f) / refined(2.0) - 1.0 for f in (0.5, 1.0)}
     for i, name in enumerate(PEAKS):
         # the crest between stations scatters by a few 1e-4 with where the elements lie
@@ -57,9 +54,7 @@ def test_the_plane_converges(record_figure: Callable[..., None]) -> None:
 
 
 @pytest.mark.parametrize(("level", "limits"), [("standard", (0.005, 0.01)), ("fine", (0.006, 0.006))])
-def test_sectors_converge_to_the_plane(
-    level: str, limits: tuple[float, float], record_figure: Callable[..., None]
-) -> None:
+def test_sectors_converge_to_the_plane(level, limits, record_figure):
     """One layer, no axial displacement: the section alone, finer at the root than the contact's."""
     recipe = finer_root(getattr(SectorRecipe, level)(GEAR))
     one = replace(recipe, layers=1, merge_rows=(), layer_growth=1.0)
@@ -73,7 +68,7 @@ def test_sectors_converge_to_the_plane(
         )  # fmt: skip
 
 
-def test_a_finer_root_is_worth_it() -> None:
+def test_a_finer_root_is_worth_it():
     """The contact's own section errs by one and more per cent at the root."""
     recipe = replace(SectorRecipe.standard(GEAR), layers=1, merge_rows=(), layer_growth=1.0)
     plain, finer = (
@@ -88,7 +83,7 @@ def test_a_finer_root_is_worth_it() -> None:
 
 
 @pytest.mark.law
-def test_the_middle_of_a_wide_gear_approaches_plane_strain(record_figure: Callable[..., None]) -> None:
+def test_the_middle_of_a_wide_gear_approaches_plane_strain(record_figure):
     recipe = replace(
         SectorRecipe.draft(GEAR), merge_rows=(), layer_growth=1.0, body_limit=3.0 * GEAR.normal_module
     )
@@ -108,7 +103,7 @@ def test_the_middle_of_a_wide_gear_approaches_plane_strain(record_figure: Callab
 
 
 @pytest.mark.law
-def test_the_stated_error_holds_in_the_plane() -> None:
+def test_the_stated_error_holds_in_the_plane():
     pair = GearPair(GEAR, GEAR, 80e-3)
     found = {
         level: root_stress(pair, *point_request(torque=100.0, level=level), at=[0.0, 0.19]).pinion

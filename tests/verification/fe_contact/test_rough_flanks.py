@@ -1,7 +1,5 @@
 """Transmission error of flanks as rough as the contact is wide, against full contact of the same flanks."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """STE converges under mesh refinement at the element's rate, and does not ripple with the element length."""
 
-from __future__ import annotations
-
 import dataclasses
 from pathlib import Path
 
@@ -25,9 +23,7 @@ def contact(tmp_path_factory):
     model, _ = compose(ContactScene(pair, pair.torque(LOAD), EFFECTS), {})
     plan = make_plan(pair, LOAD, AnalysisOptions(), model)
 
-    def solve(
-        factor: float, position: np.ndarray, load: np.ndarray, patch: float | None = None
-    ) -> np.ndarray:
+    def solve(factor, position, load, patch=None):
         first, second = (recipe.refined(factor) for recipe in plan.discretization.recipes)
         made = dataclasses.replace(plan.discretization, recipes=(first, second))
         rule = plan.patch

@@ -1,7 +1,5 @@
 """Rounded and chamfered tips against sharp ones, against tips that are cut off, and against Hertz."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -57,7 +55,7 @@ def curves(case: ContactCase) -> np.ndarray:
 
 
 @pytest.fixture(scope="module", params=list(PAIRS))
-def sharp(request: pytest.FixtureRequest) -> tuple[str, ContactCase]:
+def sharp(request):
     make, model = PAIRS[request.param]
     return request.param, contact_case(make(FlankModification()), TORQUES, model=model)
 
@@ -69,15 +67,13 @@ def with_edge(sharp: tuple[str, ContactCase], **edge: float) -> ContactCase:
     return case.with_model(corner_contact=True)
 
 
-def test_no_edge_given_is_the_sharp_tip_to_the_last_bit(sharp: tuple[str, ContactCase]) -> None:
+def test_no_edge_given_is_the_sharp_tip_to_the_last_bit(sharp):
     none = with_edge(sharp, tip_rounding=0.0, tip_chamfer=0.0, tip_chamfer_angle=1.0)
     assert curves(none).tobytes() == curves(sharp[1]).tobytes()
 
 
 @pytest.mark.law
-def test_a_rounding_tends_to_the_sharp_edge_in_proportion_to_its_radius(
-    sharp: tuple[str, ContactCase],
-) -> None:
+def test_a_rounding_tends_to_the_sharp_edge_in_proportion_to_its_radius(sharp):
     """Somewhere in the handover the change is what an edge loses: a few tenths of the radius at most."""
     plain = curves(sharp[1])
     changes = []
@@ -90,7 +86,7 @@ def test_a_rounding_tends_to_the_sharp_edge_in_proportion_to_its_radius(
 
 
 @pytest.mark.law
-def test_chamfered_teeth_are_teeth_cut_off_at_the_tip_form_circle(sharp: tuple[str, ContactCase]) -> None:
+def test_chamfered_teeth_are_teeth_cut_off_at_the_tip_form_circle(sharp):
     """Pairs hand over where theirs do; what is left is the body of the tip, and load patches."""
     height = 0.3e-3
     name, bodies = sharp
@@ -110,7 +106,7 @@ def test_chamfered_teeth_are_teeth_cut_off_at_the_tip_form_circle(sharp: tuple[s
 
 
 @pytest.mark.law
-def test_an_edge_never_stiffens_the_mesh(sharp: tuple[str, ContactCase]) -> None:
+def test_an_edge_never_stiffens_the_mesh(sharp):
     plain = curves(sharp[1])
     before = plain
     for radius in (1e-5, 1e-4, 3e-4):
@@ -120,7 +116,7 @@ def test_an_edge_never_stiffens_the_mesh(sharp: tuple[str, ContactCase]) -> None
         before = after
 
 
-def test_pressure_on_a_rounding_is_that_of_hertz_on_its_radius() -> None:
+def test_pressure_on_a_rounding_is_that_of_hertz_on_its_radius():
     """Far beyond the tip form point light contacts lie on the arc alone."""
     radius = 0.4e-3
     case = contact_case(nominal_pair(modification=FlankModification(tip_rounding=radius)), TORQUES)
@@ -139,7 +135,7 @@ def test_pressure_on_a_rounding_is_that_of_hertz_on_its_radius() -> None:
 
 
 @pytest.mark.parametrize("angle", [10.0, 45.0])
-def test_the_angle_of_a_steep_chamfer_hardly_matters(angle: float) -> None:
+def test_the_angle_of_a_steep_chamfer_hardly_matters(angle):
     """Beyond its edge contact is open whatever the angle; the edge itself is an edge."""
     height = 0.3e-3
     edge = {"tip_chamfer": height, "tip_chamfer_angle": math.radians(angle)}

@@ -1,7 +1,5 @@
 """Transmission error of gears with a measured trace on one tooth: the lifting bound, and solved alone."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

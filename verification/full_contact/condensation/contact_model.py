@@ -7,9 +7,7 @@ from typing import Protocol
 
 from fe_contact.geometry import ParallelAxes
 from verification.full_contact.condensation.condensed_body import condensed_body
-from verification.full_contact.condensation.linearized_contact import (
-    ContactGeometry,
-)
+from verification.full_contact.condensation.linearized_contact import ContactGeometry
 from verification.full_contact.condensation.pair_geometry import PairGeometry
 from verification.full_contact.condensation.placed_mesh import PlacedBody
 from verification.full_contact.condensation.sites import ContactSite

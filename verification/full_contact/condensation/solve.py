@@ -136,8 +136,8 @@ def contact_tables(
         clock = StageClock()
         with clock.stage("position"):
             by_mesh = [_solve_position(model, pair, torques, position, mesh) for mesh in meshes]
-        one = by_mesh[0].with_error(by_mesh[1]) if len(by_mesh) > 1 else by_mesh[0]
-        solved.append(replace(one, cpu_seconds=clock.seconds["position"]))
+        with_error = by_mesh[0].with_error(by_mesh[1]) if len(by_mesh) > 1 else by_mesh[0]
+        solved.append(replace(with_error, cpu_seconds=clock.seconds["position"]))
     return tables_of(positions, torques, solved)
 
 

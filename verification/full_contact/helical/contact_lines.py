@@ -80,8 +80,8 @@ class FacingFlanks:
         center = np.array([slave_gear.base_radius + mate.base_radius, self.line_length])
         arm = facing.at - center
         about = np.abs(arm[:, 0] * facing.normal[:, 1] - arm[:, 1] * facing.normal[:, 0]) / mate.base_radius
-        one = np.ones(len(about))
-        return (one, about) if self.slave == 0 else (about, one)
+        ones = np.ones(len(about))
+        return (ones, about) if self.slave == 0 else (about, ones)
 
     @cached_property
     def ends(self) -> tuple[float, float]:

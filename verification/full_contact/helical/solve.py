@@ -204,9 +204,9 @@ def solve_full_contact_helical(
             report(count / len(positions))
         with clock.stage(f"position {count}"):
             by_body = [_solved_position(body, position, torques, misalignments) for body in bodies]
-        one = by_body[0].with_error(by_body[1]) if estimate_error else by_body[0]
+        with_error = by_body[0].with_error(by_body[1]) if estimate_error else by_body[0]
         seconds = clock.seconds[f"position {count}"] + clock.seconds["bodies"] / len(positions)
-        solved.append(replace(one, cpu_seconds=seconds))
+        solved.append(replace(with_error, cpu_seconds=seconds))
     return tables_of(positions, torques, solved)
 
 

@@ -13,9 +13,7 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray
 from model_studies.progress import Report
 from verification.full_contact.condensation.contact_model import softness
-from verification.full_contact.condensation.linearized_contact import (
-    ContactGeometry,
-)
+from verification.full_contact.condensation.linearized_contact import ContactGeometry
 from verification.full_contact.condensation.modified_flank import removed_at_roll
 from verification.full_contact.condensation.placed_mesh import PlacedBody
 from verification.full_contact.condensation.resolution import Resolution

@@ -102,19 +102,19 @@ class _ChangeStudy(SceneStudy[Inputs, ChangeFigures, FlankChange]):
         )
         quantity = quantity_of(subject, inputs.heard)
         return FlankChange(
-            mesh.name,
-            quantity if inputs.heard.bearing is None else f"{quantity} of {inputs.heard.bearing}",
-            UNITS[quantity],
-            inputs.heard.over_speeds,
-            line_names(inputs.orders),
-            model.torque,
-            np.array(inputs.speed_rpm) * RPM,
-            names,
-            deviation,
-            first,
-            second,
-            inputs.requirement_db,
-            clock.to_json() | {"pairs_expected_cpu_seconds": expected},
+            mesh=mesh.name,
+            quantity=quantity if inputs.heard.bearing is None else f"{quantity} of {inputs.heard.bearing}",
+            unit=UNITS[quantity],
+            over_speeds=inputs.heard.over_speeds,
+            lines=line_names(inputs.orders),
+            torque=model.torque,
+            speed=np.array(inputs.speed_rpm) * RPM,
+            names=names,
+            deviation=deviation,
+            before=first,
+            after=second,
+            requirement=inputs.requirement_db,
+            cost=clock.to_json() | {"pairs_expected_cpu_seconds": expected},
         )
 
     def _derived(self, result: FlankChange) -> Json:

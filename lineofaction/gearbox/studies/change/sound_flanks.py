@@ -129,7 +129,7 @@ class HeardLoad:
         low = self.levels(np.maximum(size - off, CANCELED * size) ** 2, worst_speed)
         level = self.levels(size**2, worst_speed)
         high = self.levels((size + off) ** 2, worst_speed)
-        varied = self.transfer.varied_inputs(scene.at, flanks)[0]
+        varied, _ = self.transfer.varied_inputs(scene.at, flanks)
         omitted = self.levels(self.form.weighted(varied), worst_speed) - level
         return np.stack([level - low - np.minimum(omitted, 0.0), high - level + np.maximum(omitted, 0.0)])
 

@@ -43,10 +43,7 @@ from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.complaint import ComplaintFigures, Inputs
 from lineofaction.gearbox.studies.computation import Computation, Means, record_file
 from lineofaction.gearbox.studies.cost import StudyCost, Work
-from lineofaction.gearbox.studies.excitations import (
-    complaint_at_loads,
-    with_scene_metadata,
-)
+from lineofaction.gearbox.studies.excitations import complaint_at_loads, with_scene_metadata
 from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.modes.run import modes_cost
 from lineofaction.gearbox.studies.scene_before_tables import scene_before_tables, sized

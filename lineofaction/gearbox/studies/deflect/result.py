@@ -90,17 +90,17 @@ class Outline:
         pieces = [(k, *piece) for k, shaft in enumerate(scene.shafts) for piece in _pieces(shaft)]
         diameter = _pitch_diameters(scene)
         return Outline(
-            tuple(shaft.name for shaft in scene.shafts),
-            tuple(gear.name for gear in scene.gears),
-            tuple(part.name for part in supports),
-            np.array([shaft.origin for shaft in scene.shafts], dtype=float).reshape(-1, 3),
-            np.array([shaft.length for shaft in scene.shafts]),
-            np.array([piece[0] for piece in pieces], dtype=np.int64),
-            np.array([piece[1:] for piece in pieces], dtype=float).reshape(-1, 4),
-            np.array([index[gear.shaft] for gear in scene.gears], dtype=np.int64),
-            np.array([(g.position, g.face_width, diameter[g.name]) for g in scene.gears]).reshape(-1, 3),
-            np.array([index[part.shaft] for part in supports], dtype=np.int64),
-            np.array([part.position for part in supports]),
+            shafts=tuple(shaft.name for shaft in scene.shafts),
+            gears=tuple(gear.name for gear in scene.gears),
+            bearings=tuple(part.name for part in supports),
+            origin=np.array([shaft.origin for shaft in scene.shafts], dtype=float).reshape(-1, 3),
+            length=np.array([shaft.length for shaft in scene.shafts]),
+            piece_shaft=np.array([piece[0] for piece in pieces], dtype=np.int64),
+            piece=np.array([piece[1:] for piece in pieces], dtype=float).reshape(-1, 4),
+            gear_shaft=np.array([index[gear.shaft] for gear in scene.gears], dtype=np.int64),
+            gear=np.array([(g.position, g.face_width, diameter[g.name]) for g in scene.gears]).reshape(-1, 3),
+            bearing_shaft=np.array([index[part.shaft] for part in supports], dtype=np.int64),
+            bearing=np.array([part.position for part in supports]),
         )
 
 

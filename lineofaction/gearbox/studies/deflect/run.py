@@ -88,16 +88,16 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
             flanks = tuple(_flanks(agreed, contacts, means, tables.seconds))
         written = {name: mesh.case.model_dump(mode="json") for name, mesh in _with_case(tabled) if mesh.case}
         return GearboxDeflection(
-            agreed.deflection,
-            flanks,
-            agreed.passes,
-            agreed.change,
-            agreed.reached,
-            Outline.of(scene),
-            written,
-            spent(means.workers) - began,
-            scene_of(tabled.inputs),
-            {UNIT: bodies_of(tabled)},
+            deflection=agreed.deflection,
+            flanks=flanks,
+            passes=agreed.passes,
+            change=agreed.change,
+            agreed=agreed.reached,
+            outline=Outline.of(scene),
+            cases=written,
+            seconds=spent(means.workers) - began,
+            scene=scene_of(tabled.inputs),
+            metadata={UNIT: bodies_of(tabled)},
         )
 
     def _derived(self, result: GearboxDeflection) -> Json:

@@ -14,14 +14,7 @@ from bounds.types import Json
 from dynamics.acoustics import BoundaryElements, sound_power_level
 from dynamics.acoustics.model_comparison import WORK
 from dynamics.housings import write_surface
-from dynamics.noise import (
-    RadiatedSound,
-    Radiation,
-    SurfaceHousing,
-    loudest,
-    microphone_pressure,
-    scene_sound,
-)
+from dynamics.noise import RadiatedSound, Radiation, SurfaceHousing, loudest, microphone_pressure, scene_sound
 from dynamics.noise.estimated_radiation import NAME as ESTIMATE
 from dynamics.noise.exact_lines import BUDGET, COARSE, LINES
 from dynamics.noise.sound_band import responses_of_band

@@ -220,7 +220,7 @@ class Inputs(BoundaryModel):
         )
         most_tip_relief_um: float = Field(
             default=40.0,
-            title="Most tip relief, µm",
+            title="Largest tip relief, µm",
             gt=0.0,
             le=1000.0,
             description="If no modification is named: tip relief of both gears up to this amount, 0.15 to "

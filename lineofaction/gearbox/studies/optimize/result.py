@@ -142,9 +142,9 @@ class HeardOptimization(ResultRecord):
         run = self.runs[self.best_run]
         ends = np.array([end for start in self.runs for end in start.ends])
         ended = "The search converged" if run.converged else f"The search ended: {run.ended.value}"
-        same = max(AUDIBLE, self.optimum.objective.error)
-        agreeing = int(np.sum(ends <= ends.min(initial=np.inf) + same))
-        agree = f"; {agreeing} of {ends.size} starts end within {engineering(same, 2)} dB of the quietest"
+        margin = max(AUDIBLE, self.optimum.objective.error)
+        agreeing = int(np.sum(ends <= ends.min(initial=np.inf) + margin))
+        agree = f"; {agreeing} of {ends.size} starts end within {engineering(margin, 2)} dB of the quietest"
         return f"{ended}, {self.evaluations} designs{agree if ends.size > 1 else ''}."
 
     @property

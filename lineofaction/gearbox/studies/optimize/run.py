@@ -315,15 +315,15 @@ def _library_request(checked: CheckedCase, study: Inputs) -> OptimizationRequest
         _si(limits_input.root_stress_mpa, MPA),
     )
     return OptimizationRequest(
-        pair,
-        list(torques),
-        tuple(variables),
-        _scatter_of(study.scatter, study.search.seed),
-        np.asarray(study.misalignment_um) * UM,
-        objective,
-        limits,
-        _search(study.search, of_sound=study.heard is not None),
-        checked.options,
+        pair=pair,
+        torques=list(torques),
+        variables=tuple(variables),
+        scatter=_scatter_of(study.scatter, study.search.seed),
+        misalignment=np.asarray(study.misalignment_um) * UM,
+        objective=objective,
+        limits=limits,
+        search=_search(study.search, of_sound=study.heard is not None),
+        options=checked.options,
         grid={} if harmonic is None else drawing_grid(case, pair, variables),
     )
 

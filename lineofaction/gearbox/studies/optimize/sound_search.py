@@ -173,18 +173,18 @@ def _expected_seconds(problem: HeardProblem, values: dict[str, float], search: S
         began = cpu_seconds()
         timed.evaluated(values)
         seconds.append(cpu_seconds() - began)
-    few, many = usual_sound_designs(search)
-    return few * seconds[1] + many * seconds[2]
+    coarse_designs, full_designs = usual_sound_designs(search)
+    return coarse_designs * seconds[1] + full_designs * seconds[2]
 
 
 def usual_sound_designs(search: Search) -> tuple[float, float]:
     """Return the numbers of designs of a usual search, at few positions and in full."""
     method = search.method
-    few, many = 0.0, float(search.evaluations)
+    coarse, full = 0.0, float(search.evaluations)
     if isinstance(method, StagedLinearProgramming):
-        few = min(method.sample + LINEARIZED * WALK * (method.trials + 1 + MISSES), EXPLORED * many)
-        many = min(LINEARIZED * FINISH * FINISHED, many)
-    return search.starts * few, search.starts * many
+        coarse = min(method.sample + LINEARIZED * WALK * (method.trials + 1 + MISSES), EXPLORED * full)
+        full = min(LINEARIZED * FINISH * FINISHED, full)
+    return search.starts * coarse, search.starts * full
 
 
 def sound_cost(
@@ -209,12 +209,12 @@ def sound_cost(
     rough = share * predicted.design * fewer_positions + levels.per_table
     full = share * predicted.design + levels.per_table
     nodes = request.scatter.nodes().weight.size if question.quantile is None else pairs.samples
-    few, many = usual_sound_designs(search)
+    coarse_designs, full_designs = usual_sound_designs(search)
     parts = [
         Work("gears", predicted.bodies),
         Work("transfer functions", levels.transfer),
-        Work("designs", rough, few),
-        Work("designs", full, many * nodes),
+        Work("designs", rough, coarse_designs),
+        Work("designs", full, full_designs * nodes),
         Work("analyses", share * (predicted.design + predicted.errors), 2),
         Work("pairs", rough, 2 * pairs.samples),
     ]

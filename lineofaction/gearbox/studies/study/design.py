@@ -6,22 +6,13 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from dynamics.study import (
-    Design,
-    Factor,
-    Levels,
-    Listed,
-    Normal,
-    Uniform,
-)
+from dynamics.study import Design, Factor, Levels, Listed, Normal, Uniform
 from fe_contact.microgeometry.tolerances import PROCESS_SPREAD, iso1328_tolerances
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.study import FactorInput, Inputs
-from lineofaction.gearbox.studies.study.scenes import (
-    Location,
-)
+from lineofaction.gearbox.studies.study.scenes import Location
 from lineofaction.gearbox.units import UM
 
 
@@ -53,11 +44,12 @@ def _by_class(index: int, factor: FactorInput, scene: SceneInput, places: tuple[
         case = scene.meshes[int(location[1])].case
         assert case is not None and factor.iso1328_class is not None
         gear, name = str(location[4]), str(location[5])
-        widths = iso1328_tolerances(gear_pair(case), factor.iso1328_class).modification
+        half_widths = iso1328_tolerances(gear_pair(case), factor.iso1328_class).modification
         designed = float(getattr(getattr(case.pair, gear), name))
-        limits.add((designed, widths[f"{gear}.{name.removesuffix('_um')}"]))
+        limits.add((designed, half_widths[f"{gear}.{name.removesuffix('_um')}"]))
     if len(limits) > 1:
-        raise BadInput.of(f"factors[{index}].path", factor.path, "of gears with one tolerance", "Name each.")
-    ((design, width),) = limits
-    half = width / UM
-    return Normal(design, half / PROCESS_SPREAD, design - half, design + half)
+        bound, remedy = "a path to gears with the same tolerance", "Give each gear a factor of its own."
+        raise BadInput.of(f"factors[{index}].path", factor.path, bound, remedy)
+    ((design, half_width_m),) = limits
+    half_width = half_width_m / UM
+    return Normal(design, half_width / PROCESS_SPREAD, design - half_width, design + half_width)

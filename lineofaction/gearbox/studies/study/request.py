@@ -9,9 +9,7 @@ from itertools import chain
 from typing import Any
 
 from dynamics.mechanism.planet_copies import numbered, planet_parts
-from dynamics.study import (
-    Response,
-)
+from dynamics.study import Response
 from lineofaction.gearbox.convert.boundary_errors import named
 from lineofaction.gearbox.convert.case import table_axes
 from lineofaction.gearbox.problems import BadInput

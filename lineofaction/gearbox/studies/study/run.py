@@ -147,7 +147,7 @@ def in_boundary_units(result: Study, response: int) -> tuple[str, float]:
 
 
 def _response_statistics(result: Study, response: int) -> Json:
-    unit, one = in_boundary_units(result, response)  # one: the SI value of a unit
+    unit, scale = in_boundary_units(result, response)
     spread, correlation = result.spread(response), result.correlation(response)
     sampled = [k for k, kind in enumerate(result.kind) if kind not in ("grid", "list")]
     others = [k for k in range(len(result.factor)) if k not in sampled]
@@ -155,14 +155,14 @@ def _response_statistics(result: Study, response: int) -> Json:
     return {
         "name": result.response[response],
         "unit": unit,
-        "mean": spread.mean / one,
-        "standard_error": spread.standard_error / one,
+        "mean": spread.mean / scale,
+        "standard_error": spread.standard_error / scale,
         "confidence": result.confidence,
         "quantiles": [
-            {"fraction": fraction, "value": value / one, "low": low / one, "high": high / one}
+            {"fraction": fraction, "value": value / scale, "low": low / scale, "high": high / scale}
             for fraction, value, low, high in quantiles
         ],
-        "spread_of_level_means": {result.factor[k]: result.swing(k, response) / one for k in others},
+        "spread_of_level_means": {result.factor[k]: result.swing(k, response) / scale for k in others},
         "rank_correlation": {result.factor[k]: correlation[k] for k in sampled},
     }
 
@@ -170,8 +170,8 @@ def _response_statistics(result: Study, response: int) -> Json:
 def _responses_at(result: Study, point: int) -> Json:
     figures = {}
     for k, name in enumerate(result.response):
-        unit, one = in_boundary_units(result, k)
-        value, error = result.figure[point, k] / one, result.error[point, k] / one
+        unit, scale = in_boundary_units(result, k)
+        value, error = result.figure[point, k] / scale, result.error[point, k] / scale
         figures[name] = {"value": value, "unit": unit, "error": error}
     return figures
 

@@ -167,21 +167,22 @@ def measured_result(
     _require_band(covered, mobility, "run" if means.run is not None else "speed_rpm")
     with boundary_errors():
         vibration = measured_vibration(response, mobility)
-        indices = _point_indices(vibration, mobility, inputs)
-        shares = bearing_shares(response, mobility)[(..., *indices)]
+        at_speed, at_order = _point_indices(vibration, mobility, inputs)
+        shares = bearing_shares(response, mobility)[..., at_speed, at_order]
     metadata = response.metadata
     seconds = {**metadata["seconds"], "vibration": cpu_seconds() - began}
     result = MeasuredHousingVibration(
-        housing.name,
-        housing.frf_file.name,
-        float(mobility.frequency[0]),
-        float(mobility.frequency[-1]),
-        mobility.response,
-        vibration,
-        *indices,
-        mobility.bearings,
-        shares,
-        {**metadata, "seconds": seconds},
+        housing=housing.name,
+        file=housing.frf_file.name,
+        lowest_frequency=float(mobility.frequency[0]),
+        highest_frequency=float(mobility.frequency[-1]),
+        response=mobility.response,
+        vibration=vibration,
+        at_speed=at_speed,
+        at_order=at_order,
+        bearing=mobility.bearings,
+        share=shares,
+        metadata={**metadata, "seconds": seconds},
     )
     return with_scene_metadata(result, subject)
 

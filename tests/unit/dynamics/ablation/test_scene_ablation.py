@@ -1,7 +1,5 @@
 """Effects of a scene toggled one by one: the changes are those of two runs."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 
@@ -9,10 +7,9 @@ import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene
 
-from dynamics.ablation import WARM_UP, Ablation, ablate, runs_of_ablation
+from dynamics import Outputs, ablate, simulate
+from dynamics.ablation import WARM_UP, runs_of_ablation
 from dynamics.errors import InputError
-from dynamics.scene import Outputs
-from dynamics.simulation import simulate
 from lineofaction.gearbox.studies.ablate.run import RUN
 
 SCENE = gear_pair_scene(duration=0.06)
@@ -20,11 +17,11 @@ ONLY = ["lateral", "axial", "tilt", "friction"]
 
 
 @pytest.fixture(scope="module")
-def made() -> Ablation:
+def made():
     return ablate(SCENE, only=ONLY)
 
 
-def test_a_prediction_has_every_run_and_the_freedoms_of_what_is_off(made: Ablation) -> None:
+def test_a_prediction_has_every_run_and_the_freedoms_of_what_is_off(made):
     times, figures = runs_of_ablation(SCENE, ONLY)
     assert len(times) == 1 + len(made.effects)
     assert times[0] == min(times) == 1.0 + WARM_UP
@@ -33,7 +30,7 @@ def test_a_prediction_has_every_run_and_the_freedoms_of_what_is_off(made: Ablati
     assert runs_of_ablation(replace(SCENE, duration=0.12), ONLY)[1] == pytest.approx(2.0 * figures)
 
 
-def test_a_change_is_that_of_two_runs(made: Ablation) -> None:
+def test_a_change_is_that_of_two_runs(made):
     whole = simulate(SCENE)
     outputs = Outputs(whole.sample_rate)
     held = simulate(gear_pair_scene(duration=0.06, effects={"lateral": "off"}, outputs=outputs))
@@ -48,7 +45,7 @@ def test_a_change_is_that_of_two_runs(made: Ablation) -> None:
     assert entry.cost_ratio > 0.0
 
 
-def test_orders_are_those_of_the_mesh(made: Ablation) -> None:
+def test_orders_are_those_of_the_mesh(made):
     """At 900 rpm the mesh passes at 300 Hz: over whole base pitches its harmonics are the spectrum."""
     run = simulate(SCENE)
     per_pitch = run.sample_rate / 300.0
@@ -61,7 +58,7 @@ def test_orders_are_those_of_the_mesh(made: Ablation) -> None:
     assert made.nominal.bearing_orders[:, 0] == pytest.approx(whole, rel=0.02)
 
 
-def test_what_has_no_part_in_the_scene_is_left_out_by_name(made: Ablation) -> None:
+def test_what_has_no_part_in_the_scene_is_left_out_by_name(made):
     assert made.omitted["friction"] == "no coefficient of friction given"
     assert {entry.name for entry in made.effects} | set(made.omitted) == {
         "lateral", "axial", "tilt", "friction",

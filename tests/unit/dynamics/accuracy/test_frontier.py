@@ -7,21 +7,18 @@ import numpy as np
 import pytest
 from geared_scenes import RPM, gear_pair_scene, spring_table, square_wave_table, with_mesh
 
-from dynamics.ablation import ablate
+from dynamics import Integration, TimeLaw, ablate, frontier
 from dynamics.accuracy import (
     FIDELITIES,
     FIGURES,
     BlockGrid,
     TimeIntegration,
-    frontier,
     knee_of_results,
     runs_of_frontier,
 )
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
-from dynamics.loads import TimeLaw
-from dynamics.scene import Integration
-from dynamics.simulation.to_file import run_scene
+from dynamics.simulation import run_scene
 from lineofaction.gearbox.studies.frontier.run import RUN
 
 LINEAR = "harmonic_response"

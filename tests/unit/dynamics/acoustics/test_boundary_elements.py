@@ -1,7 +1,5 @@
 """Boundary elements: spheres, sources inside a box, irregular frequencies, energy, reciprocity."""
 
-from __future__ import annotations
-
 import sys
 
 import numpy as np
@@ -33,13 +31,13 @@ def frequency(ka: float) -> float:
 
 
 @pytest.fixture(autouse=True, scope="module")
-def _library() -> None:
+def _library():
     pytest.importorskip("ngsolve", reason=WITH_LIBRARY)
 
 
 @pytest.mark.law
 @pytest.mark.parametrize("ka", [0.1, 1.0, 1.83, np.pi])
-def test_pulsating_and_oscillating_sphere_within_one_percent(ka: float) -> None:
+def test_pulsating_and_oscillating_sphere_within_one_percent(ka):
     """At ka = pi the equation without its derivative has no unique solution."""
     shapes = np.stack([np.ones(len(FINE.areas)), FINE.normals @ [0.6, 0.0, 0.8]], axis=1)
     matrix = resistance(MODEL, FINE, frequency(ka), shapes, AIR)
@@ -61,7 +59,7 @@ def source_in(hull: Hull, at: np.ndarray, wavenumber: float) -> tuple[np.ndarray
 
 @pytest.mark.law
 @pytest.mark.parametrize("wavenumber", [2.0, 8.0])
-def test_a_box_that_moves_as_the_air_around_a_source_radiates_its_power(wavenumber: float) -> None:
+def test_a_box_that_moves_as_the_air_around_a_source_radiates_its_power(wavenumber):
     """The field outside is the source's whatever the hull: closed form for a body with edges, to 1 %."""
     hull = box((0.4, 0.3, 0.25), (8, 6, 5))
     velocity, power = source_in(hull, np.array([0.05, -0.03, 0.02]), wavenumber)
@@ -70,7 +68,7 @@ def test_a_box_that_moves_as_the_air_around_a_source_radiates_its_power(wavenumb
 
 
 @pytest.mark.law
-def test_the_pressure_on_the_box_is_that_of_the_source() -> None:
+def test_the_pressure_on_the_box_is_that_of_the_source():
     hull, wavenumber, at = box((0.4, 0.3, 0.25), (8, 6, 5)), 4.0, np.array([0.05, -0.03, 0.02])
     velocity, _ = source_in(hull, at, wavenumber)
     solved = surface_pressure(hull, frequency(wavenumber), velocity[:, None], AIR)
@@ -79,7 +77,7 @@ def test_the_pressure_on_the_box_is_that_of_the_source() -> None:
     assert np.linalg.norm(solved.pressure[:, 0] - exact) < 0.03 * np.linalg.norm(exact)
 
 
-def test_errors_fall_with_the_square_of_the_edges() -> None:
+def test_errors_fall_with_the_square_of_the_edges():
     misses = [
         abs(radiation_efficiency(MODEL, hull, frequency(1.0), np.ones(len(hull.areas)), AIR) / 0.5 - 1.0)
         for hull in (sphere(2), sphere(4))
@@ -88,7 +86,7 @@ def test_errors_fall_with_the_square_of_the_edges() -> None:
 
 
 @pytest.mark.law
-def test_power_into_the_air_arrives_far_away() -> None:
+def test_power_into_the_air_arrives_far_away():
     """Energy balance: 1 % where the panels resolve the hull."""
     velocity, _ = source_in(FINE, np.array([0.3, 0.1, -0.2]), 2.0)
     solved = surface_pressure(FINE, frequency(2.0), velocity[:, None], AIR)
@@ -96,7 +94,7 @@ def test_power_into_the_air_arrives_far_away() -> None:
     assert solved.residual < 1e-8
 
 
-def test_resistance_is_reciprocal_and_independent_of_place_and_turn() -> None:
+def test_resistance_is_reciprocal_and_independent_of_place_and_turn():
     """The far field's matrix is symmetric for real shapes but for the panels."""
     hull = box((0.4, 0.3, 0.25), (5, 4, 3))
     shapes = np.stack([np.ones(len(hull.areas)), *hull.normals.T, hull.centers[:, 0] ** 2], axis=1)
@@ -111,7 +109,7 @@ def test_resistance_is_reciprocal_and_independent_of_place_and_turn() -> None:
 
 
 @pytest.mark.law
-def test_operators_by_blocks_of_panels_are_the_whole_to_the_last_bit(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_operators_by_blocks_of_panels_are_the_whole_to_the_last_bit(monkeypatch):
     """Whoever assembles them: a pool has a library of its own, which sees a block at a time."""
     monkeypatch.setattr(dispatch, "START_SECONDS", 0.0)
     whole = layer_operators.layer_operators(FINE, 2.0)
@@ -125,7 +123,7 @@ def test_operators_by_blocks_of_panels_are_the_whole_to_the_last_bit(monkeypatch
         assert pool.cost.tasks == 3
 
 
-def test_an_open_or_a_coarse_hull_is_refused() -> None:
+def test_an_open_or_a_coarse_hull_is_refused():
     velocity = np.ones(len(FINE.areas))
     with pytest.raises(InputError, match="closed hull"):
         radiation_efficiency(MODEL, Hull(FINE.nodes, FINE.triangles[1:]), 50.0, velocity[1:], AIR)
@@ -133,7 +131,7 @@ def test_an_open_or_a_coarse_hull_is_refused() -> None:
         radiation_efficiency(MODEL, FINE, 2000.0, velocity, AIR)
 
 
-def test_without_the_library_its_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_the_library_its_extra_is_named(monkeypatch):
     monkeypatch.setitem(sys.modules, "ngsolve", None)
     with pytest.raises(MissingExtra, match=r"lineofaction\[boundary-elements\]"):
         radiation_efficiency(MODEL, FINE, 50.0, np.ones(len(FINE.areas)), AIR)

@@ -1,7 +1,5 @@
 """The models side by side: errors against the finest, and what is left out with its reason."""
 
-from __future__ import annotations
-
 import sys
 import time
 
@@ -24,7 +22,7 @@ from dynamics.errors import InputError
 AIR = Air()
 
 
-def test_the_errors_on_a_sphere_are_those_in_closed_form() -> None:
+def test_the_errors_on_a_sphere_are_those_in_closed_form():
     pytest.importorskip("ngsolve", reason="boundary elements need the extra boundary-elements")
     hull = sphere(4)
     made = compare_models(hull, AIR.sound_speed / (2.0 * np.pi), np.ones(len(hull.areas)), AIR)
@@ -36,7 +34,7 @@ def test_the_errors_on_a_sphere_are_those_in_closed_form() -> None:
     assert made.results["equivalent_radiated_power"].efficiency == pytest.approx(1.0, rel=1e-9)
 
 
-def test_every_rung_states_cost_and_error_computed_or_not(tmp_path) -> None:
+def test_every_rung_states_cost_and_error_computed_or_not(tmp_path):
     hull = box((0.4, 0.3, 0.2), (4, 4, 4))
     velocity, asked = np.ones(len(hull.areas)), MODELS[:2]
     made = compare_models(hull, 100.0, velocity, AIR, asked, offered=MODELS, cache=tmp_path)
@@ -51,19 +49,19 @@ def test_every_rung_states_cost_and_error_computed_or_not(tmp_path) -> None:
 
 
 @pytest.mark.parametrize("model", MODELS, ids=lambda model: model.model_name)
-def test_cost_grows_with_panels_and_shapes(model) -> None:
+def test_cost_grows_with_panels_and_shapes(model):
     few, many = model.cost(1000, 2.0, 40), model.cost(2000, 2.0, 40)
     assert few.seconds < many.seconds and few.bytes < many.bytes
     assert model.cost(1000, 2.0, 80).seconds >= few.seconds
     assert model.cost(30_000, 20.0, 40).seconds >= model.cost(30_000, 2.0, 40).seconds
 
 
-def test_monopoles_take_more_at_high_frequency() -> None:
+def test_monopoles_take_more_at_high_frequency():
     waves = ElementalRadiators()
     assert waves.cost(30_000, 20.0, 40).seconds > 3.0 * waves.cost(30_000, 2.0, 40).seconds
 
 
-def test_boundary_elements_take_the_predicted_multiple_of_fewer_panels() -> None:
+def test_boundary_elements_take_the_predicted_multiple_of_fewer_panels():
     """Each within 1.3, their ratio within its square; the lesser of two counts."""
     pytest.importorskip("ngsolve", reason="boundary elements need the extra boundary-elements")
     model, hulls, minimum = BoundaryElements(), (sphere(3), sphere(5)), [np.inf, np.inf]
@@ -76,14 +74,14 @@ def test_boundary_elements_take_the_predicted_multiple_of_fewer_panels() -> None
     assert 1.0 / 1.3**2 < (large / small) / (minimum[1] / minimum[0]) < 1.3**2
 
 
-def test_the_whole_of_7040_panels_is_what_was_measured() -> None:
+def test_the_whole_of_7040_panels_is_what_was_measured():
     """615 CPU s and 5.9 GB, on a host like the reference: a box of 180 x 120 x 230 mm at 3200 Hz."""
     cost = BoundaryElements().cost(7040, 6.0, 1)
     assert 615.0 / 1.3 < cost.seconds < 615.0 * 1.3
     assert cost.bytes == pytest.approx(5.9e9, rel=0.1)
 
 
-def test_boundary_elements_report_their_assembly(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_boundary_elements_report_their_assembly(monkeypatch):
     pytest.importorskip("ngsolve", reason="boundary elements need the extra boundary-elements")
     monkeypatch.setattr(layer_operators, "BLOCK", 50)
     told: list[tuple[str, float]] = []
@@ -97,7 +95,7 @@ def test_boundary_elements_report_their_assembly(monkeypatch: pytest.MonkeyPatch
     assert reporting == BoundaryElements() and repr(reporting) == repr(BoundaryElements())
 
 
-def test_what_takes_long_is_announced_before_it_begins(monkeypatch) -> None:
+def test_what_takes_long_is_announced_before_it_begins(monkeypatch):
     monkeypatch.setattr("dynamics.work_cost.ANNOUNCED", 0.0)
     hull, told = box((0.4, 0.3, 0.2), (4, 4, 4)), []
     compare_models(
@@ -107,7 +105,7 @@ def test_what_takes_long_is_announced_before_it_begins(monkeypatch) -> None:
 
 
 @pytest.mark.parametrize("ka", [0.3, 0.6, 1.1, 2.3, 3.7])
-def test_stated_errors_hold_on_spheres_in_closed_form(ka: float) -> None:
+def test_stated_errors_hold_on_spheres_in_closed_form(ka):
     """But for pulsation alone near ka = pi, where monopoles cancel each other."""
     for model in MODELS[:2]:
         low, high = model.error_band(ka)
@@ -116,7 +114,7 @@ def test_stated_errors_hold_on_spheres_in_closed_form(ka: float) -> None:
 
 
 @pytest.mark.parametrize("hertz", [200.0, 700.0])
-def test_stated_errors_hold_on_a_box_by_boundary_elements(hertz: float) -> None:
+def test_stated_errors_hold_on_a_box_by_boundary_elements(hertz):
     """Pulsation, one wall that bulges, one that bends in two waves, the whole up and down."""
     pytest.importorskip("ngsolve", reason="boundary elements need the extra boundary-elements")
     sides = np.array([0.36, 0.24, 0.18])
@@ -135,7 +133,7 @@ def test_stated_errors_hold_on_a_box_by_boundary_elements(hertz: float) -> None:
         assert np.all((low <= errors) & (errors <= high)), (model.model_name, errors)
 
 
-def test_models_without_their_library_or_mesh_are_left_out_with_the_reason(monkeypatch) -> None:
+def test_models_without_their_library_or_mesh_are_left_out_with_the_reason(monkeypatch):
     monkeypatch.setitem(sys.modules, "ngsolve", None)
     hull = box((0.4, 0.3, 0.2), (4, 4, 4))
     velocity = np.ones(len(hull.areas))

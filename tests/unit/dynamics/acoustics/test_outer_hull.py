@@ -1,7 +1,5 @@
 """Outer hull of a housing: areas of hollow boxes in closed form, rigid motion, coarse panels."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np
@@ -50,7 +48,7 @@ def hull_of(opening: str):
     return outer_hull(housing_of(opening))
 
 
-def test_the_walls_of_a_closed_cavity_are_left_out() -> None:
+def test_the_walls_of_a_closed_cavity_are_left_out():
     outer = hull_of("closed")
     outer.hull.require_closed()
     assert outer.hull.area == pytest.approx(OUTER, rel=1e-12)
@@ -60,12 +58,12 @@ def test_the_walls_of_a_closed_cavity_are_left_out() -> None:
 
 
 @pytest.mark.law
-def test_the_mean_square_of_a_motion_leaves_out_the_walls_of_a_cavity() -> None:
+def test_the_mean_square_of_a_motion_leaves_out_the_walls_of_a_cavity():
     along_z = surface_weight(housing_of("closed"))[2, 2]
     assert along_z == pytest.approx(2.0 * SIZE[0] * SIZE[1] / OUTER, rel=1e-12)
 
 
-def test_bores_are_closed_by_caps_and_the_walls_behind_them_are_left_out() -> None:
+def test_bores_are_closed_by_caps_and_the_walls_behind_them_are_left_out():
     outer = hull_of("bores")
     outer.hull.require_closed()
     wall = 4 * 4 * HOLE * WALL  # of the bores: outside or inside
@@ -75,7 +73,7 @@ def test_bores_are_closed_by_caps_and_the_walls_behind_them_are_left_out() -> No
     assert faces + outer.inner_area == pytest.approx(OUTER + INNER - 8 * HOLE**2 + wall, rel=1e-9)
 
 
-def test_both_sides_of_an_open_tub_are_outside() -> None:
+def test_both_sides_of_an_open_tub_are_outside():
     outer = hull_of("no cover")
     outer.hull.require_closed()
     assert outer.inner_area == 0.0
@@ -86,7 +84,7 @@ def test_both_sides_of_an_open_tub_are_outside() -> None:
 
 @pytest.mark.law
 @pytest.mark.parametrize("opening", ["closed", "bores", "no cover"])
-def test_a_rigid_motion_displaces_no_volume_and_a_swelling_its_own(opening: str) -> None:
+def test_a_rigid_motion_displaces_no_volume_and_a_swelling_its_own(opening):
     outer = hull_of(opening)
     flow = outer.hull.areas @ outer.shapes
     np.testing.assert_allclose(flow[:6], 0.0, atol=1e-12)
@@ -94,7 +92,7 @@ def test_a_rigid_motion_displaces_no_volume_and_a_swelling_its_own(opening: str)
 
 
 @pytest.mark.parametrize("opening", ["closed", "bores"])
-def test_coarse_panels_radiate_as_the_fine_ones(opening: str) -> None:
+def test_coarse_panels_radiate_as_the_fine_ones(opening):
     outer, air = hull_of(opening), Air()
     coarse = radiating_hull(outer, 300.0, air.sound_speed)
     assert len(coarse.hull.triangles) < 0.5 * len(outer.hull.triangles)
@@ -109,7 +107,7 @@ def _alone(hull, shapes, air):
     return np.diag(resistance(ElementalRadiators(), hull, 300.0, shapes, air))
 
 
-def test_panels_are_as_coarse_as_the_wavelength_allows() -> None:
+def test_panels_are_as_coarse_as_the_wavelength_allows():
     outer = hull_of("closed")
     hulls = [radiating_hull(outer, frequency, 343.0).hull for frequency in (300.0, 1200.0, 9000.0)]
     assert len(hulls[0].triangles) < len(hulls[1].triangles) < len(hulls[2].triangles)

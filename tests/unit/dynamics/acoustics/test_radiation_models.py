@@ -1,7 +1,5 @@
 """Radiation models: closed forms of sphere and piston, and the laws that hold for every one of them."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hulls import box, sphere
@@ -39,7 +37,7 @@ def random_shapes(hull: Hull, count: int = 5) -> np.ndarray:
     return parts[0] + 1j * parts[1]
 
 
-def test_the_efficiencies_of_the_sphere_are_the_known_fractions() -> None:
+def test_the_efficiencies_of_the_sphere_are_the_known_fractions():
     for ka in (0.1, 0.7, 1.83, 5.0):
         assert sphere_efficiency(0, ka) == pytest.approx(ka**2 / (1 + ka**2), rel=1e-12)
         assert sphere_efficiency(1, ka) == pytest.approx(ka**4 / (4 + ka**4), rel=1e-12)
@@ -47,7 +45,7 @@ def test_the_efficiencies_of_the_sphere_are_the_known_fractions() -> None:
     assert errors_db(0.01)["monopoles"][1] == pytest.approx(10.0 * np.log10(4.0 / 9.0), abs=1e-3)
 
 
-def test_the_sphere_exceeds_its_equivalent_radiated_power_as_stated() -> None:
+def test_the_sphere_exceeds_its_equivalent_radiated_power_as_stated():
     ka = np.linspace(0.05, 30.0, 2000)
     maximum = [10.0 * np.log10(max(sphere_efficiency(order, x) for x in ka)) for order in range(6)]
     assert maximum[0] < 0.0
@@ -57,7 +55,7 @@ def test_the_sphere_exceeds_its_equivalent_radiated_power_as_stated() -> None:
 
 @pytest.mark.parametrize("ka", [0.3, 1.0, 2.5])
 @pytest.mark.parametrize("order", [0, 1])
-def test_models_miss_the_sphere_by_their_stated_errors(ka: float, order: int) -> None:
+def test_models_miss_the_sphere_by_their_stated_errors(ka, order):
     velocity = np.ones(len(SPHERE.areas)) if order == 0 else SPHERE.normals[:, 2]
     exact = sphere_efficiency(order, ka)
     for model in MODELS[:2]:
@@ -67,7 +65,7 @@ def test_models_miss_the_sphere_by_their_stated_errors(ka: float, order: int) ->
         )
 
 
-def test_monopoles_on_a_sphere_converge_with_the_square_of_the_edges() -> None:
+def test_monopoles_on_a_sphere_converge_with_the_square_of_the_edges():
     misses = []
     for divisions in (6, 12):
         hull = sphere(divisions)
@@ -98,7 +96,7 @@ def disc(rings: int) -> Hull:
 
 @pytest.mark.law
 @pytest.mark.parametrize("ka", [0.5, 1.0, 2.0, 4.0])
-def test_a_baffled_piston_radiates_as_rayleigh_says(ka: float) -> None:
+def test_a_baffled_piston_radiates_as_rayleigh_says(ka):
     piston = disc(24)
     assert piston.area == pytest.approx(np.pi, rel=2e-3)
     sigma = radiation_efficiency(MODELS[2], piston, frequency(ka), np.ones(len(piston.areas)), AIR)
@@ -106,7 +104,7 @@ def test_a_baffled_piston_radiates_as_rayleigh_says(ka: float) -> None:
 
 
 @pytest.mark.parametrize("model", MODELS, ids=lambda model: model.model_name)
-def test_resistance_is_reciprocal_and_takes_energy_from_every_motion(model) -> None:
+def test_resistance_is_reciprocal_and_takes_energy_from_every_motion(model):
     hull = box((0.4, 0.3, 0.2), (6, 5, 4))
     shapes = random_shapes(hull)
     matrix = resistance(model, hull, 300.0, shapes, AIR)
@@ -117,7 +115,7 @@ def test_resistance_is_reciprocal_and_takes_energy_from_every_motion(model) -> N
 
 
 @pytest.mark.parametrize("model", MODELS, ids=lambda model: model.model_name)
-def test_shapes_superpose_and_power_goes_with_the_square(model) -> None:
+def test_shapes_superpose_and_power_goes_with_the_square(model):
     hull = box((0.4, 0.3, 0.2), (6, 5, 4))
     shapes, factors = random_shapes(hull), np.array([1.0, 2j, -0.5, 0.1 + 1j, 3.0])
     matrix = resistance(model, hull, 300.0, shapes, AIR)
@@ -129,7 +127,7 @@ def test_shapes_superpose_and_power_goes_with_the_square(model) -> None:
 
 
 @pytest.mark.parametrize("model", MODELS, ids=lambda model: model.model_name)
-def test_where_the_hull_is_does_not_matter(model) -> None:
+def test_where_the_hull_is_does_not_matter(model):
     hull = box((0.4, 0.3, 0.2), (6, 5, 4))
     turn, _ = np.linalg.qr(np.random.default_rng(2).normal(size=(3, 3)))
     turn *= np.linalg.det(turn)
@@ -142,7 +140,7 @@ def test_where_the_hull_is_does_not_matter(model) -> None:
 
 @pytest.mark.parametrize("hull", [box((0.4, 0.3, 0.2), (6, 5, 4)), sphere(6, 0.2)], ids=["pairs", "waves"])
 @pytest.mark.parametrize("model", MODELS, ids=lambda model: model.model_name)
-def test_a_panel_gives_its_velocity_times_the_pressure_of_all(model, hull) -> None:
+def test_a_panel_gives_its_velocity_times_the_pressure_of_all(model, hull):
     """Against the matrix of all panels by themselves: every panel is a shape."""
     velocity = random_shapes(hull, 1)[:, 0] * np.exp(1j * np.arange(len(hull.areas)))
     matrix = resistance(model, hull, 400.0, np.eye(len(hull.areas)), AIR)
@@ -152,7 +150,7 @@ def test_a_panel_gives_its_velocity_times_the_pressure_of_all(model, hull) -> No
     assert panels.sum() == pytest.approx(sound_power(model, hull, 400.0, velocity, AIR), rel=1e-9)
 
 
-def test_a_panel_against_the_motion_of_its_neighbors_takes_power() -> None:
+def test_a_panel_against_the_motion_of_its_neighbors_takes_power():
     hull = sphere(6, 0.1)
     velocity = np.ones(len(hull.areas))
     velocity[0] = -1.0
@@ -160,12 +158,12 @@ def test_a_panel_against_the_motion_of_its_neighbors_takes_power() -> None:
     assert np.flatnonzero(panels < 0.0).tolist() == [0]
 
 
-def test_a_velocity_that_is_not_of_the_panels_is_refused() -> None:
+def test_a_velocity_that_is_not_of_the_panels_is_refused():
     with pytest.raises(InputError, match="shapes"):
         panel_power(MODELS[0], sphere(2), 200.0, np.ones(3), AIR)
 
 
-def test_panels_add_up_to_the_equivalent_radiated_power() -> None:
+def test_panels_add_up_to_the_equivalent_radiated_power():
     hull = box((0.4, 0.3, 0.2), (6, 5, 4))
     velocity = random_shapes(hull, 1)[:, 0]
     whole = sound_power(MODELS[0], hull, 500.0, velocity, AIR)
@@ -174,7 +172,7 @@ def test_panels_add_up_to_the_equivalent_radiated_power() -> None:
     assert whole == pytest.approx(AIR.impedance * hull.area * mean_square_velocity(hull, velocity), rel=1e-12)
 
 
-def test_interpolated_modes_radiate_what_the_model_says() -> None:
+def test_interpolated_modes_radiate_what_the_model_says():
     """A hundred frequencies from nine: within 0.05 dB."""
     hull = box((0.4, 0.3, 0.2), (6, 5, 4))
     shapes = np.stack([np.ones(len(hull.areas)), *hull.normals.T, hull.centers[:, 0] * hull.normals[:, 1]], 1)
@@ -191,14 +189,14 @@ def test_interpolated_modes_radiate_what_the_model_says() -> None:
     assert miss[-1] < 1e-9
 
 
-def test_interpolated_power_is_never_negative() -> None:
+def test_interpolated_power_is_never_negative():
     hull = box((0.4, 0.3, 0.2), (4, 4, 4))
     made = modal_resistance(MODELS[1], hull, np.array([50.0, 200.0, 400.0]), random_shapes(hull, 6), AIR)
     velocity = random_shapes(hull, 6)
     assert made.power(np.linspace(50.0, 400.0, len(velocity)), velocity).min() > 0.0
 
 
-def test_what_cannot_be_used_is_refused() -> None:
+def test_what_cannot_be_used_is_refused():
     hull = box((0.4, 0.3, 0.2), (3, 3, 3))
     shapes = random_shapes(hull, 2)
     with pytest.raises(InputError, match=r"frequency.*at most"):
@@ -218,13 +216,11 @@ def test_what_cannot_be_used_is_refused() -> None:
         Hull(hull.nodes, hull.triangles[1:]).require_closed()
     with pytest.raises(InputError, match="volume"):
         Hull(hull.nodes, hull.triangles[:, ::-1]).require_closed()
-    with pytest.raises(InputError, match="density"):
-        Air(density=-1.0)
 
 
 @pytest.mark.law
 @pytest.mark.parametrize("ka", [0.01, 1.0, 6.0])
-def test_plane_waves_give_the_sum_over_pairs(ka: float) -> None:
+def test_plane_waves_give_the_sum_over_pairs(ka):
     """Free monopoles by directions against sin(kr)/(kr) of every pair."""
     points, wavenumber = SPHERE.centers, ka
     shapes = random_shapes(SPHERE)

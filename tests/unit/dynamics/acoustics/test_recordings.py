@@ -1,8 +1,5 @@
 """Recordings: of spectra as WAV, and of bearing forces of runs."""
 
-from __future__ import annotations
-
-from pathlib import Path
 from types import SimpleNamespace
 from typing import cast
 
@@ -41,7 +38,7 @@ def levels(samples: np.ndarray, frequency: np.ndarray, rate: int = WAV_RATE) -> 
 
 
 @pytest.mark.parametrize("revolutions", [25.0, 83.3])
-def test_a_file_has_the_levels_of_its_orders(tmp_path, revolutions: float) -> None:
+def test_a_file_has_the_levels_of_its_orders(tmp_path, revolutions):
     time = np.array([0.0, 0.7, 2.0])
     frequency = np.outer(ORDERS * revolutions, np.ones(3))
     made = order_recording(time, frequency, np.outer(WAV_PEAKS * np.exp([0j, 1j, 2j]), np.ones(3)), "p", "Pa")
@@ -53,7 +50,7 @@ def test_a_file_has_the_levels_of_its_orders(tmp_path, revolutions: float) -> No
     )
 
 
-def test_orders_of_a_run_up_have_their_levels_at_every_speed() -> None:
+def test_orders_of_a_run_up_have_their_levels_at_every_speed():
     """The amplitude is that of the speed, the phase the integral of the frequency: demodulated by it."""
     time = np.linspace(0.0, 10.0, 21)
     frequency = np.outer(ORDERS, 20.0 + 3.0 * time + 0.4 * time**2)
@@ -70,7 +67,7 @@ def test_orders_of_a_run_up_have_their_levels_at_every_speed() -> None:
 
 
 @pytest.mark.parametrize("rate", [20_000, 44_100, 96_000])
-def test_resampling_keeps_levels_and_removes_what_would_fold(rate: int) -> None:
+def test_resampling_keeps_levels_and_removes_what_would_fold(rate):
     lower = min(rate, WAV_RATE)
     frequency = np.round(np.array([0.05, 0.3, 0.45]) * lower, -1)
     at = np.arange(2 * rate) / rate
@@ -82,13 +79,13 @@ def test_resampling_keeps_levels_and_removes_what_would_fold(rate: int) -> None:
     np.testing.assert_allclose(levels(inner, frequency), 0.0, atol=0.02)
 
 
-def test_what_lies_above_the_new_rate_does_not_fold_back() -> None:
+def test_what_lies_above_the_new_rate_does_not_fold_back():
     at = np.arange(192_000) / 96_000
     folded = Recording(np.cos(2.0 * np.pi * 0.55 * WAV_RATE * at), 96_000, "v", "m/s").resampled()
     assert np.abs(folded.samples[WAV_RATE // 2 : -WAV_RATE // 2]).max() < 10.0 ** (-70.0 / 20.0)
 
 
-def test_two_files_keep_their_relative_level(tmp_path) -> None:
+def test_two_files_keep_their_relative_level(tmp_path):
     loud, quiet = (
         Recording(peak * np.sin(np.arange(999.0)), WAV_RATE, "force", "N") for peak in (80.0, 20.0)
     )
@@ -105,7 +102,7 @@ def test_two_files_keep_their_relative_level(tmp_path) -> None:
         common_full_scale(loud, Recording(np.ones(9), WAV_RATE, "p", "Pa"))
 
 
-def test_nothing_is_clipped_and_no_other_file_read(tmp_path) -> None:
+def test_nothing_is_clipped_and_no_other_file_read(tmp_path):
     with pytest.raises(InputError, match=r"full_scale.*recording's peak"):
         write_wav(tmp_path / "a.wav", Recording(np.array([0.0, 2.0]), WAV_RATE, "p", "Pa"), 1.0)
     wavfile.write(tmp_path / "plain.wav", WAV_RATE, np.zeros(8, dtype=np.float32))
@@ -166,7 +163,7 @@ def heard_order(samples: np.ndarray, rate: int, run: RunResult, order: int, at: 
 
 @pytest.mark.law
 @pytest.mark.parametrize(("start", "end"), [(250.0, 250.0), (60.0, 900.0), (900.0, 60.0)])
-def test_orders_of_the_file_have_the_levels_of_the_map(tmp_path: Path, start: float, end: float) -> None:
+def test_orders_of_the_file_have_the_levels_of_the_map(tmp_path, start, end):
     run = run_of(start, end)
     recording = force_recording(run, "left")
     write_wav(tmp_path / "left.wav", recording, common_full_scale(recording))
@@ -180,7 +177,7 @@ def test_orders_of_the_file_have_the_levels_of_the_map(tmp_path: Path, start: fl
             assert in_file == pytest.approx(in_map, rel=TENTH_DB), (order, middle)
 
 
-def test_the_direction_is_the_line_of_action() -> None:
+def test_the_direction_is_the_line_of_action():
     run = run_of(300.0, 300.0)
     axis, share = principal_direction(run.bearing_force[0], RATE)
     np.testing.assert_allclose(axis, ACTION, atol=1e-12)
@@ -192,7 +189,7 @@ def test_the_direction_is_the_line_of_action() -> None:
     np.testing.assert_allclose(across.samples, ACTION[0] * heard.samples, atol=1e-9 * heard.peak)
 
 
-def test_a_direction_of_noise_takes_its_share_of_the_variance() -> None:
+def test_a_direction_of_noise_takes_its_share_of_the_variance():
     """Two uncorrelated tones at right angles, powers 9 to 1."""
     time = np.arange(20_000) / RATE
     force = np.stack([np.sin(2e3 * np.pi * time), 3.0 * np.cos(3e3 * np.pi * time), 0.0 * time])
@@ -201,7 +198,7 @@ def test_a_direction_of_noise_takes_its_share_of_the_variance() -> None:
     assert share == pytest.approx(0.9, abs=1e-3)
 
 
-def test_a_sine_keeps_its_amplitude_and_its_duration() -> None:
+def test_a_sine_keeps_its_amplitude_and_its_duration():
     time = np.arange(round(RATE) + 1) / RATE
     heard = series_recording(123.0 + 7.0 * np.sin(2.0 * np.pi * 440.0 * time), RATE, "force", "N")
     inner = heard.samples[4800:-4800]
@@ -211,7 +208,7 @@ def test_a_sine_keeps_its_amplitude_and_its_duration() -> None:
     assert abs(heard.samples[-1]) < 1e-3
 
 
-def test_what_is_slow_is_not_in_the_file_and_what_is_heard_is() -> None:
+def test_what_is_slow_is_not_in_the_file_and_what_is_heard_is():
     time = np.arange(round(4.0 * RATE)) / RATE
     slow = audible(5000.0 * time + 100.0 * np.sin(2.0 * np.pi * 2.0 * time), RATE)
     inner = slice(round(RATE), round(3.0 * RATE))
@@ -221,7 +218,7 @@ def test_what_is_slow_is_not_in_the_file_and_what_is_heard_is() -> None:
     assert np.abs(heard[inner]).max() == pytest.approx(1.0, rel=TENTH_DB)
 
 
-def test_of_two_designs_the_ratio_is_that_of_the_forces(tmp_path: Path) -> None:
+def test_of_two_designs_the_ratio_is_that_of_the_forces(tmp_path):
     loud, quiet = (force_recording(run_of(200.0, 400.0, scale), "left") for scale in (1.0, 0.3))
     scale = common_full_scale(loud, quiet)
     for name, one in (("loud", loud), ("quiet", quiet)):
@@ -233,7 +230,7 @@ def test_of_two_designs_the_ratio_is_that_of_the_forces(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("rate", [8192.0, 23_459.0, 48_000.0, 65_536.5, 192_000.0])
-def test_every_output_rate_becomes_the_rate_of_the_file(rate: float) -> None:
+def test_every_output_rate_becomes_the_rate_of_the_file(rate):
     time = np.arange(round(0.5 * rate)) / rate
     heard = series_recording(np.sin(2.0 * np.pi * 1000.0 * time), rate, "force", "N")
     at = np.arange(heard.samples.size) / heard.sample_rate
@@ -241,7 +238,7 @@ def test_every_output_rate_becomes_the_rate_of_the_file(rate: float) -> None:
     np.testing.assert_allclose(heard.samples[inner], np.sin(2.0 * np.pi * 1000.0 * at)[inner], atol=1e-3)
 
 
-def test_what_has_no_sound_is_refused() -> None:
+def test_what_has_no_sound_is_refused():
     run = run_of(200.0, 200.0, duration=0.1)
     with pytest.raises(InputError, match=r'bearing.*middle.*"left", "right"'):
         force_recording(run, "middle")
@@ -251,6 +248,6 @@ def test_what_has_no_sound_is_refused() -> None:
         principal_direction(np.zeros((3, 100)), RATE)
     with pytest.raises(InputError, match="above 40"):
         audible(np.zeros(100), 30.0)
-    run.bearing_force = np.empty((0, 3, run.time.size))  # type: ignore[misc]
+    run.bearing_force = np.empty((0, 3, run.time.size))
     with pytest.raises(InputError, match=r"outputs\.bearing_forces = true"):
         force_recording(run, "left")

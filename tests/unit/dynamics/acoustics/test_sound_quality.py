@@ -1,7 +1,5 @@
 """Psychoacoustics against the definitions of sone and acum, and what has no loudness."""
 
-from __future__ import annotations
-
 import sys
 
 import numpy as np
@@ -27,7 +25,7 @@ def tone(level: float, frequency: float = 1000.0) -> Recording:
 
 
 @pytest.fixture(autouse=True, scope="module")
-def _library() -> None:
+def _library():
     pytest.importorskip("mosqito", reason=WITH_LIBRARY)
 
 
@@ -35,25 +33,25 @@ def _library() -> None:
     ("frequency", "level", "sone"),
     [(1000.0, 40.0, 1.0), (1000.0, 60.0, 4.019), (250.0, 80.0, 14.655), (4000.0, 40.0, 1.549)],
 )
-def test_tones_have_the_loudness_of_the_standard(frequency: float, level: float, sone: float) -> None:
+def test_tones_have_the_loudness_of_the_standard(frequency, level, sone):
     """The definition of the sone and the test signals of ISO 532-1, annex B.3, whose tolerance is 5 %."""
     assert sound_quality(tone(level, frequency)).loudness == pytest.approx(sone, rel=0.05)
 
 
-def test_one_acum_is_a_critical_band_about_one_kilohertz_at_60_decibels() -> None:
+def test_one_acum_is_a_critical_band_about_one_kilohertz_at_60_decibels():
     noise = np.random.default_rng(8).normal(size=2 * RATE)
     band = sosfilt(butter(8, [920.0, 1080.0], "bandpass", fs=RATE, output="sos"), noise)[RATE:]
     assert sound_quality(scaled(band, 60.0)).sharpness == pytest.approx(1.0, abs=0.05)
 
 
-def test_a_tone_in_noise_is_found_and_noise_alone_has_none() -> None:
+def test_a_tone_in_noise_is_found_and_noise_alone_has_none():
     noise = np.random.default_rng(9).normal(size=RATE)
     mixed = sound_quality(scaled(noise + 1.0 * np.sin(2.0 * np.pi * 2000.0 * TIME), 60.0))
     assert mixed.tone_frequency == pytest.approx([2000.0], abs=3.0)
     assert sound_quality(scaled(noise, 60.0)).tone_frequency.size == 0
 
 
-def test_loudness_over_time_follows_the_sound() -> None:
+def test_loudness_over_time_follows_the_sound():
     rising = tone(60.0).samples[: RATE // 2] * np.where(TIME[: RATE // 2] < 0.25, 0.1, 1.0)
     time, loudness = loudness_over_time(Recording(rising, RATE, "sound pressure", "Pa"))
     assert time.shape == loudness.shape
@@ -61,7 +59,7 @@ def test_loudness_over_time_follows_the_sound() -> None:
     assert late / early == pytest.approx(4.0, rel=0.1)
 
 
-def test_only_a_sound_pressure_has_a_loudness(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_only_a_sound_pressure_has_a_loudness(monkeypatch):
     with pytest.raises(InputError, match=r"unit.*Pa"):
         sound_quality(Recording(TIME, RATE, "bearing force", "N"))
     with pytest.raises(InputError, match=r"resampled\(48000\)"):
@@ -72,7 +70,7 @@ def test_only_a_sound_pressure_has_a_loudness(monkeypatch: pytest.MonkeyPatch) -
 
 
 @pytest.mark.parametrize("samples", [2, 20, 200])
-def test_a_sound_of_a_few_milliseconds_has_no_loudness(samples: int) -> None:
+def test_a_sound_of_a_few_milliseconds_has_no_loudness(samples):
     brief = Recording(TIME[:samples], RATE, "sound pressure", "Pa")
     for metric in (sound_quality, loudness_over_time):
         with pytest.raises(InputError, match="duration"):

@@ -16,16 +16,14 @@ from geared_scenes import (
     with_mesh,
 )
 
+from dynamics import CoastFlank, TimeLaw, simulate
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.integrators import static_equilibrium
-from dynamics.loads import TimeLaw
 from dynamics.mechanism.rotor import build_rotor
-from dynamics.meshes import CoastFlank
 from dynamics.meshes.packed_tables import pack_tables
 from dynamics.meshes.table_lookup import table_force
 from dynamics.meshes.technique import mirrored, table_at
-from dynamics.simulation import simulate
 from dynamics.types import StaticStatus
 
 GAP = 80e-6

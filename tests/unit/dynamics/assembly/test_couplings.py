@@ -1,7 +1,5 @@
 """Couplings, gravity, idle rattle, and matrices that are sparse."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -97,7 +95,6 @@ def test_a_matrix_holds_the_shafts_together_in_all_directions():
     ("make", "field"),
     [
         (lambda: Coupling("c", "a", "a", 1.0), "second"),
-        (lambda: Coupling("c", "a", "b", 0.0), "torsional_stiffness"),
         (lambda: Coupling("c", "a", "b", 1.0, stiffness=((1.0,),)), "stiffness"),
         (lambda: Coupling("c", "a", "b", 1.0, damping=tuple(map(tuple, -np.eye(6)))), "damping"),
         (
@@ -165,7 +162,7 @@ EVERY = {"lateral": "on", "axial": "on", "tilt": "on"}
 
 
 @pytest.mark.parametrize("make", [gear_pair_scene, flexible_pair], ids=["rigid", "flexible"])
-def test_the_bearings_carry_the_weight_and_only_that_changes(make) -> None:
+def test_the_bearings_carry_the_weight_and_only_that_changes(make):
     scene = make(effects=EVERY)
     heavy, light = (assemble(replace(scene, gravity=g)) for g in (DOWN, (0.0, 0.0, 0.0)))
     forces = [
@@ -178,7 +175,7 @@ def test_the_bearings_carry_the_weight_and_only_that_changes(make) -> None:
         np.testing.assert_array_equal(getattr(heavy.arrays, name), getattr(light.arrays, name))
 
 
-def test_a_run_starts_at_rest_under_gravity_and_its_energy_balances() -> None:
+def test_a_run_starts_at_rest_under_gravity_and_its_energy_balances():
     scene = gear_pair_scene(effects=EVERY, gravity=DOWN, duration=0.02)
     run = simulate(scene)
     assert run.energy.relative < 1e-3
@@ -188,7 +185,7 @@ def test_a_run_starts_at_rest_under_gravity_and_its_energy_balances() -> None:
     np.testing.assert_allclose(np.mean(carried, axis=-1), mass * np.array(DOWN), rtol=1e-2)
 
 
-def test_gravity_across_a_rotating_frame_is_refused() -> None:
+def test_gravity_across_a_rotating_frame_is_refused():
     scene = driven_scene(published_set(3))
     replace(scene, gravity=(0.0, 0.0, -9.81))
     with pytest.raises(InputError) as caught:
@@ -196,7 +193,7 @@ def test_gravity_across_a_rotating_frame_is_refused() -> None:
     assert caught.value.field == "gravity"
 
 
-def test_a_bushing_may_be_a_damper_alone() -> None:
+def test_a_bushing_may_be_a_damper_alone():
     scene = gear_pair_scene(effects=EVERY)
     damper = Bushing("damper", "input", 0.1, radial_damping=500.0)
     damped, bare = (assemble(replace(scene, bushings=b)) for b in ((*scene.bushings, damper), scene.bushings))

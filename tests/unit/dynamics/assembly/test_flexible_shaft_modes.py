@@ -5,26 +5,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from flexible_scenes import (
-    STEEL,
-    bending_stiffness,
-    flexible_pair,
-    section_motion,
-    shear_stiffness,
-)
+from flexible_scenes import STEEL, bending_stiffness, flexible_pair, section_motion, shear_stiffness
 from geared_scenes import gear_pair_scene, spring_table, with_gear
 from scipy.linalg import eigh
 
+from dynamics import Bushing, Coupling, FreeRotation, Inertia, Outputs, Shaft, TimeLaw
 from dynamics.assembly.assemble import assemble
-from dynamics.bearings import Bushing
 from dynamics.integrators import static_equilibrium
-from dynamics.joints import Coupling, FreeRotation
 from dynamics.linearize import linearize, natural_modes, whirl_modes
 from dynamics.linearize.whirl_modes import speed_terms
-from dynamics.loads import TimeLaw
 from dynamics.motion.force_balance import force_balance
-from dynamics.scene import Outputs
-from dynamics.shafts import BeamSection, DiscBody, Inertia, Shaft, timoshenko_beam
+from dynamics.shafts import BeamSection, DiscBody, timoshenko_beam
 
 
 def dense(scene, mesh_stiffness, elements=40):

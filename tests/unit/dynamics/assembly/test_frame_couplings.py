@@ -9,21 +9,16 @@ import pytest
 from geared_scenes import gear_pair_scene, spring_table
 from planetary_scenes import driven_scene, published_set
 
+from dynamics import Bushing, Coupling, Inertia, Integration, Shaft, TimeLaw
 from dynamics.assembly.assemble import assemble
-from dynamics.bearings import Bushing
 from dynamics.errors import InputError
 from dynamics.forces.laws import Law
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.integrators.march import stored_energy
-from dynamics.joints import Coupling
-from dynamics.linearize import natural_modes
-from dynamics.linearize.common_period import common_period
-from dynamics.loads import TimeLaw
+from dynamics.linearize import common_period, natural_modes
 from dynamics.motion.force_balance import force_balance
 from dynamics.motion.observation import local_state
 from dynamics.results import EnergyAudit
-from dynamics.scene import Integration
-from dynamics.shafts import Inertia, Shaft
 
 SPIN, DISC, LENGTH = 300.0, Inertia(4.0, 0.02, 0.0104), 0.2
 QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])

@@ -9,14 +9,11 @@ import pytest
 from geared_scenes import BASE_RADIUS, gear_pair_scene, spring_table
 from mesh_phases import flank_phase
 
+from dynamics import FreeRotation, Integration, LoadTorque, Outputs, TimeLaw, simulate
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.integrators import static_equilibrium
-from dynamics.joints import FreeRotation
-from dynamics.loads import LoadTorque, TimeLaw
 from dynamics.motion.motion import QUANTUM, move_free_trains, write_motion
-from dynamics.scene import Integration, Outputs
-from dynamics.simulation import simulate
 
 PI = Fraction(3141592653589793238462643383279502884197, 10**39)
 

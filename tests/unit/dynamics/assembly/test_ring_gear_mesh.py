@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene, spring_table, with_gear
 
+from dynamics import TimeLaw, simulate
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
-from dynamics.loads import TimeLaw
 from dynamics.mechanism.line_of_action import line_of_action
-from dynamics.simulation import simulate
 
 ALPHA = math.radians(22.0)
 PINION, RING = 20, 61

@@ -8,19 +8,15 @@ import pytest
 from geared_scenes import gear_pair_scene, spring_table
 from planetary_scenes import driven_scene, published_set
 
+from dynamics import Bushing, Coupling, FreeRotation, Inertia, Integration, Shaft, TimeLaw
 from dynamics.assembly.assemble import assemble
-from dynamics.bearings import Bushing
 from dynamics.forces.laws import Law
 from dynamics.integrators import integrate, static_equilibrium
-from dynamics.joints import Coupling, FreeRotation
 from dynamics.linearize import whirl_modes
 from dynamics.linearize.whirl_modes import speed_terms
-from dynamics.loads import TimeLaw
 from dynamics.motion.force_balance import force_balance
 from dynamics.motion.observation import local_state
 from dynamics.results import EnergyAudit
-from dynamics.scene import Integration
-from dynamics.shafts import Inertia, Shaft
 
 SPIN, DISC, LENGTH, STIFFNESS = 300.0, Inertia(4.0, 0.02, 0.0104), 0.2, 1e6
 QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])

@@ -8,17 +8,14 @@ import pytest
 from geared_scenes import BASE_RADIUS, RPM, gear_pair_scene, with_bushings, with_gear, with_mesh
 from sliced_face import FACE_WIDTH, sliced_database
 
+from dynamics import CoastFlank, Integration, Outputs, TimeLaw, simulate
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.forces.elements import SPATIAL_FLANK
 from dynamics.integrators import static_equilibrium
 from dynamics.linearize import natural_modes
-from dynamics.loads import TimeLaw
 from dynamics.mechanism.rotor import build_rotor
-from dynamics.meshes import CoastFlank
 from dynamics.motion.force_balance import force_balance
-from dynamics.scene import Integration, Outputs
-from dynamics.simulation import simulate
 from dynamics.types import StaticStatus
 
 EFFECTS = ("dynamic_misalignment", "dynamic_center_distance", "moving_application_point")

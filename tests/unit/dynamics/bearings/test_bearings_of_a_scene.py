@@ -261,8 +261,6 @@ def test_what_is_no_bearing_is_named():
     seat = scene.rolling_bearings[0]
     cases = {
         "axial_preload": lambda: RollingBearing("a", "rotor", ANGULAR, 0.1, -100.0),
-        "damping_ratio": lambda: replace(seat, damping_ratio=-1.0),
-        "position": lambda: replace(seat, position=1e4),
         "rolling_bearings[0].shaft": lambda: replace(scene, rolling_bearings=(replace(seat, shaft="x"),)),
         "rolling_bearings[0].position": lambda: replace(
             scene, rolling_bearings=(replace(seat, position=0.3),)

@@ -5,22 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene
-from rotors_on_bearings import (
-    KINDS,
-    ON,
-    PRELOAD,
-    SEATS,
-    pair_of,
-    rotor,
-)
+from rotors_on_bearings import KINDS, ON, PRELOAD, SEATS, pair_of, rotor
 
+from dynamics import Bushing, Integration, simulate
 from dynamics.assembly.assemble import assemble
-from dynamics.bearings import Bushing, RollingBearing
+from dynamics.bearings import RollingBearing
 from dynamics.bearings.matrix import check_matrix, congruent
 from dynamics.errors import InputError
 from dynamics.integrators import integrate, static_equilibrium
-from dynamics.scene import Integration
-from dynamics.simulation import simulate
 
 # Matrices of joints: what is positive semidefinite to rounding passes, what is not is refused.
 

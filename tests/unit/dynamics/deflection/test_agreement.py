@@ -1,7 +1,5 @@
 """Bodies and tables agree: the last tables are exact where the meshes run."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -11,13 +9,7 @@ from sliced_face import sliced_database
 from two_stage_scenes import two_stages
 
 from dynamics.deflection import Deflection, deflect
-from dynamics.deflection.agreement import (
-    CLOSEST,
-    PASSES,
-    TOLERANCE,
-    _with_knots,
-    in_agreement,
-)
+from dynamics.deflection.agreement import CLOSEST, PASSES, TOLERANCE, _with_knots, in_agreement
 from dynamics.settings.load_case import LoadCase
 
 CASES = (LoadCase("drive"), LoadCase("less", factor=0.4), LoadCase("coast", direction="coast"))
@@ -46,7 +38,7 @@ def misalignments(deflection: Deflection, mesh: int) -> list[float]:
     return [case.meshes[mesh].misalignment for case in deflection.cases]
 
 
-def test_every_mesh_runs_at_a_knot_of_its_table() -> None:
+def test_every_mesh_runs_at_a_knot_of_its_table():
     scene = two_stages()
     result, contacts = agreed(scene)
     assert result.reached and result.change <= TOLERANCE and result.passes < PASSES
@@ -56,7 +48,7 @@ def test_every_mesh_runs_at_a_knot_of_its_table() -> None:
             assert np.min(np.abs(last - m)) <= TOLERANCE * max(abs(m), 1e-6)
 
 
-def test_a_load_case_alone_runs_as_among_others() -> None:
+def test_a_load_case_alone_runs_as_among_others():
     """Its tables are about its own misalignment and reach to that of the scene, where rest begins."""
     alone, _ = agreed(two_stages(), CASES[:1])
     among, _ = agreed(two_stages())
@@ -66,7 +58,7 @@ def test_a_load_case_alone_runs_as_among_others() -> None:
         assert misalignments(alone.deflection, k)[0] == expected
 
 
-def test_it_is_the_balance_on_a_fine_table() -> None:
+def test_it_is_the_balance_on_a_fine_table():
     scene = two_stages()
     result, _ = agreed(scene)
     low = min(min(misalignments(result.deflection, k)) for k in range(2)) - 1e-6
@@ -78,12 +70,12 @@ def test_it_is_the_balance_on_a_fine_table() -> None:
         assert misalignments(result.deflection, k) == pytest.approx(misalignments(expected, k), rel=2e-4)
 
 
-def test_without_contact_over_the_face_there_is_nothing_to_agree() -> None:
+def test_without_contact_over_the_face_there_is_nothing_to_agree():
     first = deflect(two_stages(), CASES, POSITIONS)
     result = in_agreement(two_stages(), CASES, POSITIONS, {}, first)
     assert (result.deflection, result.passes, result.change) == (first, 1, 0.0)
 
 
-def test_a_closer_knot_takes_the_place_of_the_one_before() -> None:
+def test_a_closer_knot_takes_the_place_of_the_one_before():
     near = 0.5 * CLOSEST
     assert _with_knots([0.0, 1e-6], [1e-6 + near, 2e-6]) == [0.0, 1e-6 + near, 2e-6]

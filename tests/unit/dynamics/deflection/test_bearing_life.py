@@ -12,7 +12,6 @@ from dynamics.bearings.loaded_bearing import LoadedBearing
 from dynamics.bearings.rating_life import rating_life
 from dynamics.deflection import LoadCase, deflect, life_duration
 from dynamics.deflection.bearing_loads import bearing_life
-from dynamics.errors import InputError
 
 CAPACITY = 23400.0
 BALL = BallBearing(8, 0.0115, 0.0435, clearance=5e-6)
@@ -105,9 +104,3 @@ def test_without_a_capacity_no_life_is_known():
     assert all(math.isnan(load.rating_life) for case in found.cases for load in rows_of(case))
     light, heavy = (rows_of(case)[0].rating_life for case in deflect(on_rows(), cases, 3).cases)
     assert 6.0 < light / heavy <= 9.0  # 8 but for the clearance
-
-
-def test_a_capacity_out_of_its_bounds_is_refused():
-    with pytest.raises(InputError) as refused:
-        replace(ROW, dynamic_capacity=0.0)
-    assert refused.value.field == "dynamic_capacity"

@@ -10,17 +10,14 @@ from geared_scenes import BASE_RADIUS, gear_pair_scene, spring_table, with_gear
 from sliced_face import sliced_database
 from two_stage_scenes import mirrored_across, mirrored_along, two_stages
 
+from dynamics import Bushing, FreeRotation, Housing, RollingContact, TimeLaw
 from dynamics.assembly.assemble import assemble
-from dynamics.bearings import Bushing
 from dynamics.deflection import CAUSES, LoadCase, deflect, equivalent_load, loaded_scene
 from dynamics.deflection.deflect import cycle_times
 from dynamics.deflection.loaded_scene import with_loads
 from dynamics.deflection.rest_positions import rest_over
 from dynamics.errors import InputError
-from dynamics.forces import RollingContact
 from dynamics.integrators import static_equilibrium
-from dynamics.joints import FreeRotation, Housing
-from dynamics.loads import TimeLaw
 from dynamics.mechanism.flank_gradients import misalignment_gradient
 from dynamics.motion.observation import local_state
 
@@ -35,7 +32,6 @@ def sliced():
 
 
 def only(scene, case=None, positions=3):
-    """The one deflected case of a scene."""
     return deflect(scene, (case or LoadCase("load"),), positions).cases[0]
 
 

@@ -17,13 +17,11 @@ NOTHING = (0.0, 0.0, 0.0)
 
 
 def with_force(force=NOTHING, moment=NOTHING, shaft="mid", **changes):
-    """The two stages with a force called "belt"."""
     part = AppliedForce("belt", shaft, AT, tuple(map(float, force)), tuple(map(float, moment)), **changes)
     return two_stages(forces=(part,))
 
 
 def under(scene, *stated, **changes):
-    """The one deflected case of a scene, under which the force is as stated."""
     return deflect(scene, (LoadCase("load", forces=stated, **changes),), 3).cases[0]
 
 

@@ -7,16 +7,12 @@ import pytest
 from geared_scenes import gear_pair_scene, spring_table
 from planetary_scenes import driven_scene, planetary_scene, published_set
 
+from dynamics import FreeRotation, ImposedRotation, Inertia, Integration, Outputs, Shaft, TimeLaw, simulate
 from dynamics.assembly.assemble import assemble
 from dynamics.bearings import PlanetBearing
 from dynamics.integrators import integrate, static_equilibrium
-from dynamics.joints import FreeRotation, ImposedRotation
-from dynamics.loads import TimeLaw
 from dynamics.motion.observation import local_state
 from dynamics.results import EnergyAudit
-from dynamics.scene import Integration, Outputs
-from dynamics.shafts import Inertia, Shaft
-from dynamics.simulation import simulate
 
 MASS, STIFFNESS, SPEED = 2.0, 1e7, 300.0
 ARM = np.array([0.06, 0.08])

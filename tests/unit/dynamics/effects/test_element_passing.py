@@ -7,19 +7,14 @@ import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene, spring_table
 
+from dynamics import Coupling, Inertia, Integration, Shaft, TimeLaw, simulate, steady_states
 from dynamics.assembly.assemble import assemble
 from dynamics.bearings import BallBearing, RollerBearing, RollingBearing
 from dynamics.bearings.loaded_bearing import LoadedBearing
 from dynamics.bearings.passing_elements import element_passing
 from dynamics.errors import InputError
 from dynamics.integrators import static_equilibrium
-from dynamics.joints import Coupling
-from dynamics.loads import TimeLaw
 from dynamics.motion.observation import local_state
-from dynamics.periodic import steady_states
-from dynamics.scene import Integration
-from dynamics.shafts import Inertia, Shaft
-from dynamics.simulation import simulate
 
 ON = {"lateral": "on", "axial": "on", "tilt": "on", "element_passing": "on"}
 BALLS = BallBearing(count=7, diameter=11.5e-3, pitch_diameter=43.5e-3, clearance=1e-5)

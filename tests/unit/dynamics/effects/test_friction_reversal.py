@@ -9,18 +9,14 @@ from geared_scenes import BASE_RADIUS, RPM, gear_pair_scene, spring_table, with_
 from scipy.integrate import quad
 from sliced_face import rigid_share_database
 
+from dynamics import CoastFlank, FreeRotation, Integration, LoadTorque, Outputs, TimeLaw, simulate
 from dynamics.assembly.assemble import assemble
 from dynamics.integrators import static_equilibrium
-from dynamics.joints import FreeRotation
 from dynamics.linearize import natural_modes
-from dynamics.loads import LoadTorque, TimeLaw
-from dynamics.meshes import CoastFlank
 from dynamics.meshes.mesh_table import FIELDS
 from dynamics.meshes.sliding_friction import CREEP_SPEED
 from dynamics.meshes.technique import PlainTable
 from dynamics.motion.force_balance import force_balance
-from dynamics.scene import Integration, Outputs
-from dynamics.simulation import simulate
 
 MU, TORQUE, LEVER = 0.06, 100.0, 4e-3
 DRAG = MU * TORQUE / BASE_RADIUS * LEVER  # friction torque on either gear, N m

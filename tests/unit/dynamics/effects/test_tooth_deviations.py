@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 from geared_scenes import Table, gear_pair_scene, repeated, spring_table, with_mesh
 
+from dynamics import Scene, forced_response
 from dynamics.assembly.assemble import assemble
 from dynamics.influence import estimate_influences
-from dynamics.linearize import forced_response
 from dynamics.meshes.nominal_table import nominal_table, table_as_made
-from dynamics.scene import Scene
 from fe_contact import Gear
 from fe_contact.geometry.flank_tolerances import run_out_tolerance
 
@@ -35,7 +34,7 @@ def entry_of(scene: Scene) -> Any:
     return entry
 
 
-def test_the_mean_of_all_pitches_is_the_table_of_nominal_teeth() -> None:
+def test_the_mean_of_all_pitches_is_the_table_of_nominal_teeth():
     """A wave that closes over the period has no part in it."""
     made, nominal = eccentric(), spring_table(STIFFNESS, RIPPLE)
     mean = nominal_table(made)
@@ -46,13 +45,13 @@ def test_the_mean_of_all_pitches_is_the_table_of_nominal_teeth() -> None:
         np.testing.assert_allclose(getattr(mean, name), value, atol=1e-12 * np.max(np.abs(value)) + 1e-18)
 
 
-def test_a_table_of_many_pitches_switches_it_on_with_its_size() -> None:
+def test_a_table_of_many_pitches_switches_it_on_with_its_size():
     entry = entry_of(gear_pair_scene(eccentric()))
     assert entry.on and entry.possible and "after 20 base pitches" in entry.reason
     assert entry.influence == pytest.approx(ECCENTRICITY, rel=1e-9)
 
 
-def test_off_it_leaves_the_scene_of_nominal_teeth() -> None:
+def test_off_it_leaves_the_scene_of_nominal_teeth():
     """No order of a shaft remains, and the mesh orders are those of the nominal table."""
     speed = np.array([150.0, 200.0])
     off = forced_response(assemble(gear_pair_scene(eccentric(), effects={NAME: "off"})), speed, 3)
@@ -64,7 +63,7 @@ def test_off_it_leaves_the_scene_of_nominal_teeth() -> None:
 
 
 @pytest.mark.parametrize("choice", ["auto", "off"])
-def test_its_influence_is_estimated_whatever_is_chosen(choice: str) -> None:
+def test_its_influence_is_estimated_whatever_is_chosen(choice):
     """The order of the shaft goes, with all of its level, whether the scene has it or not."""
     found = estimate_influences(gear_pair_scene(eccentric(), effects={NAME: choice}))[NAME]
     assert found.on == (choice == "auto")
@@ -72,7 +71,7 @@ def test_its_influence_is_estimated_whatever_is_chosen(choice: str) -> None:
     assert found.level.order == pytest.approx(1.0 / TEETH) and found.level.decibels < -59.0
 
 
-def test_nominal_teeth_say_what_the_run_out_of_a_class_would_be() -> None:
+def test_nominal_teeth_say_what_the_run_out_of_a_class_would_be():
     """Half of F_r of ISO 1328-1 on both gears, beside the mesh order of the table; nothing switches it on."""
     gear = Gear(teeth=TEETH, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
     half = 0.5 * run_out_tolerance(gear, 6)
@@ -83,7 +82,7 @@ def test_nominal_teeth_say_what_the_run_out_of_a_class_would_be() -> None:
         assert "class 6 (assumed)" in entry.reason and entry.reason.endswith("mesh order 1, 0.999 µm")
 
 
-def test_knots_that_differ_from_pitch_to_pitch_have_no_mean() -> None:
+def test_knots_that_differ_from_pitch_to_pitch_have_no_mean():
     table = eccentric()
     moved = replace(table, position=table.position + 1e-3 * np.sin(np.pi * table.position / TEETH))
     entry = entry_of(with_mesh(gear_pair_scene(), table=moved))

@@ -1,19 +1,15 @@
 """What the tests of other engines share."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from mesh_elements import helical_element
 
-from dynamics.engines import MeshElement
-
 
 @pytest.fixture
-def element() -> MeshElement:
+def element():
     return helical_element()
 
 
 @pytest.fixture
-def rng() -> np.random.Generator:
+def rng():
     return np.random.default_rng(11)

@@ -1,7 +1,5 @@
 """The FMU's force is the library's: everywhere on the table, below it and beyond it."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -9,16 +7,13 @@ import pytest
 from fmu_instance import Instance
 from geared_scenes import BASE_RADIUS, gear_pair_scene, repeated, square_wave_table, with_mesh
 
+from dynamics import CoastFlank, Outputs, TimeLaw, simulate
 from dynamics.engines import MeshElement, mesh_element
 from dynamics.engines.fmu import export_fmu
 from dynamics.errors import InputError
-from dynamics.loads import TimeLaw
 from dynamics.meshes.flank_force import FlankLaws, flank_force
-from dynamics.meshes.gear_mesh import CoastFlank
 from dynamics.meshes.packed_tables import pack_tables
 from dynamics.meshes.technique import mirrored, table_at
-from dynamics.scene import Outputs
-from dynamics.simulation import simulate
 
 
 def hunting_table(period: int):
@@ -119,7 +114,7 @@ def test_the_recorded_angles_of_a_run_give_its_mesh_force(tmp_path):
     }
     driver, driven = (shaft.name for shaft in scene.shafts)
 
-    def along(rate: bool):
+    def along(rate):
         return sum(
             sign * (line[0] * state[rate][f"{shaft}.x"] + line[1] * state[rate][f"{shaft}.y"])
             for sign, shaft in ((1.0, driver), (-1.0, driven))

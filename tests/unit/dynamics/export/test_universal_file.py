@@ -7,12 +7,10 @@ import numpy as np
 import pytest
 from geared_scenes import RPM, gear_pair_scene
 
+from dynamics import Outputs, TimeLaw, simulate
 from dynamics.errors import InputError
 from dynamics.export import write_universal_file
-from dynamics.loads import TimeLaw
 from dynamics.orders import order_waterfall, window_spectrum
-from dynamics.scene import Outputs
-from dynamics.simulation import simulate
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")

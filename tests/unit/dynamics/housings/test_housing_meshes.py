@@ -1,13 +1,10 @@
 """Meshes of housings: made here, of other programs, and their surfaces."""
 
-from __future__ import annotations
-
 import builtins
 import re
 import subprocess
 import sys
 import threading
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -70,14 +67,14 @@ def written(path: Path) -> Path:
 
 
 @pytest.mark.parametrize("suffix", [".msh", ".inp", ".vtu", ".bdf"])
-def test_a_mesh_has_the_same_matrices_by_every_format(tmp_path: Path, suffix: str) -> None:
+def test_a_mesh_has_the_same_matrices_by_every_format(tmp_path, suffix):
     back = read_mesh(written(tmp_path / f"tube{suffix}"), "mm")
     assert back.points == pytest.approx(MESH.points, abs=1e-11)
     for found, expected in zip(*(mass_and_stiffness(m, GRAY_CAST_IRON) for m in (back, MESH)), strict=True):
         assert abs(found - expected).max() < 1e-8 * abs(expected).max()
 
 
-def test_a_node_set_is_a_foot(tmp_path: Path) -> None:
+def test_a_node_set_is_a_foot(tmp_path):
     back = read_mesh(written(tmp_path / "tube.inp"), "mm")
     base = Plane((0.0, 0.0, 0.0), (0.0, 0.0, -1.0)).triangles(back)
     assert np.array_equal(Group("foot").triangles(back), base)
@@ -86,7 +83,7 @@ def test_a_node_set_is_a_foot(tmp_path: Path) -> None:
         Group("feet").triangles(back)
 
 
-def test_physical_groups_of_triangles_keep_their_names(tmp_path: Path) -> None:
+def test_physical_groups_of_triangles_keep_their_names(tmp_path):
     base = Plane((0.0, 0.0, 0.0), (0.0, 0.0, -1.0)).triangles(MESH)
     cells = [("tetra10", MESH.tetrahedra), ("triangle6", base)]
     numbers = [np.full(len(data), kind) for kind, (_, data) in enumerate(cells, 1)]
@@ -101,7 +98,7 @@ def test_physical_groups_of_triangles_keep_their_names(tmp_path: Path) -> None:
     assert np.array_equal(Group("foot").triangles(back), base)
 
 
-def test_linear_tetrahedra_of_either_hand_get_nodes_in_the_middle_of_their_edges(tmp_path: Path) -> None:
+def test_linear_tetrahedra_of_either_hand_get_nodes_in_the_middle_of_their_edges(tmp_path):
     straight = box((0.1, 0.1, 0.1), (2, 2, 2))
     corners = straight.tetrahedra[:, :4].copy()
     corners[::2] = corners[::2][:, [1, 0, 2, 3]]
@@ -113,13 +110,13 @@ def test_linear_tetrahedra_of_either_hand_get_nodes_in_the_middle_of_their_edges
     assert mass.sum() == pytest.approx(GRAY_CAST_IRON.density * 1e-3, rel=1e-12)
 
 
-def test_a_regular_tetrahedron_is_the_best_shape() -> None:
+def test_a_regular_tetrahedron_is_the_best_shape():
     points = np.array([[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]])
     assert element_shape(type(MESH)(points, np.array([[0, 2, 1, 3, *6 * [0]]]))) == pytest.approx([1.0])
 
 
 @pytest.mark.parametrize("placed", [False, True])
-def test_all_nodes_of_an_abaqus_file_are_read(tmp_path: Path, placed: bool) -> None:
+def test_all_nodes_of_an_abaqus_file_are_read(tmp_path, placed):
     """In several blocks; in a part, where its instance places it."""
     rows = [f"{n}, {x!r}, {y!r}, {z!r}" for n, (x, y, z) in enumerate(MILLIMETERS.tolist(), 1)]
     cells = [", ".join(map(str, (n, *nodes))) for n, nodes in enumerate((MESH.tetrahedra + 1).tolist(), 1)]
@@ -167,7 +164,7 @@ def hexahedra() -> meshlane.Mesh:
         (lambda: meshlane.Mesh(MILLIMETERS, [("tetra10", MESH.tetrahedra)]), "inch", "unit"),
     ],
 )
-def test_a_bad_mesh_is_refused_by_name(tmp_path: Path, mesh, unit: str, field: str) -> None:
+def test_a_bad_mesh_is_refused_by_name(tmp_path, mesh, unit, field):
     mesh().write(tmp_path / "bad.vtu")
     with pytest.raises(InputError) as caught:
         read_mesh(tmp_path / "bad.vtu", unit)
@@ -175,7 +172,7 @@ def test_a_bad_mesh_is_refused_by_name(tmp_path: Path, mesh, unit: str, field: s
 
 
 @pytest.mark.parametrize("name", ["absent.vtu", "damaged.vtu", "damaged.msh", "damaged.inp", "housing.stl"])
-def test_a_file_that_is_no_mesh_is_one_clear_error(tmp_path: Path, name: str) -> None:
+def test_a_file_that_is_no_mesh_is_one_clear_error(tmp_path, name):
     if name != "absent.vtu":
         (tmp_path / name).write_bytes(b"\x00\x01 no mesh")
     with pytest.raises(InputError) as caught:
@@ -208,7 +205,7 @@ def bore(x: float, diameter: float) -> Bore:
     return Bore((x, 0.02, 0.03), (0.0, 1.0, 0.0), diameter, 0.04)
 
 
-def test_a_step_file_is_meshed_and_its_bores_are_seats(tmp_path: Path) -> None:
+def test_a_step_file_is_meshed_and_its_bores_are_seats(tmp_path):
     mesh = mesh_step(write_step(tmp_path / "block.step"), 0.025)
     assert mesh.points.max(axis=0) == pytest.approx([0.12, 0.08, 0.06], rel=1e-6)
     for x, diameter in ((0.035, 0.04), (0.085, 0.03)):
@@ -231,7 +228,7 @@ def test_a_step_file_is_meshed_and_its_bores_are_seats(tmp_path: Path) -> None:
     )
 
 
-def test_a_bore_shorter_than_the_elements_of_its_wall_is_a_fault_of_its_length() -> None:
+def test_a_bore_shorter_than_the_elements_of_its_wall_is_a_fault_of_its_length():
     """Two layers of 50 mm: a length of 30 mm holds none, whatever the diameter says."""
     short = Bore((0.0, 0.0, 0.05), (0.0, 0.0, 1.0), 0.08, 0.03)
     with pytest.raises(InputError, match=r"elements up to 0\.05 m along the axis") as caught:
@@ -243,7 +240,7 @@ def test_a_bore_shorter_than_the_elements_of_its_wall_is_a_fault_of_its_length()
     assert "(0% is)" not in str(wrong.value)
 
 
-def test_without_a_size_elements_fit_the_wall(tmp_path: Path) -> None:
+def test_without_a_size_elements_fit_the_wall(tmp_path):
     step = write_step(tmp_path / "block.step")
     assert mesh_step(step).freedoms > mesh_step(step, 0.1).freedoms
 
@@ -257,14 +254,14 @@ def test_without_a_size_elements_fit_the_wall(tmp_path: Path) -> None:
         ("import time; time.sleep(60)", "no answer within 0.5 s"),
     ],
 )
-def test_a_mesher_that_fails_says_why(tmp_path: Path, code: str, complaint: str) -> None:
+def test_a_mesher_that_fails_says_why(tmp_path, code, complaint):
     step = tmp_path / "any.step"
     step.write_text("")
     with pytest.raises(SolveError, match=complaint):
         mesh_step(step, 0.01, seconds=0.5 if "sleep" in code else 60.0, command=(sys.executable, "-c", code))
 
 
-def test_a_step_file_with_two_solids_or_none_is_refused(tmp_path: Path) -> None:
+def test_a_step_file_with_two_solids_or_none_is_refused(tmp_path):
     with pytest.raises(InputError) as caught:
         mesh_step(write_step(tmp_path / "two.step", "two"), 0.05)
     assert (caught.value.field, caught.value.value) == ("step_file.solids", 2)
@@ -273,7 +270,7 @@ def test_a_step_file_with_two_solids_or_none_is_refused(tmp_path: Path) -> None:
             mesh_step(tmp_path / name)
 
 
-def test_the_example_of_the_documentation_runs(tmp_path: Path, monkeypatch) -> None:
+def test_the_example_of_the_documentation_runs(tmp_path, monkeypatch):
     text = (Path(__file__).parents[4] / "docs" / "theory" / "housing.md").read_text(encoding="utf-8")
     (block,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
     write_step(tmp_path / "housing.step")
@@ -287,9 +284,7 @@ def test_the_example_of_the_documentation_runs(tmp_path: Path, monkeypatch) -> N
 
 @pytest.mark.skipif(bool(missing_protections()), reason="this system does not confine processes")
 @pytest.mark.parametrize("command", [read_mesh, mesh_step])
-def test_a_reader_that_is_led_elsewhere_reaches_nothing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: Callable[..., object]
-) -> None:
+def test_a_reader_that_is_led_elsewhere_reaches_nothing(tmp_path, monkeypatch, command):
     """Whatever a library makes of a file: here it reads a canary beside it and says what is in it."""
     canary = tmp_path / "canary"
     canary.write_text("canary")
@@ -316,12 +311,11 @@ LATER = ("pieces in other files", "a mesh of another program", "geometry in plac
 
 
 @pytest.fixture
-def opened(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """The files that are opened from here on."""
+def opened(monkeypatch):
     files: list[str] = []
     plain = builtins.open
 
-    def recorded(file: Any, *options: Any, **others: Any) -> Any:
+    def recorded(file, *options, **others):
         files.append(str(file))
         return plain(file, *options, **others)
 
@@ -330,7 +324,7 @@ def opened(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 
 @pytest.mark.parametrize("name", FOREIGN_MESHES)
-def test_it_is_refused_unread(tmp_path: Path, opened: list[str], name: str) -> None:
+def test_it_is_refused_unread(tmp_path, opened, name):
     """The refusal tells neither the other file, nor a folder, nor the words of a parser."""
     canary = write_canary(tmp_path)
     suffix, content = FOREIGN_MESHES[name]
@@ -338,7 +332,7 @@ def test_it_is_refused_unread(tmp_path: Path, opened: list[str], name: str) -> N
     file.write_bytes(content(canary))
     caught: list[Exception] = []
 
-    def read() -> None:
+    def read():
         with pytest.raises(InputError) as refusal:
             read_mesh(file, "mm")
         caught.append(refusal.value)
@@ -353,13 +347,13 @@ def test_it_is_refused_unread(tmp_path: Path, opened: list[str], name: str) -> N
 
 
 @pytest.mark.parametrize("name", [name for name in FOREIGN_MESHES if name not in LATER])
-def test_its_content_tells_before_it_is_read(tmp_path: Path, name: str) -> None:
+def test_its_content_tells_before_it_is_read(tmp_path, name):
     suffix, content = FOREIGN_MESHES[name]
     with pytest.raises(InputError, match=r"other files|document type|ENDDATA"):
         check_mesh_content(f"housing{suffix}", content(tmp_path))
 
 
-def test_words_that_look_like_it_are_no_matter(tmp_path: Path) -> None:
+def test_words_that_look_like_it_are_no_matter(tmp_path):
     """Comments and names; a text in Latin-1."""
     text = "** INCLUDE in a comment, \xfc\n*HEADING\nincluded\n*NODE\n1, 0, 0, 0\n*NSET, NSET=INCLUDE\n1\n"
     check_mesh_content("a.inp", text.encode("latin-1"))
@@ -372,7 +366,7 @@ def test_words_that_look_like_it_are_no_matter(tmp_path: Path) -> None:
 # Files of a housing's surface, as other programs read them.
 
 
-def test_a_reader_finds_quadratic_triangles_with_their_fields(tmp_path: Path) -> None:
+def test_a_reader_finds_quadratic_triangles_with_their_fields(tmp_path):
     mesh = box((0.3, 0.2, 0.1), (2, 2, 1))
     nodes, triangles = np.unique(mesh.surface, return_inverse=True)
     points, triangles = mesh.points[nodes], triangles.reshape(-1, 6)
@@ -392,14 +386,14 @@ def test_a_reader_finds_quadratic_triangles_with_their_fields(tmp_path: Path) ->
     assert file.stat().st_mode == plain.stat().st_mode
 
 
-def test_what_cannot_be_written_leaves_no_file(tmp_path: Path) -> None:
+def test_what_cannot_be_written_leaves_no_file(tmp_path):
     mesh = box((0.3, 0.2, 0.1), (1, 1, 1))
     with pytest.raises(ValueError, match="len"):
         write_surface(tmp_path / "mode.vtu", mesh.points, mesh.surface, {"motion": np.zeros((2, 3))})
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_coarse_surface_of_a_box_keeps_its_edges_and_its_volume() -> None:
+def test_a_coarse_surface_of_a_box_keeps_its_edges_and_its_volume():
     sides = (0.2, 0.1, 0.06)
     mesh = box(sides, (20, 12, 7))
     fine = DrawnSurface(mesh.points, mesh.surface[:, :3])
@@ -411,7 +405,7 @@ def test_a_coarse_surface_of_a_box_keeps_its_edges_and_its_volume() -> None:
     assert volume_of(drawn) == pytest.approx(np.prod(sides), rel=1e-9)
 
 
-def test_no_facet_of_a_coarse_surface_is_a_line() -> None:
+def test_no_facet_of_a_coarse_surface_is_a_line():
     sides = np.array([0.2, 0.1, 0.06])
     cells = (40, 20, 12)
     mesh = box((0.2, 0.1, 0.06), cells)
@@ -425,7 +419,7 @@ def test_no_facet_of_a_coarse_surface_is_a_line() -> None:
 
 
 @pytest.fixture
-def thin_wall() -> DrawnSurface:
+def thin_wall():
     """A closed case with a wall of 2 mm."""
     outer, inner = box((0.2, 0.1, 0.06), (40, 20, 12)), box((0.196, 0.096, 0.056), (41, 21, 13))
     on_outside, facets = np.unique(outer.surface[:, :3], return_inverse=True)
@@ -441,7 +435,7 @@ def volume_of(surface: DrawnSurface) -> float:
 
 
 @pytest.mark.parametrize("maximum", [600, 1000, 2000])
-def test_both_skins_of_a_thin_wall_are_kept_apart(thin_wall: DrawnSurface, maximum: int) -> None:
+def test_both_skins_of_a_thin_wall_are_kept_apart(thin_wall, maximum):
     """Facets are 5 to 10 times as wide as the wall: none joins its skins, nor does it thicken."""
     drawn, _ = thin_wall.reduced(maximum)
     assert 0.9 * maximum < len(drawn.facets) <= maximum < len(thin_wall.facets)
@@ -451,7 +445,7 @@ def test_both_skins_of_a_thin_wall_are_kept_apart(thin_wall: DrawnSurface, maxim
     assert volume_of(drawn) == pytest.approx(volume_of(thin_wall), rel=1e-3)
 
 
-def test_a_coarse_surface_lies_on_the_fine_one() -> None:
+def test_a_coarse_surface_lies_on_the_fine_one():
     """Facets of a tube are off its circles by the sagitta of what is left around them, no more."""
     mesh = tube(0.12, 0.1, 0.04, (200, 3, 10))
     drawn, _ = DrawnSurface(mesh.points, mesh.surface[:, :3]).reduced(1000)
@@ -465,7 +459,7 @@ def test_a_coarse_surface_lies_on_the_fine_one() -> None:
     assert volume_of(drawn) == pytest.approx(np.pi * (0.06**2 - 0.05**2) * 0.04, rel=5e-3)
 
 
-def test_what_hangs_together_in_no_surface_is_refused(tmp_path: Path) -> None:
+def test_what_hangs_together_in_no_surface_is_refused(tmp_path):
     rng = np.random.default_rng(3)
     soup = np.array([rng.choice(40, 4, replace=False) for _ in range(400)])
     meshlane.Mesh(rng.uniform(size=(40, 3)), [("tetra", soup)]).write(tmp_path / "soup.vtu")
@@ -474,7 +468,7 @@ def test_what_hangs_together_in_no_surface_is_refused(tmp_path: Path) -> None:
     assert caught.value.field == "mesh_file.facets"
 
 
-def test_a_thin_wall_is_seen_from_outside(thin_wall: DrawnSurface) -> None:
+def test_a_thin_wall_is_seen_from_outside(thin_wall):
     """Whichever of its sides comes first."""
     sides, wall = np.array([0.2, 0.1, 0.06]), 2e-3
     for order in (1, -1):

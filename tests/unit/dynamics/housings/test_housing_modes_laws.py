@@ -1,7 +1,5 @@
 """Reduced housings against closed forms and the whole mesh: frequencies, statics, response, damping."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import cache
@@ -81,11 +79,10 @@ def relative(found, expected) -> float:
 
 
 def nearest(frequencies: np.ndarray, expected: float) -> float:
-    """Deviation of the nearest frequency."""
     return float(np.abs(frequencies / expected - 1.0).min())
 
 
-def test_mass_and_stiffness_equal_the_vector_element_of_scikit_fem() -> None:
+def test_mass_and_stiffness_equal_the_vector_element_of_scikit_fem():
     mesh = tube(OUTER, BORE, LENGTH, (6, 1, 2))
     basis = Basis(MeshTet2(mesh.points.T, mesh.tetrahedra.T), ElementVector(ElementTetP2()), intorder=4)
     number = np.empty(mesh.freedoms, dtype=int)
@@ -97,11 +94,11 @@ def test_mass_and_stiffness_equal_the_vector_element_of_scikit_fem() -> None:
     assert abs(stiffness - expected).max() < 1e-12 * abs(expected).max()
 
 
-def test_a_clamped_tube_without_contraction_stretches_at_a_quarter_wave() -> None:
+def test_a_clamped_tube_without_contraction_stretches_at_a_quarter_wave():
     assert nearest(reduced(material=WITHOUT_CONTRACTION).frequency, SPEED / (4.0 * LENGTH)) < 5e-3
 
 
-def test_a_free_tube_twists_at_half_a_wave_and_has_six_rigid_motions() -> None:
+def test_a_free_tube_twists_at_half_a_wave_and_has_six_rigid_motions():
     free = reduced(feet=())
     assert nearest(free.frequency, math.sqrt(STEEL.lame[1] / STEEL.density) / (2.0 * LENGTH)) < 5e-3
     assert np.count_nonzero(free.frequency == 0.0) == 6
@@ -109,7 +106,7 @@ def test_a_free_tube_twists_at_half_a_wave_and_has_six_rigid_motions() -> None:
     assert free.checks.solve < 1e-9
 
 
-def test_frequencies_converge_with_the_fourth_power_of_the_size() -> None:
+def test_frequencies_converge_with_the_fourth_power_of_the_size():
     """Of quadratic elements; from above."""
     wave = SPEED / (4.0 * 0.4)
     feet, material = (FIXED,), WITHOUT_CONTRACTION
@@ -123,7 +120,7 @@ def test_frequencies_converge_with_the_fourth_power_of_the_size() -> None:
     assert math.log2(errors[1] / errors[2]) > 3.5
 
 
-def test_a_slender_cantilever_bends_as_a_beam() -> None:
+def test_a_slender_cantilever_bends_as_a_beam():
     outer, bore, length = 0.03, 0.02, 0.8
     mesh = tube(outer, bore, length, (8, 1, 36))
     seat = SeatBore("tip", Bore((0.0, 0.0, length / 2.0), (0.0, 0.0, 1.0), bore, length))
@@ -133,7 +130,7 @@ def test_a_slender_cantilever_bends_as_a_beam() -> None:
     assert found[:2] == pytest.approx(expected, rel=5e-3)
 
 
-def test_a_free_square_plate_vibrates_as_published() -> None:
+def test_a_free_square_plate_vibrates_as_published():
     """13.468, 19.596, 24.271: thin plate, Poisson's ratio 0.3 (Leissa, NASA SP-160, table 4.79)."""
     side, thickness = 0.5, 0.005
     plate = box((side, side, thickness), (16, 16, 1))
@@ -144,7 +141,7 @@ def test_a_free_square_plate_vibrates_as_published() -> None:
     )
 
 
-def test_a_free_box_without_contraction_stretches_at_half_a_wave() -> None:
+def test_a_free_box_without_contraction_stretches_at_half_a_wave():
     found = loose_frequencies(box((0.3, 0.2, 0.1), (4, 3, 2)), WITHOUT_CONTRACTION, 12)
     assert nearest(found, SPEED / 0.6) < 5e-3
 
@@ -152,7 +149,7 @@ def test_a_free_box_without_contraction_stretches_at_half_a_wave() -> None:
 @pytest.mark.parametrize(
     "seat", [UPPER, SEAT, replace(UPPER, ring=Ring.RIGID)], ids=["upper", "whole bore", "rigid ring"]
 )
-def test_static_deflection_of_a_seat_is_that_of_the_whole_mesh(seat: SeatBore) -> None:
+def test_static_deflection_of_a_seat_is_that_of_the_whole_mesh(seat):
     chosen = (replace(seat, motions=6),)
     whole = assemble(housing(seats=chosen))
     direct = whole.seats @ spsolve(sp.csc_array(whole.stiffness), whole.seats.T.toarray())
@@ -160,7 +157,7 @@ def test_static_deflection_of_a_seat_is_that_of_the_whole_mesh(seat: SeatBore) -
     assert relative(found, direct) < 1e-9
 
 
-def test_response_of_seats_and_surface_is_that_of_the_whole_mesh_with_the_residual_alone() -> None:
+def test_response_of_seats_and_surface_is_that_of_the_whole_mesh_with_the_residual_alone():
     whole, small, loss = assemble(housing()), reduced(), 1e-7
     small = replace(small, damping=loss * small.stiffness)
     frequencies = np.linspace(0.1, 0.7, 12) * small.frequency[-1]
@@ -184,7 +181,7 @@ def test_response_of_seats_and_surface_is_that_of_the_whole_mesh_with_the_residu
     assert max(off[False]) > 0.05
 
 
-def test_a_free_housing_responds_as_the_whole_mesh() -> None:
+def test_a_free_housing_responds_as_the_whole_mesh():
     whole, small = assemble(housing(feet=())), reduced(feet=(), damping=ModalDamping((0.0,)))
     frequencies = np.array([0.3, 0.7]) * small.frequency[-1]
     found = receptance(small, frequencies)
@@ -194,7 +191,7 @@ def test_a_free_housing_responds_as_the_whole_mesh() -> None:
         assert np.linalg.norm(response[:5] - exact) < 0.01 * np.linalg.norm(exact)
 
 
-def test_matrices_are_symmetric_and_responses_reciprocal() -> None:
+def test_matrices_are_symmetric_and_responses_reciprocal():
     """Between all motions of two seats, at a resonance too."""
     lower = SeatBore("lower", Bore((0.0, 0.0, 0.025), (0.0, 0.0, 1.0), BORE, 0.05), motions=3)
     two = reduced(seats=(UPPER, lower), feet=())
@@ -204,7 +201,7 @@ def test_matrices_are_symmetric_and_responses_reciprocal() -> None:
         assert np.array_equal(matrix, matrix.T)
 
 
-def test_mass_center_and_inertia_are_those_of_a_hollow_cylinder() -> None:
+def test_mass_center_and_inertia_are_those_of_a_hollow_cylinder():
     body = reduce_housing(housing(mesh=tube(OUTER, BORE, LENGTH, (24, 1, 2)))).body
     squares = (OUTER**2 + BORE**2) / 4.0
     mass = math.pi / 4.0 * (OUTER**2 - BORE**2) * LENGTH * STEEL.density
@@ -215,7 +212,7 @@ def test_mass_center_and_inertia_are_those_of_a_hollow_cylinder() -> None:
 
 
 @pytest.mark.parametrize("ring", list(Ring))
-def test_seats_and_surface_follow_a_rigid_motion(ring: Ring) -> None:
+def test_seats_and_surface_follow_a_rigid_motion(ring):
     """The mass of the coordinates that move the seats as one body is that of the body."""
     free = reduced(feet=(), seats=(replace(UPPER, ring=ring, motions=6),))
     assert free.checks.seat_rigid < 1e-12
@@ -239,7 +236,7 @@ def about_seat(free: ReducedHousing) -> np.ndarray:
     return np.block([[free.body.mass * np.eye(3), coupling.T], [coupling, inertia]])
 
 
-def test_the_motion_of_a_seat_is_weighted_by_area() -> None:
+def test_the_motion_of_a_seat_is_weighted_by_area():
     """u_x = z^2 over a bore of length l and radius r about c, on layers of unequal length.
 
     x = c^2 + l^2/12, tilt_y = 2 c (l^2/12)/(l^2/12 + r^2/2): the wall neither moves along z nor shears.
@@ -255,7 +252,7 @@ def test_the_motion_of_a_seat_is_weighted_by_area() -> None:
     assert found == pytest.approx([middle**2 + spread, 0.0, 0.0, 0.0, tilt, 0.0], rel=1e-3, abs=1e-12)
 
 
-def test_a_rigid_ring_is_stiffer() -> None:
+def test_a_rigid_ring_is_stiffer():
     soft, stiff = (
         receptance(reduced(seats=(replace(UPPER, ring=r),)), np.zeros(1))[0, :5].real for r in Ring
     )
@@ -267,7 +264,7 @@ def spring(stiffness: float) -> Mount:
     return Mount(tuple(map(tuple, np.diag(3 * [stiffness] + 3 * [stiffness * OUTER**2]).tolist())))
 
 
-def test_stiff_mounts_are_a_fixed_foot_and_soft_ones_carry_a_rigid_body() -> None:
+def test_stiff_mounts_are_a_fixed_foot_and_soft_ones_carry_a_rigid_body():
     stiff = reduced(feet=(replace(FIXED, mount=spring(1e14)),))
     assert stiff.frequency[:6] == pytest.approx(reduced().frequency[:6], rel=1e-3)
     soft = reduced(feet=(replace(FIXED, mount=spring(1e5)),))
@@ -275,12 +272,12 @@ def test_stiff_mounts_are_a_fixed_foot_and_soft_ones_carry_a_rigid_body() -> Non
     assert nearest(soft.frequency, reduced(feet=()).frequency[6]) > 1e-3  # its foot is rigid
 
 
-def test_mounts_that_hold_one_direction_leave_five_rigid_motions() -> None:
+def test_mounts_that_hold_one_direction_leave_five_rigid_motions():
     vertical = Mount(((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1e6)))
     assert np.count_nonzero(reduced(feet=(replace(FIXED, mount=vertical),)).frequency == 0.0) == 5
 
 
-def test_material_loses_half_its_factor_and_nothing_in_mounts() -> None:
+def test_material_loses_half_its_factor_and_nothing_in_mounts():
     assert reduced().damping_ratio == pytest.approx(0.005)
     free = reduced(feet=())
     assert free.damping_ratio[:6] == pytest.approx(0.0)
@@ -289,7 +286,7 @@ def test_material_loses_half_its_factor_and_nothing_in_mounts() -> None:
     assert soft.damping_ratio[:6].max() < 1e-3 * soft.damping_ratio[-1]
 
 
-def test_damping_by_mode_is_what_the_reduced_matrices_have() -> None:
+def test_damping_by_mode_is_what_the_reduced_matrices_have():
     small = reduced(damping=ModalDamping((0.01, 0.02)))
     circular, shape = small.modes
     damping = shape.T @ small.damping @ shape
@@ -297,7 +294,7 @@ def test_damping_by_mode_is_what_the_reduced_matrices_have() -> None:
     assert relative(damping, expected) < 1e-9
 
 
-def test_named_points_move_as_the_surface_and_normals_point_outward() -> None:
+def test_named_points_move_as_the_surface_and_normals_point_outward():
     place = (OUTER / 2.0, 0.0, LENGTH)
     small = reduced(feet=(), points=Points({"top": place}))
     (point,) = small.points
@@ -341,7 +338,7 @@ class Points(dict):
         ({"modes": 600}, "modes"),
     ],
 )
-def test_what_is_not_on_the_mesh_is_refused_by_name(changes, field: str) -> None:
+def test_what_is_not_on_the_mesh_is_refused_by_name(changes, field):
     with pytest.raises(InputError) as caught:
         reduce_housing(housing(**changes))
     assert caught.value.field == field
@@ -351,7 +348,7 @@ def test_what_is_not_on_the_mesh_is_refused_by_name(changes, field: str) -> None
     ("status", "complaint"),
     [(ModeStatus.ITERATION_LIMIT, "19 of 20 modes"), (ModeStatus.ILL_CONDITIONED, "1.0e-03, above 1e-06")],
 )
-def test_modes_that_did_not_converge_are_an_error_with_their_residual(status, complaint, monkeypatch) -> None:
+def test_modes_that_did_not_converge_are_an_error_with_their_residual(status, complaint, monkeypatch):
     """As the solver reports them: deflections by a wrong factor, and a search that ended early."""
 
     def ended_early(matrix, count, *args, **options):

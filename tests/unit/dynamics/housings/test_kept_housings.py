@@ -1,7 +1,5 @@
 """Reduced housings on disk, in matrices of other programs, and what they cost."""
 
-from __future__ import annotations
-
 import math
 import time
 from dataclasses import replace
@@ -51,7 +49,7 @@ HOUSING = MeshedHousing(
 )
 
 
-def test_the_second_time_comes_from_the_cache_to_the_last_bit(tmp_path: Path, monkeypatch) -> None:
+def test_the_second_time_comes_from_the_cache_to_the_last_bit(tmp_path, monkeypatch):
     first = reduced_housing(HOUSING, tmp_path)
     monkeypatch.setattr(kept_module, "reduce_housing", lambda _: pytest.fail("computed again"))
     again = reduced_housing(HOUSING, tmp_path, CostLimit(0.0, 0.0))
@@ -63,7 +61,7 @@ def test_the_second_time_comes_from_the_cache_to_the_last_bit(tmp_path: Path, mo
     assert np.array_equal(again.points[0].motion, first.points[0].motion)
 
 
-def test_a_damaged_file_is_computed_again(tmp_path: Path) -> None:
+def test_a_damaged_file_is_computed_again(tmp_path):
     first = reduced_housing(HOUSING, tmp_path)
     (file,) = tmp_path.glob("housing-*.nc")
     file.write_bytes(file.read_bytes()[:-400])
@@ -72,7 +70,7 @@ def test_a_damaged_file_is_computed_again(tmp_path: Path) -> None:
         ReducedHousing.from_netcdf(tmp_path / "absent.nc")
 
 
-def test_everything_that_decides_the_result_is_in_the_key() -> None:
+def test_everything_that_decides_the_result_is_in_the_key():
     moved = replace(HOUSING.mesh, points=HOUSING.mesh.points * (1.0 + 1e-15))
     changes = [
         {"mesh": moved},
@@ -89,14 +87,14 @@ def test_everything_that_decides_the_result_is_in_the_key() -> None:
 
 
 @pytest.mark.parametrize(("limit", "field"), [((1e-6, 1e12), "seconds"), ((1e6, 1.0), "bytes")])
-def test_what_would_cost_too_much_is_refused_before_it_runs(limit, field: str, monkeypatch) -> None:
+def test_what_would_cost_too_much_is_refused_before_it_runs(limit, field, monkeypatch):
     monkeypatch.setattr(kept_module, "reduce_housing", lambda _: pytest.fail("computed"))
     with pytest.raises(InputError, match=f"{HOUSING.mesh.freedoms} freedoms, 6 modes") as caught:
         reduced_housing(HOUSING, None, CostLimit(*limit))
     assert caught.value.field == f"predicted_{field}"
 
 
-def test_cost_grows_with_freedoms_modes_and_seats() -> None:
+def test_cost_grows_with_freedoms_modes_and_seats():
     sizes = ((50_000, 40, 20), (100_000, 40, 20), (100_000, 80, 20), (100_000, 80, 40))
     costs = [reduction_cost(*size) for size in sizes]
     for less, more in pairwise(costs):
@@ -104,7 +102,7 @@ def test_cost_grows_with_freedoms_modes_and_seats() -> None:
     assert costs[1].seconds > 2.0 * costs[0].seconds
 
 
-def test_the_predicted_cost_of_two_sizes_is_in_the_ratio_of_the_measured() -> None:
+def test_the_predicted_cost_of_two_sizes_is_in_the_ratio_of_the_measured():
     """Each is within 1.3 of what it takes, their ratio within the square; the lesser of two counts."""
     sizes = [meshed(), meshed((24, 1, 10))]
     minimum = [math.inf, math.inf]
@@ -120,7 +118,7 @@ def test_the_predicted_cost_of_two_sizes_is_in_the_ratio_of_the_measured() -> No
     assert 1.0 / WITHIN**2 < (large / small) / (minimum[1] / minimum[0]) < WITHIN**2
 
 
-def test_the_cost_is_kept_with_the_housing_and_told_before(tmp_path: Path) -> None:
+def test_the_cost_is_kept_with_the_housing_and_told_before(tmp_path):
     told = []
     first = reduced_housing(HOUSING, tmp_path, expected=told.append)
     assert first.cost.seconds > 0.0
@@ -153,7 +151,7 @@ def saved(path: Path, reduced: ReducedHousing):
 
 
 @pytest.mark.parametrize("suffix", [".npz", ".mtx", ".op4", ".pch"])
-def test_matrices_of_another_program_give_the_same_housing(tmp_path: Path, suffix: str) -> None:
+def test_matrices_of_another_program_give_the_same_housing(tmp_path, suffix):
     reduced = reduced_housing(HOUSING)
     back = housing_of_matrices(saved(tmp_path / f"housing{suffix}", reduced), reduced.seats)
     frequencies = np.array([0.0, 0.5]) * reduced.frequency[-1]
@@ -163,7 +161,7 @@ def test_matrices_of_another_program_give_the_same_housing(tmp_path: Path, suffi
     assert np.abs(receptance(back, frequencies)[:, :5] - expected).max() < 1e-5 * np.abs(expected).max()
 
 
-def test_stiffness_alone_is_a_housing_without_mass() -> None:
+def test_stiffness_alone_is_a_housing_without_mass():
     seats = reduced_housing(HOUSING).seats
     stiffness = np.diag([1e8, 1e8, 1e8, 1e5, 1e5])
     static = housing_of_matrices(ReducedMatrices(stiffness), seats)
@@ -172,7 +170,7 @@ def test_stiffness_alone_is_a_housing_without_mass() -> None:
     assert found == pytest.approx(np.broadcast_to(np.linalg.inv(stiffness), (2, 5, 5)))
 
 
-def test_matrices_without_damping_get_that_of_the_material() -> None:
+def test_matrices_without_damping_get_that_of_the_material():
     reduced = reduced_housing(HOUSING)
     found = housing_of_matrices(ReducedMatrices(reduced.stiffness, reduced.mass), reduced.seats)
     assert np.abs(found.damping - reduced.damping).max() < 1e-9 * np.abs(reduced.damping).max()
@@ -188,7 +186,7 @@ def test_matrices_without_damping_get_that_of_the_material() -> None:
         ({"stiffness": np.eye(4)}, "seats"),
     ],
 )
-def test_matrices_that_are_no_housing_are_refused_by_name(tmp_path: Path, arrays, field: str) -> None:
+def test_matrices_that_are_no_housing_are_refused_by_name(tmp_path, arrays, field):
     np.savez(tmp_path / "bad.npz", **arrays)
     seats = reduced_housing(HOUSING).seats
     with pytest.raises(InputError) as caught:
@@ -196,7 +194,7 @@ def test_matrices_that_are_no_housing_are_refused_by_name(tmp_path: Path, arrays
     assert caught.value.field == field
 
 
-def test_a_file_without_matrices_is_one_clear_error(tmp_path: Path) -> None:
+def test_a_file_without_matrices_is_one_clear_error(tmp_path):
     (tmp_path / "text.npz").write_text("no archive")
     for name in ("text.npz", "absent.npz"):
         with pytest.raises(InputError, match="matrix_file"):

@@ -1,7 +1,5 @@
 """Bores and planes of the solid in a STEP file: what they are, however the file stands and is split."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path
@@ -10,7 +8,7 @@ import numpy as np
 import pytest
 
 from dynamics.errors import InputError, SolveError
-from dynamics.housings import StepSolid, step_solid
+from dynamics.housings import step_solid
 
 WRITE = """
 import sys, gmsh
@@ -48,11 +46,11 @@ def write(file: Path, *options: str) -> Path:
 
 
 @pytest.fixture(scope="module")
-def solid(tmp_path_factory: pytest.TempPathFactory) -> StepSolid:
+def solid(tmp_path_factory):
     return step_solid(write(tmp_path_factory.mktemp("step") / "block.step"))
 
 
-def test_bores_are_those_that_are_round_and_hollow(solid: StepSolid) -> None:
+def test_bores_are_those_that_are_round_and_hollow(solid):
     """Halves are one; the boss and the quarter along an edge are none."""
     found = sorted((bore.diameter, bore.length, *bore.position) for bore in solid.bores)
     assert np.array(found) == pytest.approx(
@@ -69,7 +67,7 @@ def test_bores_are_those_that_are_round_and_hollow(solid: StepSolid) -> None:
         assert np.abs(bore.axis) == pytest.approx([0.0, 1.0, 0.0], abs=1e-9)
 
 
-def test_volume_surface_and_planes_are_those_of_the_drawing(solid: StepSolid) -> None:
+def test_volume_surface_and_planes_are_those_of_the_drawing(solid):
     assert solid.volume == pytest.approx(VOLUME, rel=1e-9)
     down = [face for face in solid.planes if face.plane.normal[2] < -0.9]
     assert [face.area for face in down] == pytest.approx([0.08 * (0.12 - 8e-3)], rel=1e-9)
@@ -82,15 +80,15 @@ def test_volume_surface_and_planes_are_those_of_the_drawing(solid: StepSolid) ->
 
 
 @pytest.mark.law
-def test_a_turned_file_has_the_same_bores(solid: StepSolid, tmp_path: Path) -> None:
+def test_a_turned_file_has_the_same_bores(solid, tmp_path):
     turned = step_solid(write(tmp_path / "turned.step", "turned"))
     assert turned.volume == pytest.approx(solid.volume, rel=1e-9)
     assert turned.surface == pytest.approx(solid.surface, rel=1e-6)
 
-    def sizes(of: StepSolid) -> np.ndarray:
+    def sizes(of):
         return np.array(sorted((bore.diameter, bore.length) for bore in of.bores))
 
-    def distances(of: StepSolid) -> np.ndarray:
+    def distances(of):
         middle = np.array([bore.position for bore in sorted(of.bores, key=lambda bore: bore.diameter)])
         return np.linalg.norm(middle[:, None] - middle, axis=-1)
 
@@ -98,7 +96,7 @@ def test_a_turned_file_has_the_same_bores(solid: StepSolid, tmp_path: Path) -> N
     assert distances(turned) == pytest.approx(distances(solid), abs=1e-8)
 
 
-def test_what_is_not_one_solid_is_refused(tmp_path: Path) -> None:
+def test_what_is_not_one_solid_is_refused(tmp_path):
     with pytest.raises(InputError) as caught:
         step_solid(write(tmp_path / "two.step", "two"))
     assert (caught.value.field, caught.value.value) == ("step_file.solids", 2)

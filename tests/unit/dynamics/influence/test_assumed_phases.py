@@ -1,7 +1,5 @@
 """What the effect ledger says of angles that nobody states, against the response at every angle."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -10,11 +8,10 @@ import pytest
 from drawn_trains import Train
 from geared_scenes import square_wave_table
 
+from dynamics import Bushing, LoadTorque, TimeLaw
 from dynamics.assembly.assemble import assemble
-from dynamics.bearings import Bushing
 from dynamics.influence import with_assumed_phases
 from dynamics.linearize import harmonic_response
-from dynamics.loads import LoadTorque, TimeLaw
 
 SPEED = 60.0
 

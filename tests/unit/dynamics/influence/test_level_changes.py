@@ -1,33 +1,25 @@
 """Sizes of effects in dB: of nothing 0, and what runs with and without them show."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 from geared_scenes import RPM, gear_pair_scene, with_gear
 
-from dynamics.ablation import ablate
+from dynamics import Outputs, Scene, TimeLaw, ablate, forced_response
 from dynamics.acoustics import a_weighting
-from dynamics.assembly.assemble import System, assemble
+from dynamics.assembly.assemble import assemble
 from dynamics.influence import decide_effects, estimate_influences, neglected_check, response_influences
 from dynamics.influence.level_change import MAX, BearingForces, level_change
-from dynamics.influence.linear_figures import LinearFigures, linear_figures
-from dynamics.influence.operating_conditions import OperatingCondition, conditions_at
-from dynamics.linearize import forced_response
-from dynamics.loads import TimeLaw
-from dynamics.scene import Outputs, Scene
+from dynamics.influence.linear_figures import linear_figures
+from dynamics.influence.operating_conditions import conditions_at
 
 LINES = {1.0: 4.0, 2.0: 9.0, 3.0: 1e-9}
 
 
 @dataclass(frozen=True)
 class OnBearing:
-    """Force along x on one bearing, A-weighted."""
-
     bearing: str
     name: str = "force on one bearing"
     unit: str = "dB(A)"
@@ -51,7 +43,7 @@ def helical(rpm: float = 2000.0, **changes: object) -> Scene:
 
 
 @pytest.mark.law
-def test_what_changes_nothing_is_0_db() -> None:
+def test_what_changes_nothing_is_0_db():
     for lines in (LINES, {}, {1.0: 0.0}):
         change = level_change(lines, lines, "force", "dB")
         assert (change.decibels, change.relative) == (0.0, 0.0)
@@ -61,7 +53,7 @@ def test_what_changes_nothing_is_0_db() -> None:
 
 
 @pytest.mark.law
-def test_levels_follow_amplitudes() -> None:
+def test_levels_follow_amplitudes():
     """The order with the largest change of amplitude counts; with and without change places."""
     change = level_change(LINES, {1.0: 4.0, 2.0: 36.0, 3.0: 1e-3}, "force", "dB(A)")
     assert (change.order, change.relative) == (2.0, 1.0)
@@ -76,7 +68,7 @@ def test_levels_follow_amplitudes() -> None:
 
 @pytest.mark.law
 @pytest.mark.parametrize("quantity", [None, OnBearing("input.left")], ids=["all", "one bearing"])
-def test_runs_with_and_without_an_effect_differ_by_what_the_ledger_says(quantity: OnBearing | None) -> None:
+def test_runs_with_and_without_an_effect_differ_by_what_the_ledger_says(quantity):
     scene = replace(helical(), quantity=quantity)
     ablation = ablate(scene, only=["axial", "tilt", "gyroscopic"])
     seen = 0
@@ -94,7 +86,7 @@ def test_runs_with_and_without_an_effect_differ_by_what_the_ledger_says(quantity
     assert seen >= 2
 
 
-def test_a_response_is_sized_at_its_speeds() -> None:
+def test_a_response_is_sized_at_its_speeds():
     """As a run at that speed is, and not as at another one."""
     scene = helical()
     slow, fast = (
@@ -110,14 +102,12 @@ def test_a_response_is_sized_at_its_speeds() -> None:
 
 
 @pytest.mark.law
-def test_a_response_costs_its_lines_and_the_systems_without_an_effect(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_response_costs_its_lines_and_the_systems_without_an_effect(monkeypatch):
     """Each system at 32 speeds at most; those that an effect leaves as they are are not solved."""
     system, speed = assemble(helical()), np.linspace(10.0, 500.0, 200)
     solved: list[int] = []
 
-    def counted(own: System, conditions: Sequence[OperatingCondition]) -> LinearFigures:
+    def counted(own, conditions):
         solved.append(sum(condition.speed.size for condition in conditions))
         return linear_figures(own, conditions)
 
@@ -134,7 +124,7 @@ def test_a_response_costs_its_lines_and_the_systems_without_an_effect(
     assert lines[0] / lines[1] == pytest.approx(many / few)
 
 
-def test_the_quantity_of_a_scene_decides_its_effects() -> None:
+def test_the_quantity_of_a_scene_decides_its_effects():
     """What is small in it is neglected, what is large is not."""
     scene = helical(tolerance=0.5)
     sizes = estimate_influences(scene)

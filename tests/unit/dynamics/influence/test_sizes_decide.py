@@ -1,7 +1,5 @@
 """Sizes of effects that decide by a tolerance of levels, are kept by content, and are screened."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -10,19 +8,16 @@ from flexible_scenes import flexible_pair
 from geared_scenes import RPM, gear_pair_scene, square_wave_table, with_gear
 from planetary_scenes import driven_scene, published_set
 
-from dynamics.ablation import ablate
+from dynamics import Integration, Outputs, Scene, TimeLaw, ablate, simulate
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.influence import decide_effects, estimate_influences, neglected_check
 from dynamics.influence.content_key import content_key
-from dynamics.influence.neglected_check import Decision
 from dynamics.linearize import partial_fractions
 from dynamics.linearize.parametric_response import parametric_response
 from dynamics.linearize.steady_vibration import excited
-from dynamics.loads import TimeLaw
-from dynamics.scene import Integration, Outputs, Scene
 from dynamics.shafts import BeamSection
-from dynamics.simulation import simulate, to_file
+from dynamics.simulation import to_file
 
 QUICK = Outputs(energy_audit=False, receipt="minimal")
 
@@ -36,7 +31,7 @@ def helical(rpm: float = 2000.0, **changes: object) -> Scene:
     return replace(scene, bushings=tuple(replace(part, axial_stiffness=1e8) for part in scene.bushings))
 
 
-def test_effects_called_for_are_neglected_up_to_half_of_the_tolerance_together() -> None:
+def test_effects_called_for_are_neglected_up_to_half_of_the_tolerance_together():
     scene = helical()
     sizes = estimate_influences(scene)
     axial = sizes["axial"].decibels
@@ -55,7 +50,7 @@ def test_effects_called_for_are_neglected_up_to_half_of_the_tolerance_together()
     assert check["holds"] and run.case["level_tolerance"] == 2.1 * axial
 
 
-def test_an_effect_that_no_rule_calls_for_is_on_beyond_the_tolerance_alone() -> None:
+def test_an_effect_that_no_rule_calls_for_is_on_beyond_the_tolerance_alone():
     """Thick shafts yield less than the rule asks for, and are seen."""
     speed, thick = TimeLaw.constant(2000.0 * RPM), BeamSection(0.2, 0.12)
     scene = replace(flexible_pair(thick, gear=0.02, speed=speed, duration=0.02, outputs=QUICK), effects={})
@@ -66,14 +61,14 @@ def test_an_effect_that_no_rule_calls_for_is_on_beyond_the_tolerance_alone() -> 
         assert decision.scene.effects.get("flexible_shafts") == choice
 
 
-def test_where_flanks_part_nothing_is_neglected_by_a_level() -> None:
+def test_where_flanks_part_nothing_is_neglected_by_a_level():
     scene = helical(14400.0)  # mesh order 1 meets the mode of the mesh
     sizes = estimate_influences(scene)
     assert sizes["axial"].parts and sizes["axial"].beyond.startswith("flanks part")
     assert "off" not in decide_effects(replace(scene, level_tolerance=3.0)).scene.effects.values()
 
 
-def test_a_relative_tolerance_comes_first_and_bounds_are_named() -> None:
+def test_a_relative_tolerance_comes_first_and_bounds_are_named():
     scene = helical(tolerance=1e-6)
     assert "off" not in decide_effects(replace(scene, level_tolerance=3.0)).scene.effects.values()
     for wrong in (0.0, 3.5, -1.0):
@@ -81,12 +76,12 @@ def test_a_relative_tolerance_comes_first_and_bounds_are_named() -> None:
             replace(scene, level_tolerance=wrong)
 
 
-def test_sizes_are_computed_once_for_one_content(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_sizes_are_computed_once_for_one_content(monkeypatch):
     """Copies of equal content share them, also with other steps; whatever counts makes another key."""
     scene, count = helical(), [0]
     computed = neglected_check.linear_figures
 
-    def counted(*parts: object) -> object:
+    def counted(*parts):
         count[0] += 1
         return computed(*parts)
 
@@ -100,7 +95,7 @@ def test_sizes_are_computed_once_for_one_content(monkeypatch: pytest.MonkeyPatch
     assert count[0] > before
 
 
-def test_a_minimal_receipt_has_sizes_of_what_is_decided_alone() -> None:
+def test_a_minimal_receipt_has_sizes_of_what_is_decided_alone():
     """And decides alike: effects that the scene chooses take no estimate."""
     lean = helical(level_tolerance=0.1, effects={"tilt": "off"})
     full = replace(lean, outputs=Outputs(energy_audit=False))
@@ -110,11 +105,11 @@ def test_a_minimal_receipt_has_sizes_of_what_is_decided_alone() -> None:
     assert few.scene.effects == all_sizes.scene.effects
 
 
-def test_an_ablation_decides_once_for_the_scene_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_ablation_decides_once_for_the_scene_itself(monkeypatch):
     """Toggled scenes decide nothing anew: each differs from the scene by one effect."""
     decision: list[float | None] = []
 
-    def recorded(scene: Scene) -> Decision:
+    def recorded(scene):
         decision.append(scene.level_tolerance)
         return decide_effects(scene)
 
@@ -124,7 +119,7 @@ def test_an_ablation_decides_once_for_the_scene_itself(monkeypatch: pytest.Monke
     assert decision and set(decision) == {None}
 
 
-def test_every_field_that_sizes_read_is_part_of_the_key() -> None:
+def test_every_field_that_sizes_read_is_part_of_the_key():
     scene = helical()
     table = scene.meshes[0].table
     deflection = np.array(table.deflection)
@@ -148,14 +143,14 @@ class Unknown:
     name, unit = "anything", "dB"
 
     def squares(self, forces: object) -> np.ndarray:
-        return np.asarray(0.5 * np.sum(np.abs(forces.bearing_force[:, :3]) ** 2, axis=(0, 1)))  # type: ignore[attr-defined]
+        return np.asarray(0.5 * np.sum(np.abs(forces.bearing_force[:, :3]) ** 2, axis=(0, 1)))
 
 
-def test_what_has_no_known_content_is_not_kept() -> None:
+def test_what_has_no_known_content_is_not_kept():
     assert content_key(replace(helical(), quantity=Unknown())) is None
 
 
-def test_screened_sizes_are_those_of_stiffness_that_varies(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_screened_sizes_are_those_of_stiffness_that_varies(monkeypatch):
     """Within the hundredth of a decibel below which the mean stiffness tells them."""
     scene = driven_scene(published_set(3), speed=TimeLaw.constant(60.0))
     scene = replace(
@@ -177,7 +172,7 @@ def test_screened_sizes_are_those_of_stiffness_that_varies(monkeypatch: pytest.M
     assert len(small) < len(whole)
 
 
-def test_partial_fractions_are_the_factorized_response(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_partial_fractions_are_the_factorized_response(monkeypatch):
     system = assemble(flexible_pair(table=square_wave_table(), duration=0.01))
     assert len(system.arrays.mass) >= partial_fractions.MIN
     at, found = excited(system, 0.0, 6), []
@@ -190,7 +185,7 @@ def test_partial_fractions_are_the_factorized_response(monkeypatch: pytest.Monke
     assert not np.array_equal(found[0].bearing_force, found[1].bearing_force)
 
 
-def test_the_system_of_the_estimates_is_run_where_nothing_is_decided_otherwise() -> None:
+def test_the_system_of_the_estimates_is_run_where_nothing_is_decided_otherwise():
     scene = helical()
     sizes = estimate_influences(scene)
     neglected_check.forget_sizes()

@@ -1,7 +1,5 @@
 """Equilibrium and step control where loads are small: by their size, not by that of a usual drive."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -9,12 +7,9 @@ import pytest
 from drawn_trains import Train
 from geared_scenes import gear_pair_scene, spring_table, square_wave_table
 
+from dynamics import Bushing, Integration, LoadTorque, TimeLaw, simulate
 from dynamics.assembly.assemble import assemble
-from dynamics.bearings import Bushing
 from dynamics.integrators import static_equilibrium
-from dynamics.loads import LoadTorque, TimeLaw
-from dynamics.settings import Integration
-from dynamics.simulation import simulate
 from dynamics.simulation.light_loads import with_tolerance_to_scale
 
 

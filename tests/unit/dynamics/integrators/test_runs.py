@@ -1,7 +1,5 @@
 """Whole runs: their status, what they cost, knots of laws and pitches that hunt."""
 
-from __future__ import annotations
-
 import pickle
 from dataclasses import replace
 
@@ -9,6 +7,7 @@ import numpy as np
 import pytest
 from geared_scenes import BASE_RADIUS, gear_pair_scene, repeated, spring_table, square_wave_table, with_mesh
 
+from dynamics import CoastFlank, Integration, Outputs, TimeLaw, simulate
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import SolveError
 from dynamics.integrators import integrate, static_equilibrium
@@ -17,11 +16,8 @@ from dynamics.integrators.march import ending, start_march
 from dynamics.integrators.state_sink import MemorySink
 from dynamics.integrators.workspace import Count
 from dynamics.kernels.by_address import by_address
-from dynamics.loads import AngleLaw, TimeLaw
-from dynamics.meshes.gear_mesh import CoastFlank
+from dynamics.loads import AngleLaw
 from dynamics.meshes.technique import PlainTable
-from dynamics.scene import Integration, Outputs
-from dynamics.simulation import simulate
 from dynamics.types import RunStatus
 from model_studies.stage_clock import TimeTaken
 
@@ -54,7 +50,7 @@ def test_no_step_jumps_over_a_part_of_the_table():
 
 
 def test_an_exception_in_the_progress_callback_ends_the_run():
-    def stop(fraction: float, text: str) -> None:
+    def stop(fraction, text):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):

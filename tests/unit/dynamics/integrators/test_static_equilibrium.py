@@ -1,7 +1,5 @@
 """Where runs start: static equilibria, motions at rest, and freedoms by modes."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -12,20 +10,16 @@ from planetary_scenes import planetary_scene, published_set
 from scipy.linalg import expm
 from scipy.sparse.csgraph import connected_components
 
+from dynamics import Integration, Outputs, RollingContact, TimeLaw, simulate, simulate_to_file
 from dynamics.arrays.modal_freedoms import MIN, TOGETHER, modal_freedoms_of
 from dynamics.arrays.sparse_rows import joined_by_chains, sparse_matrices
 from dynamics.assembly import bearing_rest
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import SolveError
-from dynamics.forces import RollingContact
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.linearize import linearize
-from dynamics.loads import AppliedForce, TimeLaw
-from dynamics.loads.load_course import Orders
+from dynamics.loads import AppliedForce, Orders
 from dynamics.motion.observation import local_state, observe
-from dynamics.scene import Integration
-from dynamics.settings import Outputs
-from dynamics.simulation import simulate, simulate_to_file
 from dynamics.types import RunStatus, StaticStatus
 
 # Static equilibrium: deflections by hand, and what happens without one.
@@ -134,7 +128,7 @@ def test_a_load_that_pulls_the_flanks_apart_has_no_equilibrium():
 
 
 @pytest.mark.parametrize("method", ["explicit", "implicit"])
-def test_what_dies_away_is_at_rest_before_it_underflows(method: str) -> None:
+def test_what_dies_away_is_at_rest_before_it_underflows(method):
     """Along the axis nothing pushes a spur gear: what is there at the start falls by its damping alone."""
     scene = gear_pair_scene(spring_table(4e8), speed=TimeLaw.constant(50.0), duration=2.0)
     scene = replace(scene, effects={**scene.effects, "axial": "on"})
@@ -293,7 +287,7 @@ def test_samples_without_amplitudes_have_what_these_carry_and_all_of_them_where_
         np.testing.assert_array_equal(seen.force[0], full.filtered[:, 0])
 
 
-def test_freedoms_that_a_chain_joins_are_those_of_a_graph() -> None:
+def test_freedoms_that_a_chain_joins_are_those_of_a_graph():
     random = np.random.default_rng(4)
     for size, entries in ((1, 0), (2, 1), (40, 20), (40, 40), (40, 200)):
         joined = np.zeros((size, size), dtype=bool)

@@ -1,7 +1,5 @@
 """Steps of the integrators: tableaus, step control, choice of method, blocks, and the filter of samples."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -9,19 +7,16 @@ import numpy as np
 import pytest
 from geared_scenes import RPM, gear_pair_scene, spring_table, square_wave_table
 
+from dynamics import Integration, Outputs, TimeLaw, simulate
 from dynamics.assembly.assemble import assemble
 from dynamics.integrators import integrate, march, static_equilibrium
 from dynamics.integrators import tableaus as t
 from dynamics.integrators.advance import Control, next_level
-from dynamics.integrators.integrate import Trajectory
 from dynamics.integrators.method_choice import EVALUATIONS, LIMIT, choose_method
 from dynamics.integrators.start_value import Trail
 from dynamics.integrators.workspace import Count, geometric_steps
-from dynamics.loads import TimeLaw
 from dynamics.motion.observation import observe
 from dynamics.results.histories import filtered
-from dynamics.scene import Integration, Outputs
-from dynamics.simulation import simulate
 
 # Order conditions of the Runge-Kutta methods (Butcher), and the implicit method's stability at infinity.
 
@@ -189,7 +184,7 @@ def test_auto_runs_as_the_method_it_names():
 # Blocks of a run: between them the interpreter looks at it.
 
 
-def test_blocks_leave_every_sample_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_blocks_leave_every_sample_as_it_is(monkeypatch):
     system = assemble(gear_pair_scene(spring_table(4e8), duration=0.02))
     start, settings = static_equilibrium(system), system.scene.integration
     runs, early = [], []
@@ -203,7 +198,7 @@ def test_blocks_leave_every_sample_as_it_is(monkeypatch: pytest.MonkeyPatch) -> 
     assert early == [True, False]
 
 
-def test_whoever_waits_is_told_fifty_times() -> None:
+def test_whoever_waits_is_told_fifty_times():
     system = assemble(gear_pair_scene(spring_table(4e8), duration=0.02))
     seen: list[float] = []
     integrate(
@@ -228,12 +223,12 @@ def made():
 
 
 @pytest.fixture(scope="module")
-def stored(made) -> Trajectory:
+def stored(made):
     return integrate(made, static_equilibrium(made), made.scene.integration)
 
 
 @pytest.fixture(scope="module")
-def points(made) -> Trajectory:
+def points(made):
     """Every point of the inner grid: the steps do not know how they are sampled."""
     every = replace(made.sampling, rate=made.sampling.inner_rate, stop_band=0.0, taps=3)
     return integrate(replace(made, sampling=every), static_equilibrium(made), made.scene.integration)

@@ -1,7 +1,5 @@
 """Tuples by address read and write as the tuples do; routines are compiled for the scenes that need them."""
 
-from __future__ import annotations
-
 import pickle
 from dataclasses import replace
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """Forced response as a study: peaks, error estimate, blocks of speeds, where the tables are read, files."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -18,27 +16,17 @@ from geared_scenes import (
 )
 from sliced_face import sliced_database
 
+from dynamics import Outputs, TimeLaw, forced_response, modal_analysis, simulate
 from dynamics.assembly.assemble import assemble
 from dynamics.assembly.varied import operating_points_at, with_static_reference
 from dynamics.errors import InputError, SolveError
 from dynamics.influence import estimate_influences
 from dynamics.integrators import static_equilibrium
-from dynamics.linearize import (
-    ForcedResponse,
-    forced_response,
-    harmonic_response,
-    modal_analysis,
-    natural_modes,
-    peaks,
-    steady_vibration,
-)
+from dynamics.linearize import ForcedResponse, harmonic_response, natural_modes, peaks, steady_vibration
 from dynamics.linearize.load_harmonics import load_harmonics
 from dynamics.linearize.parametric_response import parametric_response
 from dynamics.linearize.steady_vibration import excited
-from dynamics.loads import TimeLaw
 from dynamics.mechanism.rotor import build_rotor
-from dynamics.scene import Outputs
-from dynamics.simulation import simulate
 from fe_contact.ste import ForceTable
 
 STIFFNESS, RIPPLE = 4e8, 1e-7

@@ -15,13 +15,11 @@ from geared_scenes import (
 )
 from planetary_scenes import MESH_STIFFNESS, driven_scene, published_set
 
+from dynamics import Integration, Outputs, TimeLaw, simulate
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.linearize import common_period, harmonic_response
 from dynamics.linearize.harmonic_response import extremes
-from dynamics.loads import TimeLaw
-from dynamics.scene import Integration, Outputs
-from dynamics.simulation import simulate
 
 STIFFNESS, RIPPLE = 4e8, 1e-7
 INERTIA = 1.1344291072112745e-3

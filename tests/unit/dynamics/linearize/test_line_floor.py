@@ -1,7 +1,5 @@
 """The floor of long tables: the power of the lines left out, its error, what has none."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 
@@ -35,7 +33,7 @@ def every(name: str) -> ForcedResponse:
 
 
 @pytest.fixture
-def few(monkeypatch: pytest.MonkeyPatch) -> None:
+def few(monkeypatch):
     """A hundred lines, as a much longer table would have of its own."""
     monkeypatch.setattr("dynamics.linearize.strongest_lines.MAX_AMPLITUDES", 0.0)
     monkeypatch.setattr("dynamics.linearize.strongest_lines.ALWAYS", 100)

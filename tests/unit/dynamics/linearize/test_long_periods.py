@@ -1,7 +1,5 @@
 """Tables of long periods: the response of one that repeats a short one, which lines are solved in, memory."""
 
-from __future__ import annotations
-
 import sys
 import tracemalloc
 from dataclasses import fields

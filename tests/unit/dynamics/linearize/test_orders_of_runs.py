@@ -7,12 +7,10 @@ import numpy as np
 import pytest
 from geared_scenes import RPM, Table, gear_pair_scene, spring_table, with_mesh
 
+from dynamics import Outputs, Scene, TimeLaw, forced_response, simulate
 from dynamics.assembly.assemble import assemble
-from dynamics.linearize import HarmonicResponse, forced_response, harmonic_response
-from dynamics.loads import TimeLaw
+from dynamics.linearize import HarmonicResponse, harmonic_response
 from dynamics.orders import resample_to_position, spectrum
-from dynamics.scene import Outputs, Scene
-from dynamics.simulation import simulate
 from dynamics.types import FloatArray
 
 Response = Callable[..., HarmonicResponse]
@@ -67,19 +65,19 @@ def off(swing: float, revolutions: int = 4, response: Response = forced_response
 
 
 @pytest.mark.parametrize("revolutions", [4, 8])
-def test_with_constant_stiffness_orders_of_a_run_are_those_of_the_linear_response(revolutions: int) -> None:
+def test_with_constant_stiffness_orders_of_a_run_are_those_of_the_linear_response(revolutions):
     """Window, resampling and length of the run have no part in them: 0.0003 dB."""
     assert np.max(np.abs(off(0.0, revolutions))) < 1e-3
 
 
 @pytest.mark.parametrize("swing", [0.004, 0.1])
-def test_a_stiffness_that_varies_makes_the_sidebands_of_a_run(swing: float) -> None:
+def test_a_stiffness_that_varies_makes_the_sidebands_of_a_run(swing):
     """Once per revolution: it moves a part of mesh order 2 into its sidebands, which the response has."""
     assert np.max(np.abs(off(swing))) < 1e-3
 
 
 @pytest.mark.law
-def test_with_the_mean_stiffness_a_sideband_is_off_by_what_varies() -> None:
+def test_with_the_mean_stiffness_a_sideband_is_off_by_what_varies():
     some, twice = (off(swing, response=harmonic_response) for swing in (0.002, 0.004))
     assert abs(some[-1]) > 20.0 * np.max(np.abs(some[:-1]))
     assert twice[-1] == pytest.approx(2.0 * some[-1], rel=0.2)

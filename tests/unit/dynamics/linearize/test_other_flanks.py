@@ -1,7 +1,5 @@
 """Other flanks of a mesh in a scene that is assembled once: as in one assembled with them."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 
@@ -33,7 +31,7 @@ def assert_alike(found, expected, tolerance: float) -> None:
 
 @pytest.mark.law
 @ROLLING
-def test_other_flanks_excite_as_a_scene_assembled_with_them(rolling: bool) -> None:
+def test_other_flanks_excite_as_a_scene_assembled_with_them(rolling):
     """Damping by a ratio follows their stiffness, tangents of rolling bearings the equilibrium."""
     transfer, others = scene(rolling)
     whole = transfer.excitation(assemble(unit(FAR, NEAR, rolling)))
@@ -44,7 +42,7 @@ def test_other_flanks_excite_as_a_scene_assembled_with_them(rolling: bool) -> No
 
 @pytest.mark.law
 @ROLLING
-def test_small_changes_of_inputs_are_those_of_the_flanks(rolling: bool) -> None:
+def test_small_changes_of_inputs_are_those_of_the_flanks(rolling):
     transfer, others = scene(rolling)
     flanks = others.excitation
     beside = [replace(NEAR, deflection=NEAR.deflection + step) for step in (1e-10, 2e-10)]
@@ -57,7 +55,7 @@ def test_small_changes_of_inputs_are_those_of_the_flanks(rolling: bool) -> None:
 
 
 @pytest.mark.law
-def test_bearings_yield_to_changed_flanks_as_at_their_equilibrium() -> None:
+def test_bearings_yield_to_changed_flanks_as_at_their_equilibrium():
     """A load that acts elsewhere on the face moves the tangents of rolling bearings."""
     transfer, others = scene(True)
     aside = replace(NEAR, load_arm=NEAR.load_arm + 1e-7)
@@ -70,7 +68,7 @@ def test_bearings_yield_to_changed_flanks_as_at_their_equilibrium() -> None:
     )
 
 
-def test_a_table_over_misalignments_is_refused() -> None:
+def test_a_table_over_misalignments_is_refused():
     _, others = scene(False)
     wide = replace(NEAR, misalignment=np.array([0.0, 1e-5]))
     with pytest.raises(InputError, match="at one of them"):

@@ -1,7 +1,5 @@
 """Transfer functions of flanks: the response of other flanks, linearity, reciprocity, their file."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 
@@ -39,12 +37,12 @@ def assert_response(own: FlankTransfer, scene, tolerance: float) -> None:
 
 
 @pytest.mark.parametrize("rolling", [True, False])
-def test_the_flanks_of_the_scene_respond_as_it_does(rolling: bool) -> None:
+def test_the_flanks_of_the_scene_respond_as_it_does(rolling):
     assert_response(transfer(rolling), unit(rolling=rolling), 1e-9)
 
 
 @pytest.mark.parametrize("rolling", [True, False])
-def test_far_flanks_respond_as_a_scene_with_them(rolling: bool) -> None:
+def test_far_flanks_respond_as_a_scene_with_them(rolling):
     """Of one stage and of both; they move the equilibrium and so the tangents of rolling bearings."""
     for tables in ((far_table(), table()), (far_table(), far_table())):
         scene = unit(*tables, rolling=rolling)
@@ -58,7 +56,7 @@ def test_far_flanks_respond_as_a_scene_with_them(rolling: bool) -> None:
     assert bool(np.abs(apart - force).max() > 1e-3 * np.abs(force).max()) is rolling
 
 
-def test_with_tangents_that_vary_flanks_respond_as_a_scene_with_them() -> None:
+def test_with_tangents_that_vary_flanks_respond_as_a_scene_with_them():
     """Of the scene itself and of far flanks; with the mean tangents alone forces are another."""
     own = transfer()
     for scene in (unit(), unit(far_table(), table())):
@@ -76,7 +74,7 @@ def test_with_tangents_that_vary_flanks_respond_as_a_scene_with_them() -> None:
         assert np.abs(forces[1] - direct.bearing_force).max() > 1e-3 * size
 
 
-def test_the_response_is_linear_in_what_excites() -> None:
+def test_the_response_is_linear_in_what_excites():
     own = transfer()
     flanks = own.excitation(assemble(unit(far_table())))
     half = flanks._replace(force=0.5 * (flanks.force + own.force), tangent=own.tangent, viscous=own.viscous)
@@ -87,7 +85,7 @@ def test_the_response_is_linear_in_what_excites() -> None:
 
 
 @pytest.mark.law
-def test_an_error_of_the_transmission_error_acts_as_it_does() -> None:
+def test_an_error_of_the_transmission_error_acts_as_it_does():
     """As an error of all of it adds the response of far flanks less that of flanks that excite nothing."""
     own = transfer()
     system = assemble(unit(far_table()))
@@ -106,7 +104,7 @@ def test_an_error_of_the_transmission_error_acts_as_it_does() -> None:
     )
 
 
-def test_a_stage_moves_the_other_as_that_one_moves_it() -> None:
+def test_a_stage_moves_the_other_as_that_one_moves_it():
     """Reciprocity of the receptances, where the tangents of the flanks are symmetric."""
     receptance = flank_transfer(assemble(two_stages()), SPEEDS, 1).motion[..., 1:]
     crossed = np.swapaxes(receptance, 0, 3)
@@ -114,7 +112,7 @@ def test_a_stage_moves_the_other_as_that_one_moves_it() -> None:
     np.testing.assert_allclose(receptance, crossed, rtol=0.0, atol=1e-9 * np.abs(receptance).max())
 
 
-def test_they_are_kept_by_their_content(tmp_path, monkeypatch) -> None:
+def test_they_are_kept_by_their_content(tmp_path, monkeypatch):
     scene = two_stages(table())
     first = flank_transfer(assemble(scene), SPEEDS, 1, cache=tmp_path)
     monkeypatch.setattr("dynamics.linearize.transfer._computed", lambda *_: pytest.fail("computed"))
@@ -128,13 +126,13 @@ def test_they_are_kept_by_their_content(tmp_path, monkeypatch) -> None:
     assert len(list(tmp_path.iterdir())) == 3
 
 
-def test_another_scene_is_refused() -> None:
+def test_another_scene_is_refused():
     with pytest.raises(InputError, match="the scene of the transfer"):
         transfer().excitation(assemble(two_stages(table())))
 
 
 @pytest.mark.law
-def test_what_is_predicted_goes_with_the_lines_that_are_solved() -> None:
+def test_what_is_predicted_goes_with_the_lines_that_are_solved():
     """Of two stages whose pitches share a long period, over all speeds."""
     system, counts, seconds = assemble(unit()), [], []
     for orders, speeds in ((1, SPEEDS[:1]), (ORDERS, SPEEDS)):

@@ -1,7 +1,5 @@
 """Whirl, terms of speed, modes left out, and motions that stiffness excites."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -20,9 +18,8 @@ from housed_pair import ON, housed_pair
 from planetary_scenes import driven_scene, planetary_scene, published_set
 from two_stage_scenes import two_stages
 
+from dynamics import Bushing, Coupling, Inertia, Integration, Outputs, Shaft, TimeLaw, simulate
 from dynamics.assembly.assemble import assemble
-from dynamics.bearings import Bushing
-from dynamics.joints import Coupling
 from dynamics.linearize import (
     harmonic_response,
     linearize,
@@ -37,10 +34,6 @@ from dynamics.linearize.operating_speeds import law_speeds
 from dynamics.linearize.parametric_response import parametric_response
 from dynamics.linearize.steady_vibration import excited, gyroscopic_terms, swept_vibration
 from dynamics.linearize.whirl_modes import terms_at
-from dynamics.loads import TimeLaw
-from dynamics.scene import Integration, Outputs
-from dynamics.shafts import Inertia, Shaft
-from dynamics.simulation import simulate
 
 # Whirl: closed forms of a disc on bearings, the same from a fixed and from a rotating frame.
 
@@ -102,7 +95,6 @@ def test_at_standstill_they_are_the_natural_modes():
 
 
 def without_damping(scene):
-    """The scene with no damper in bearings and meshes."""
     bearings = tuple(replace(part, damping_ratio=0.0) for part in scene.bushings)
     pins = tuple(replace(part, damping_ratio=0.0) for part in scene.planet_bearings)
     meshes = tuple(replace(mesh, damping=0.0) for mesh in scene.meshes)
@@ -125,7 +117,7 @@ def test_speed_splits_the_double_modes_of_a_planetary_set():
 # Gyroscopic and frame terms over speed, from those at two speeds.
 
 
-def test_terms_at_every_speed_are_those_of_that_speed_alone() -> None:
+def test_terms_at_every_speed_are_those_of_that_speed_alone():
     system = assemble(planetary_scene(published_set(3), duration=0.01))
     speeds = np.array([3.0, -40.0, 250.0])
     for speed, (damping, stiffness) in zip(speeds, gyroscopic_terms(system, speeds), strict=True):

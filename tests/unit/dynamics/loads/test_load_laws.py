@@ -7,15 +7,13 @@ import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene, spring_table
 
+from dynamics import FreeRotation, ImposedRotation, Integration, TimeLaw, simulate
 from dynamics.arrays.arrays import revolutions, slope
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.forces import SpeedTorque
-from dynamics.joints import FreeRotation, ImposedRotation
-from dynamics.loads import AngleLaw, SpeedCurve, TimeLaw
+from dynamics.loads import AngleLaw, SpeedCurve
 from dynamics.motion.observation import observe_laws
-from dynamics.scene import Integration
-from dynamics.simulation import simulate
 
 # An angle over time: its speed, acceleration, and what a run makes of it.
 

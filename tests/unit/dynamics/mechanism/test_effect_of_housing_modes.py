@@ -4,21 +4,11 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from housed_scenes import (
-    BLOCK,
-    GROUND,
-    OFF,
-    ON,
-    block,
-    housed,
-    pair,
-    rows,
-)
+from housed_scenes import BLOCK, GROUND, OFF, ON, block, housed, pair, rows
 
+from dynamics import Outputs, RollingContact
 from dynamics.assembly.assemble import assemble
 from dynamics.bearings import RollerBearing, RollingBearing
-from dynamics.forces import RollingContact
-from dynamics.settings import Outputs
 
 ROLLERS = RollerBearing(17, 9e-3, 13.6e-3, 65e-3, clearance=-5e-6)
 

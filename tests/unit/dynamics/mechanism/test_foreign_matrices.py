@@ -1,7 +1,5 @@
 """Matrices of foreign files: none is unpickled, none unpacks to more than it says, none is told of."""
 
-from __future__ import annotations
-
 import io
 import struct
 import tracemalloc
@@ -46,7 +44,7 @@ def _npy(header: str, data: bytes = b"") -> bytes:
 def _archive(content: bytes, megabytes: int = 0) -> Content:
     """Pack a content with so many of zeros behind it."""
 
-    def packed(_canary: Path) -> bytes:
+    def packed(_canary):
         stream = io.BytesIO()
         with (
             zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive,
@@ -94,7 +92,7 @@ FOREIGN_MATRICES: dict[str, tuple[str, Content]] = {
 
 
 @pytest.mark.parametrize("name", FOREIGN_MATRICES)
-def test_it_is_refused_by_the_name_of_the_file(tmp_path: Path, name: str) -> None:
+def test_it_is_refused_by_the_name_of_the_file(tmp_path, name):
     """In the program's words; the memory that it takes stays small."""
     canary = write_canary(tmp_path)
     suffix, content = FOREIGN_MATRICES[name]
@@ -114,7 +112,7 @@ def test_it_is_refused_by_the_name_of_the_file(tmp_path: Path, name: str) -> Non
         assert SECRET.decode() not in str(caught.value) and str(tmp_path) not in str(caught.value)
 
 
-def test_a_table_is_no_larger_than_matrices_are(tmp_path: Path) -> None:
+def test_a_table_is_no_larger_than_matrices_are(tmp_path):
     with (tmp_path / "case.csv").open("wb") as stream:
         stream.truncate(LARGEST + 1)
     with pytest.raises(InputError, match=f"at most {LARGEST} bytes"):

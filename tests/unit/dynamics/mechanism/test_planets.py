@@ -202,7 +202,6 @@ def test_a_law_of_a_bearing_that_is_not_there_is_refused():
 
 
 def only_first(scene):
-    """The scene with its first planet alone."""
     kept = {"planet 1", "sun", "ring", "carrier"}
     return replace(
         scene,
@@ -295,7 +294,6 @@ def rotors(scene):
 
 
 def placed(scene, mesh):
-    """Where a mesh is and which way it drives."""
     gears = [scene.gear(name) for name in (mesh.driver, mesh.driven)]
     shafts = [next(s for s in scene.shafts if s.name == gear.shaft) for gear in gears]
     return tuple(

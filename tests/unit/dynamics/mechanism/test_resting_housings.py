@@ -6,13 +6,11 @@ import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene, spring_table, with_bushings, with_gear
 
+from dynamics import Housing, RollingContact, simulate
 from dynamics.assembly.assemble import assemble
 from dynamics.deflection import LoadCase, deflect
 from dynamics.errors import InputError
-from dynamics.forces import RollingContact
-from dynamics.joints import Housing
 from dynamics.linearize import natural_modes
-from dynamics.simulation import simulate
 
 NAMES = ("input.left", "input.right", "output.left", "output.right")
 ON = {"lateral": "on", "axial": "on", "tilt": "on"}

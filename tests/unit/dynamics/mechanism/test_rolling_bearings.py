@@ -8,19 +8,14 @@ import pytest
 from geared_scenes import gear_pair_scene, spring_table, with_bushings
 from scipy.integrate import quad
 
+from dynamics import Bushing, Coupling, Inertia, Integration, RollingContact, Shaft, TimeLaw, simulate
 from dynamics.assembly.assemble import assemble
-from dynamics.bearings import Bushing
 from dynamics.errors import InputError
-from dynamics.forces import RollingContact, SpringCurve
+from dynamics.forces import SpringCurve
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.integrators.march import stored_energy
-from dynamics.joints import Coupling
 from dynamics.linearize import natural_modes
-from dynamics.loads import TimeLaw
 from dynamics.motion.observation import local_state
-from dynamics.scene import Integration
-from dynamics.shafts import Inertia, Shaft
-from dynamics.simulation import simulate
 
 STIFFNESS, CLEARANCE, ROLLER, BALL = 5e8, 20e-6, 10.0 / 9.0, 1.5
 ON = {"lateral": "on", "axial": "on", "tilt": "on"}

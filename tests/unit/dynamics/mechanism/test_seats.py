@@ -6,18 +6,13 @@ import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene, spring_table, with_bushings
 
+from dynamics import Bushing, Coupling, Housing, Inertia, Integration, RunResult, Shaft, TimeLaw, simulate
 from dynamics.assembly.assemble import assemble
-from dynamics.bearings import Bushing
 from dynamics.errors import InputError
 from dynamics.integrators import static_equilibrium
-from dynamics.joints import Coupling, Housing, read_housing
+from dynamics.joints import read_housing
 from dynamics.linearize import natural_modes, whirl_modes
-from dynamics.loads import TimeLaw
 from dynamics.mechanism.connections import condense_housing
-from dynamics.results import RunResult
-from dynamics.scene import Integration
-from dynamics.shafts import Inertia, Shaft
-from dynamics.simulation import simulate
 
 ON = {"lateral": "on", "axial": "on", "tilt": "on"}
 SCENE = gear_pair_scene(spring_table(4e8), duration=0.002, effects=ON)

@@ -1,7 +1,5 @@
 """Phases of meshes against a count by hand: gears drawn at random are turned until their flanks touch."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -160,7 +158,6 @@ def counted_by_hand(scene, start, links=()):
 
 
 def middle(driver, driven):
-    """Return the middle of the common face."""
     low = max(gear.position - gear.face_width / 2.0 for gear in (driver, driven))
     high = min(gear.position + gear.face_width / 2.0 for gear in (driver, driven))
     return (low + high) / 2.0

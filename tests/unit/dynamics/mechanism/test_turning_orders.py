@@ -1,7 +1,5 @@
 """By which orders what turns repeats: meshes, gears against their carrier, shafts."""
 
-from __future__ import annotations
-
 import pytest
 from planetary_scenes import planetary_scene, published_set
 
@@ -10,7 +8,7 @@ from dynamics.mechanism.kinematics import solve_kinematics
 from dynamics.mechanism.passing import turning_orders
 
 
-def test_gears_of_a_planetary_set_turn_against_their_carrier() -> None:
+def test_gears_of_a_planetary_set_turn_against_their_carrier():
     """One tooth of each in a period of mesh; the sun's shaft turns once in 1 + z_s/z_r of its turns there."""
     gears = published_set(3)
     sun, planet, ring = gears.teeth

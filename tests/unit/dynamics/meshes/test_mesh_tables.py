@@ -1,10 +1,7 @@
 """Tables of meshes: their laws, look-up, decimation, and the force of a flank."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -71,7 +68,7 @@ def stiffness(x: float) -> float:
     )
 
 
-def test_a_harmonic_mesh_has_the_force_of_the_closed_form() -> None:
+def test_a_harmonic_mesh_has_the_force_of_the_closed_form():
     curve = PeriodicCurve.harmonic(MEAN, SIZES, PHASES)
     table = stiffness_table(curve, PeriodicCurve.harmonic(0.0, (ERROR,), (0.0,)))
     check_table(table, "table")
@@ -85,7 +82,7 @@ def test_a_harmonic_mesh_has_the_force_of_the_closed_form() -> None:
         assert table_force(packed, 0, x, error - 1e-7, 0)[0] == 0.0
 
 
-def test_tabulated_values_are_met_and_never_overshot() -> None:
+def test_tabulated_values_are_met_and_never_overshot():
     """A rectangular stiffness whose flanks take a hundredth of a pitch."""
     position, value = (0.1, 0.59, 0.6, 0.99), (3e8, 3e8, 2e8, 2e8)
     curve = PeriodicCurve.tabulated(position, value)
@@ -97,7 +94,7 @@ def test_tabulated_values_are_met_and_never_overshot() -> None:
     assert table_force(packed, 0, 0.3, 1e-5, 0)[0] == pytest.approx(3e3, rel=1e-12)
 
 
-def test_a_curve_continues_into_the_next_period() -> None:
+def test_a_curve_continues_into_the_next_period():
     curve = PeriodicCurve.tabulated((0.05, 0.2, 0.4, 0.7), (1.0, 3.0, 2.0, -1.0))
     for x in (0.0, 0.05, 0.63):
         assert curve(np.array([x + 1.0]))[0] == pytest.approx(curve(np.array([x]))[0], rel=1e-12)
@@ -105,7 +102,7 @@ def test_a_curve_continues_into_the_next_period() -> None:
     assert below == pytest.approx(above, abs=1e-5)
 
 
-def test_a_constant_mesh_is_straight() -> None:
+def test_a_constant_mesh_is_straight():
     packed = pack_tables([straight_table(3e8), stiffness_table(PeriodicCurve.constant(3e8))])
     for x in POSITIONS[:5]:
         for d in (-1e-6, 1e-9, 1e-5, 1e-3):
@@ -125,7 +122,7 @@ def test_a_constant_mesh_is_straight() -> None:
         ("value", lambda: PeriodicCurve.constant(math.nan)),
     ],
 )
-def test_what_is_no_curve_is_named(field: str, make: Any) -> None:
+def test_what_is_no_curve_is_named(field, make):
     with pytest.raises(InputError) as caught:
         make()
     assert caught.value.field == field

@@ -1,7 +1,5 @@
 """Sliding of pairs in closed form: against the loss factor of Ohlendorf, and in a run."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -9,13 +7,10 @@ import numpy as np
 import pytest
 from drawn_trains import PER_TOOTH, Train
 
-from dynamics.bearings import Bushing
+from dynamics import Bushing, LoadTorque, Outputs, TimeLaw, simulate
 from dynamics.errors import InputError
-from dynamics.loads import LoadTorque, TimeLaw
 from dynamics.meshes.standard_sliding import StandardTeeth, standard_sliding
 from dynamics.meshes.stiffness_table import PeriodicCurve, stiffness_table, straight_table
-from dynamics.settings import Outputs
-from dynamics.simulation import simulate
 
 ANGLE, MU = math.radians(20.0), 0.05
 FINE = (np.arange(4096) + 0.5) / 4096
@@ -32,14 +27,14 @@ def loss_factor(teeth: StandardTeeth) -> float:
 
 
 @pytest.mark.parametrize(("first", "second"), [(20, 20), (19, 57), (40, 25)])
-def test_the_mean_lever_is_that_of_the_loss_factor(first: int, second: int) -> None:
+def test_the_mean_lever_is_that_of_the_loss_factor(first, second):
     teeth = teeth_of(first, second)
     _, lever = standard_sliding(teeth, FINE)
     smoothed = 2e-3  # of the change of direction at the pitch point
     assert np.mean(lever) == pytest.approx(0.5 * teeth.base_pitch * loss_factor(teeth), rel=smoothed)
 
 
-def test_the_path_of_contact_is_that_of_standard_teeth() -> None:
+def test_the_path_of_contact_is_that_of_standard_teeth():
     """A 20/20 pair with an addendum of one module has a contact ratio of 1.557 at 20 degrees (ISO 21771)."""
     first, last = teeth_of(20, 20).path
     assert (last - first) / PER_TOOTH / 2.0 / math.pi == pytest.approx(1.557, abs=1e-3)
@@ -47,7 +42,7 @@ def test_the_path_of_contact_is_that_of_standard_teeth() -> None:
 
 
 @pytest.mark.parametrize("internal", [False, True])
-def test_the_path_ends_where_the_tip_circles_cut_the_line_of_action(internal: bool) -> None:
+def test_the_path_ends_where_the_tip_circles_cut_the_line_of_action(internal):
     teeth = teeth_of(21, 71, internal=internal)
     radii = [PER_TOOTH * count / math.cos(ANGLE) for count in (21, 71)]
     module = 2.0 * radii[0] / 21
@@ -61,7 +56,7 @@ def test_the_path_ends_where_the_tip_circles_cut_the_line_of_action(internal: bo
     assert first < 0.0 < last
 
 
-def test_a_pair_slides_towards_recess_where_it_recedes() -> None:
+def test_a_pair_slides_towards_recess_where_it_recedes():
     teeth = teeth_of(20, 20)
     share, lever = standard_sliding(teeth, np.array([0.0, 0.15, 0.85]))
     assert share[0] == pytest.approx(0.0, abs=1e-12)
@@ -69,7 +64,7 @@ def test_a_pair_slides_towards_recess_where_it_recedes() -> None:
     assert np.all(lever >= 0.0)
 
 
-def test_helical_teeth_slide_alike_at_all_positions() -> None:
+def test_helical_teeth_slide_alike_at_all_positions():
     """A whole overlap: what enters at one end leaves at the other."""
     pitch = teeth_of(20, 20).base_pitch
     share, lever = standard_sliding(teeth_of(20, 20, math.atan(pitch / 0.02)), FINE[::64])
@@ -78,7 +73,7 @@ def test_helical_teeth_slide_alike_at_all_positions() -> None:
     assert np.ptp(share) < 0.15 * np.ptp(spur[0])
 
 
-def test_the_force_of_a_table_is_the_same_with_sliding() -> None:
+def test_the_force_of_a_table_is_the_same_with_sliding():
     stiffness = PeriodicCurve.harmonic(2e8, [3e7, 1e7], [0.3, 1.0])
     plain, sliding = stiffness_table(stiffness), stiffness_table(stiffness, teeth=teeth_of(20, 30))
     at = np.searchsorted(sliding.position, plain.position)
@@ -86,7 +81,7 @@ def test_the_force_of_a_table_is_the_same_with_sliding() -> None:
     assert plain.sliding_lever is None
 
 
-def test_a_run_loses_what_the_loss_factor_says() -> None:
+def test_a_run_loses_what_the_loss_factor_says():
     train = Train(speed=150.0)
     train.add("pinion", 20, share=0.6, position=0.1)
     train.add("wheel", 30, share=0.6, position=0.1)
@@ -106,13 +101,12 @@ def test_a_run_loses_what_the_loss_factor_says() -> None:
         outputs=Outputs(energy_audit=True),
     )
     result = simulate(scene)
-    assert result.energy is not None
     part = MU * math.pi * (1.0 / 20 + 1.0 / 30) * loss_factor(teeth)
     passed = torque * 150.0 * 20.0 / 30.0 * scene.duration
     assert result.energy.friction == pytest.approx(part * passed, rel=0.03)
 
 
-def test_friction_on_a_table_without_sliding_is_refused() -> None:
+def test_friction_on_a_table_without_sliding_is_refused():
     train = Train()
     train.add("pinion", 20)
     train.add("wheel", 30)

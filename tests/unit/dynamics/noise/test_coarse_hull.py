@@ -1,7 +1,5 @@
 """Hulls with fewer panels: closed and fine enough where walls are thin too, and as loud as the fine hull."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np
@@ -30,7 +28,7 @@ def body(name: str) -> OuterHull:
 
 
 @pytest.mark.parametrize("name", BODIES)
-def test_it_is_closed_fine_enough_and_has_far_fewer_panels(name: str) -> None:
+def test_it_is_closed_fine_enough_and_has_far_fewer_panels(name):
     coarse, fine = radiating_hull(body(name), HERTZ, AIR.sound_speed).hull, body(name).hull
     assert coarse.closed
     assert coarse.longest_edge * HERTZ <= AIR.sound_speed / 6.0
@@ -38,7 +36,7 @@ def test_it_is_closed_fine_enough_and_has_far_fewer_panels(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", BODIES)
-def test_it_displaces_the_volume_of_the_fine_hull(name: str) -> None:
+def test_it_displaces_the_volume_of_the_fine_hull(name):
     coarse, fine = radiating_hull(body(name), HERTZ, AIR.sound_speed), body(name)
     displaced = fine.hull.areas @ fine.shapes
     scale = 1e-12 * np.abs(fine.shapes).max() * fine.hull.area
@@ -46,7 +44,7 @@ def test_it_displaces_the_volume_of_the_fine_hull(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", BODIES)
-def test_it_radiates_as_the_fine_hull_does(name: str) -> None:
+def test_it_radiates_as_the_fine_hull_does(name):
     coarse, fine = radiating_hull(body(name), HERTZ, AIR.sound_speed), body(name)
     powers = [
         np.diag(resistance(ElementalRadiators(), hull, HERTZ, shapes.astype(complex), AIR)).real
@@ -56,7 +54,7 @@ def test_it_radiates_as_the_fine_hull_does(name: str) -> None:
     np.testing.assert_allclose(10.0 * np.log10(powers[0][loud] / powers[1][loud]), 0.0, atol=0.5)
 
 
-def test_chosen_cells_alone_are_split() -> None:
+def test_chosen_cells_alone_are_split():
     hull = body("block").hull
     cell = surface_cells(hull, 200)
     chosen = np.isin(np.arange(cell.max() + 1), [3, 50])
@@ -65,7 +63,7 @@ def test_chosen_cells_alone_are_split() -> None:
 
 
 @pytest.mark.parametrize("divisions", [(12, 8, 6), (60, 60, 60)])
-def test_a_part_of_the_surface_without_a_seed_is_one_cell(divisions: tuple[int, int, int]) -> None:
+def test_a_part_of_the_surface_without_a_seed_is_one_cell(divisions):
     """A closed hull in two parts, below and above the 10 000 nodes from which -9999 is an index."""
     first, second = box((0.3, 0.2, 0.15), divisions), box((0.1, 0.1, 0.1), (4, 4, 4))
     count = len(first.nodes)

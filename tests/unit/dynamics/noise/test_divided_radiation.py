@@ -1,7 +1,5 @@
 """The radiation of a housing by workers: the frequencies are tasks, the resistance is the same."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -30,9 +28,7 @@ class Noting:
         return (function(shared, item) for item in items)
 
 
-def test_the_first_frequencies_are_sent_for_the_whole_and_later_ones_by_what_they_take(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_the_first_frequencies_are_sent_for_the_whole_and_later_ones_by_what_they_take(monkeypatch):
     bare, hull = bare_housing(modal=8), box((0.3, 0.2, 0.15), (6, 4, 3))
     body, costs, workers = with_surface(bare, hull, smooth_motion(hull, len(bare.stiffness))), [], Noting()
     request = body, ElementalRadiators(), [100.0, 900.0]
@@ -43,7 +39,7 @@ def test_the_first_frequencies_are_sent_for_the_whole_and_later_ones_by_what_the
 
 
 @pytest.mark.law
-def test_workers_compute_the_same_resistance_and_their_time_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_workers_compute_the_same_resistance_and_their_time_counts(monkeypatch):
     monkeypatch.setattr(dispatch, "START_SECONDS", 0.0)
     bare, hull = bare_housing(modal=8), box((0.3, 0.2, 0.15), (6, 4, 3))
     body, seen = with_surface(bare, hull, smooth_motion(hull, len(bare.stiffness))), []

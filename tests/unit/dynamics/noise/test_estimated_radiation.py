@@ -1,24 +1,11 @@
 """What monopoles and equivalent radiated power both allow: spheres in closed form, a housing by its modes."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from sounding_scene import AIR, housing, radiation, response
 
-from dynamics.acoustics import (
-    ElementalRadiators,
-    monopoles_efficiency,
-    outer_hull,
-    sphere_efficiency,
-)
-from dynamics.noise import (
-    EstimatedRadiation,
-    HousingRadiation,
-    estimated_radiation,
-    panel_sound,
-    radiated_sound,
-)
+from dynamics.acoustics import ElementalRadiators, monopoles_efficiency, outer_hull, sphere_efficiency
+from dynamics.noise import HousingRadiation, estimated_radiation, panel_sound, radiated_sound
 from dynamics.noise.estimated_radiation import allowed_levels
 
 
@@ -35,7 +22,7 @@ def allowed(order: int, ka: np.ndarray):
 
 @pytest.mark.parametrize("order", [0, 1])
 @pytest.mark.parametrize("ka", [0.2, 0.5, 1.0, 1.83, 2.5])
-def test_a_pulsating_and_an_oscillating_sphere_lie_where_both_models_allow(order: int, ka: float) -> None:
+def test_a_pulsating_and_an_oscillating_sphere_lie_where_both_models_allow(order, ka):
     at = np.array([ka])
     low, high, by_velocity = allowed(order, at)
     assert low[0] < sphere_levels(order, at)[0][0] < high[0]
@@ -43,7 +30,7 @@ def test_a_pulsating_and_an_oscillating_sphere_lie_where_both_models_allow(order
 
 
 @pytest.mark.parametrize("ka", [3.0, np.pi, 3.3])
-def test_a_pulsating_sphere_at_its_interior_resonance_is_that_of_its_velocity(ka: float) -> None:
+def test_a_pulsating_sphere_at_its_interior_resonance_is_that_of_its_velocity(ka):
     """Monopoles are 16 dB off at ka 3 and silent at pi."""
     at = np.array([ka])
     exact, monopoles = sphere_levels(0, at)
@@ -53,14 +40,14 @@ def test_a_pulsating_sphere_at_its_interior_resonance_is_that_of_its_velocity(ka
 
 
 @pytest.mark.parametrize("order", [0, 1, 2])
-def test_nine_of_ten_spheres_lie_where_both_models_allow(order: int) -> None:
+def test_nine_of_ten_spheres_lie_where_both_models_allow(order):
     ka = np.linspace(0.1, 8.0, 400)
     low, high, _ = allowed(order, ka)
     exact = sphere_levels(order, ka)[0]
     assert np.mean((exact >= low) & (exact <= high)) > 0.9
 
 
-def test_monopoles_alone_count_where_a_small_body_hardly_radiates() -> None:
+def test_monopoles_alone_count_where_a_small_body_hardly_radiates():
     """Equivalent radiated power is 100 dB too loud there: that is no interior resonance."""
     low, high, by_velocity = allowed_levels(
         np.array([[-100.0]]), np.array([[0.0]]), np.array([0.5]), np.array([True])
@@ -69,7 +56,7 @@ def test_monopoles_alone_count_where_a_small_body_hardly_radiates() -> None:
 
 
 @pytest.fixture(scope="module")
-def estimate() -> EstimatedRadiation:
+def estimate():
     return estimated_radiation(housing(), radiation(), AIR)
 
 
@@ -78,7 +65,7 @@ def alone(made: HousingRadiation) -> np.ndarray:
     return 10.0 * np.log10(np.einsum("mk,fmn,nk->fk", shape, made.matrix, shape).real)
 
 
-def test_every_mode_alone_lies_in_its_band_and_takes_power(estimate: EstimatedRadiation) -> None:
+def test_every_mode_alone_lies_in_its_band_and_takes_power(estimate):
     own, monopoles = alone(estimate), alone(radiation())
     low, high = estimate.mode_error
     assert np.all(low < 0.0) and np.all(high > 0.0)
@@ -93,7 +80,7 @@ def test_every_mode_alone_lies_in_its_band_and_takes_power(estimate: EstimatedRa
     assert np.all(eigenvalues >= -1e-12 * eigenvalues.max(axis=1, keepdims=True))
 
 
-def test_panels_add_up_to_the_power_of_the_estimate(estimate: EstimatedRadiation) -> None:
+def test_panels_add_up_to_the_power_of_the_estimate(estimate):
     sound = radiated_sound(response(), housing(), None, estimate)
     assert sound.metadata["radiation"]["housing"]["model_name"] == "estimate"
     for at in ((0, 0), (2, 1)):
@@ -103,7 +90,7 @@ def test_panels_add_up_to_the_power_of_the_estimate(estimate: EstimatedRadiation
         assert -9.0 < low < 0.0 < high < 9.0
 
 
-def test_modes_at_interior_resonances_are_named(estimate: EstimatedRadiation) -> None:
+def test_modes_at_interior_resonances_are_named(estimate):
     natural = housing().frequency
     assert estimate.replaced(natural).size == 0
     object.__setattr__(estimate, "by_velocity", np.ones_like(estimate.by_velocity))

@@ -1,11 +1,7 @@
 """Boundary elements at the loudest lines: they hold there alone, narrow the band, keep to their budget."""
 
-from __future__ import annotations
-
 import sys
-from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -33,7 +29,7 @@ HERTZ = 700.0
 
 
 @pytest.fixture(scope="module")
-def estimate() -> EstimatedRadiation:
+def estimate():
     return estimated_radiation(housing(), radiation(), AIR)
 
 
@@ -53,7 +49,7 @@ def at(made: HousingRadiation, hertz: float) -> np.ndarray:
     )
 
 
-def test_a_line_holds_for_every_motion_near_it_and_nowhere_else(estimate: EstimatedRadiation) -> None:
+def test_a_line_holds_for_every_motion_near_it_and_nowhere_else(estimate):
     made = with_exact_lines(estimate, [line(estimate, HERTZ, 3.0)])
     for hertz in (HERTZ / FLAT, HERTZ, HERTZ * FLAT):
         expected = 3.0 * at(estimate, HERTZ) * (hertz / HERTZ) ** 2
@@ -64,9 +60,7 @@ def test_a_line_holds_for_every_motion_near_it_and_nowhere_else(estimate: Estima
 
 
 @pytest.mark.parametrize("ratio", [1.04, 1.08, 1.3])
-def test_two_lines_leave_the_resistance_positive_and_each_other_alone(
-    estimate: EstimatedRadiation, ratio: float
-) -> None:
+def test_two_lines_leave_the_resistance_positive_and_each_other_alone(estimate, ratio):
     lines = [line(estimate, HERTZ * ratio, 0.5), line(estimate, HERTZ, 3.0)]
     made = with_exact_lines(estimate, lines)
     assert np.all(np.diff(made.frequency) > 0.0)
@@ -76,7 +70,7 @@ def test_two_lines_leave_the_resistance_positive_and_each_other_alone(
         np.testing.assert_allclose(at(made, float(each.frequency[0])), each.matrix[0], rtol=1e-12)
 
 
-def test_panels_add_up_to_the_power_of_a_line(estimate: EstimatedRadiation) -> None:
+def test_panels_add_up_to_the_power_of_a_line(estimate):
     point = (2, 1)
     made = with_exact_lines(estimate, [line(estimate, float(response().frequency[point]), 3.0)])
     sound, before = (radiated_sound(response(), housing(), None, each) for each in (made, estimate))
@@ -85,9 +79,7 @@ def test_panels_add_up_to_the_power_of_a_line(estimate: EstimatedRadiation) -> N
     assert panels.power.sum() == pytest.approx(sound.power[point], rel=1e-9)
 
 
-def test_panels_between_the_line_and_the_octave_below_are_those_of_the_finer_octave(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_panels_between_the_line_and_the_octave_below_are_those_of_the_finer_octave(monkeypatch):
     """The line takes the knot between two octaves out; panels of the lower one do not resolve it."""
     known, model = radiation().metadata.resolved_frequency, ElementalRadiators()
     point = (0, 0)
@@ -104,8 +96,8 @@ def test_panels_between_the_line_and_the_octave_below_are_those_of_the_finer_oct
     used: list[float] = []
     panels_module = sys.modules["dynamics.noise.panel_sound"]
 
-    def noted(call: Any, at: int, heard: list[float]) -> Callable[..., Any]:
-        def called(*arguments: Any) -> Any:
+    def noted(call, at, heard):
+        def called(*arguments):
             heard.append(arguments[at])
             return call(*arguments)
 
@@ -118,9 +110,7 @@ def test_panels_between_the_line_and_the_octave_below_are_those_of_the_finer_oct
 
 
 @pytest.mark.law
-def test_a_sphere_that_oscillates_has_the_power_of_theory_at_its_line(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_sphere_that_oscillates_has_the_power_of_theory_at_its_line(monkeypatch):
     """Within 0.3 dB by 400 panels, at ka of 0.27 to 1.5, where monopoles are 3.5 dB off."""
     pytest.importorskip("ngsolve", reason="boundary elements need the extra boundary-elements")
     monkeypatch.setattr(exact_lines, "COARSE", Coarseness(EDGES, 200))
@@ -138,9 +128,7 @@ def test_a_sphere_that_oscillates_has_the_power_of_theory_at_its_line(
         assert (low, high) == pytest.approx((-EXACT, EXACT))
 
 
-def test_lines_beyond_the_budget_and_without_the_library_are_named(
-    estimate: EstimatedRadiation, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_lines_beyond_the_budget_and_without_the_library_are_named(estimate, monkeypatch):
     made = corrected_radiation(response(), housing(), None, estimate, budget=1.0)
     assert not made.lines and "of 1 CPU s" in made.omitted[0]
     monkeypatch.setitem(sys.modules, "ngsolve", None)
@@ -148,7 +136,7 @@ def test_lines_beyond_the_budget_and_without_the_library_are_named(
     assert made.radiation is estimate and "lineofaction[boundary-elements]" in made.omitted[0]
 
 
-def test_a_quieter_line_that_may_be_louder_widens_the_band_of_the_largest() -> None:
+def test_a_quieter_line_that_may_be_louder_widens_the_band_of_the_largest():
     """Orders of 80 and 77 dB: the first is exact, the second off by 6 dB: 83 dB at most, 80 dB at least."""
     hertz, speed = np.array([[1000.0, 500.0], [2000.0, 1000.0]]), np.array([1.0, 2.0])
     power = 1e-12 * 10.0 ** (np.array([[80.0, 20.0], [20.0, 77.0]]) / 10.0)
@@ -168,7 +156,7 @@ def test_a_quieter_line_that_may_be_louder_widens_the_band_of_the_largest() -> N
         assert (each.below["radiation_model"], each.above["radiation_model"]) == pytest.approx((2.0, 1.0))
 
 
-def test_the_width_without_a_contribution_names_the_most_first() -> None:
+def test_the_width_without_a_contribution_names_the_most_first():
     band = LevelBand(80.0, {"damping": 3.0, "model": 4.0}, {"damping": 4.0, "model": 0.0})
     assert band.width == pytest.approx(9.0)
     assert list(band.widths_without) == ["damping", "model"]

@@ -1,7 +1,5 @@
 """Sound and vibration of long tables: totals with the orders left out are those of all orders."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -9,12 +7,10 @@ import pytest
 from long_tables import deviating_unit
 from transferred_scenes import housing, sound_model
 
-from dynamics.acoustics import OrderPower
 from dynamics.assembly.assemble import assemble
-from dynamics.linearize import HarmonicResponse, harmonic_response
+from dynamics.linearize import harmonic_response
 from dynamics.noise import forced_power, sound_band
 from dynamics.noise.floor_sound import radiated_floor
-from dynamics.noise.sound_band import SoundModel
 from dynamics.vibration import housing_vibration
 
 SPEEDS, ORDERS = np.linspace(90.0, 700.0, 6), 6
@@ -22,12 +18,12 @@ NAMES = tuple(seat.name for seat in housing().seats)
 
 
 @pytest.fixture(scope="module")
-def model() -> SoundModel:
+def model():
     return sound_model(deviating_unit(37))
 
 
 @pytest.fixture(scope="module")
-def every(model: SoundModel) -> tuple[HarmonicResponse, OrderPower]:
+def every(model):
     with pytest.MonkeyPatch.context() as whole:
         whole.setattr("dynamics.linearize.strongest_lines.ALWAYS", 100_000)
         power = forced_power(model, SPEEDS, ORDERS)[1]
@@ -35,7 +31,7 @@ def every(model: SoundModel) -> tuple[HarmonicResponse, OrderPower]:
 
 
 @pytest.fixture
-def few(monkeypatch: pytest.MonkeyPatch) -> None:
+def few(monkeypatch):
     monkeypatch.setattr("dynamics.linearize.strongest_lines.MAX_AMPLITUDES", 0.0)
     monkeypatch.setattr("dynamics.linearize.strongest_lines.ALWAYS", 60)
 

@@ -1,7 +1,5 @@
 """Cost of a radiation resistance over a range: predicted before, in the result after, growing as it does."""
 
-from __future__ import annotations
-
 import math
 from functools import cache
 
@@ -13,8 +11,7 @@ from sounding_housings import smooth_motion, with_surface
 
 from dynamics.acoustics import Air, ElementalRadiators, outer_hull
 from dynamics.housings import ReducedHousing
-from dynamics.noise import HousingRadiation, housing_radiation
-from dynamics.noise.coarse_hull import radiating_hull
+from dynamics.noise import HousingRadiation, housing_radiation, radiating_hull
 from dynamics.noise.housing_radiation import USUAL, Octave, expected_knots, octave_ranges, radiation_cost
 from dynamics.work_cost import Cost
 
@@ -42,7 +39,7 @@ def predicted(low: float, high: float, divisions: int = 6) -> Cost:
     return radiation_cost(parted, MODEL, AIR)
 
 
-def test_it_grows_with_the_range_and_with_panels() -> None:
+def test_it_grows_with_the_range_and_with_panels():
     octave, two, maximum = predicted(200.0, 400.0), predicted(200.0, 800.0), predicted(100.0, 1200.0)
     assert octave.seconds < two.seconds < maximum.seconds
     assert octave.seconds < predicted(400.0, 800.0).seconds
@@ -50,7 +47,7 @@ def test_it_grows_with_the_range_and_with_panels() -> None:
     assert coarse.seconds < fine.seconds and coarse.bytes < fine.bytes
 
 
-def test_an_octave_costs_that_of_its_frequencies_and_octaves_add_up() -> None:
+def test_an_octave_costs_that_of_its_frequencies_and_octaves_add_up():
     hull = radiating_hull(outer_hull(body()), 800.0, AIR.sound_speed)
     top = 2.0 * math.pi * 800.0 / AIR.sound_speed * hull.hull.outer_radius
     each = MODEL.cost(len(hull.shapes), USUAL * top, hull.shapes.shape[1])
@@ -59,13 +56,13 @@ def test_an_octave_costs_that_of_its_frequencies_and_octaves_add_up() -> None:
     assert predicted(200.0, 800.0).seconds == pytest.approx(predicted(200.0, 400.0).seconds + upper.seconds)
 
 
-def test_it_is_told_before_and_kept_with_the_result() -> None:
+def test_it_is_told_before_and_kept_with_the_result():
     cost = radiation().metadata.cost
     assert [tuple(each) for each in TOLD] == [(cost.predicted_seconds, cost.predicted_bytes)]
     assert cost.seconds > 0.0
 
 
-def test_frequencies_are_about_as_many_as_expected() -> None:
+def test_frequencies_are_about_as_many_as_expected():
     """Between half as many, of simple modes as these, and a quarter more."""
     frequency, outer = radiation().frequency, outer_hull(body())
     ends = octave_ranges(float(frequency[0]), float(frequency[-1]))

@@ -1,7 +1,5 @@
 """Sound pressure by boundary elements: spheres in closed form, and what monopoles are off."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hulls import box, sphere
@@ -18,7 +16,7 @@ PLACES = np.array([[0.0, 0.1, 0.2], [0.3, 0.4, 0.5], [0.0, 5.0, 5.0]])
 
 
 @pytest.fixture(autouse=True, scope="module")
-def _library() -> None:
+def _library():
     pytest.importorskip("ngsolve", reason="boundary elements need the extra boundary-elements")
 
 
@@ -28,7 +26,7 @@ def outgoing(kr: np.ndarray, order: int, *, derivative: bool = False) -> np.ndar
 
 
 @pytest.mark.parametrize("ka", [0.3, 1.2])
-def test_spheres_sound_as_their_harmonics_do_near_and_far(ka: float) -> None:
+def test_spheres_sound_as_their_harmonics_do_near_and_far(ka):
     """-i rho c h_n(kr)/h_n'(ka) P_n: pulsating and oscillating, with phase."""
     hull, k = sphere(4, RADIUS), ka / RADIUS
     shapes = np.stack([np.ones(len(hull.areas)), hull.normals[:, 2]], axis=1) + 0j
@@ -39,7 +37,7 @@ def test_spheres_sound_as_their_harmonics_do_near_and_far(ka: float) -> None:
         np.testing.assert_allclose(found[:, order], -1j * AIR.impedance * radial * along, rtol=0.006)
 
 
-def test_a_rigid_sphere_under_a_force_scatters() -> None:
+def test_a_rigid_sphere_under_a_force_scatters():
     """The air that an oscillating sphere moves makes it louder than its monopoles: 3/2 at long waves."""
     body = rigid_housing(5.0, 1e9, 0.01, sphere(2, RADIUS))
     hertz = 0.05 / RADIUS * AIR.sound_speed / (2.0 * np.pi)
@@ -51,7 +49,7 @@ def test_a_rigid_sphere_under_a_force_scatters() -> None:
 
 
 @pytest.mark.law
-def test_monopoles_are_off_by_what_the_manual_states() -> None:
+def test_monopoles_are_off_by_what_the_manual_states():
     """A box 1 m around, 400 Hz, directions within 10 dB of the loudest: -7 to 2 dB."""
     hull = box((0.36, 0.24, 0.18), (9, 6, 4))
     x, y = hull.centers[:, 0] / 0.36, hull.centers[:, 1] / 0.24

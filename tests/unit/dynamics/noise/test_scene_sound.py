@@ -1,7 +1,5 @@
 """Sound of several housings under one response: powers add up, errors of levels do not."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from sounding_scene import housing, response

@@ -1,7 +1,5 @@
 """Sound pressure at a microphone, and what levels rest on: sensitivities and bands."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import cache
@@ -12,15 +10,7 @@ from hulls import box, sphere
 from reduced_housings import PAIR, bare_housing
 from sounding_housings import rigid_housing, smooth_motion, with_surface
 from sounding_scene import response
-from varied_housing import (
-    FINE,
-    MESH,
-    blind_levels,
-    covered,
-    meshed,
-    sound_model,
-    undamped_elsewhere,
-)
+from varied_housing import FINE, MESH, blind_levels, covered, meshed, sound_model, undamped_elsewhere
 
 from dynamics.acoustics import Air, ElementalRadiators, Hull, Range, outer_hull
 from dynamics.acoustics.air import directions
@@ -29,6 +19,7 @@ from dynamics.housings import reduced_housing
 from dynamics.noise import (
     GUESSES,
     DesignFigure,
+    Sensitivity,
     estimated_radiation,
     forced_power,
     housing_radiation,
@@ -39,14 +30,8 @@ from dynamics.noise import (
     sound_limit,
 )
 from dynamics.noise.housing_recordings import sound_paths
-from dynamics.noise.sensitivities import Sensitivity, _ranked
-from dynamics.noise.sound_band import (
-    USUAL_RANGES,
-    _peak_error,
-    _speed_step_error,
-    largest_level,
-    mean_power,
-)
+from dynamics.noise.sensitivities import _ranked
+from dynamics.noise.sound_band import USUAL_RANGES, _peak_error, _speed_step_error, largest_level, mean_power
 from dynamics.vibration import seat_forces
 
 # Sound pressure at a microphone: closed forms, its sound power, superposition, distance, delay.
@@ -77,7 +62,7 @@ def amplitude(samples: np.ndarray, hertz: float) -> complex:
 
 
 @pytest.mark.parametrize("ka", [0.1, 1.0, 2.5])
-def test_a_pulsating_sphere_of_monopoles(ka: float) -> None:
+def test_a_pulsating_sphere_of_monopoles(ka):
     """A layer of monopoles on a sphere: i k rho c Q/(4 pi r) e^{-ikr} sin(ka)/(ka), near to it too."""
     hull, k = sphere(12, RADIUS), ka / RADIUS
     hertz = k * AIR.sound_speed / (2.0 * np.pi)
@@ -91,7 +76,7 @@ def test_a_pulsating_sphere_of_monopoles(ka: float) -> None:
             assert abs(per_acceleration) == pytest.approx(abs(surface / (1.0 + 1j * ka)), rel=0.01)
 
 
-def test_a_piston_in_a_baffle_on_its_axis() -> None:
+def test_a_piston_in_a_baffle_on_its_axis():
     """2 rho c v sin(k/2 (sqrt(h^2 + a^2) - h)): near field, minima and all."""
     ring = np.linspace(0.0, RADIUS, 41)
     nodes, triangles = [(0.0, 0.0, 0.0)], []
@@ -114,7 +99,7 @@ def test_a_piston_in_a_baffle_on_its_axis() -> None:
 
 
 @pytest.mark.parametrize("estimated", [False, True])
-def test_what_passes_a_sphere_far_away_is_the_sound_power(estimated: bool) -> None:
+def test_what_passes_a_sphere_far_away_is_the_sound_power(estimated):
     body, hertz = housing(), 700.0
     driven = response_at(hertz)
     radiation = housing_radiation(body, FREE, [hertz])  # whose middle is computed, not interpolated
@@ -142,7 +127,7 @@ def response_at(hertz: float):
 
 
 @pytest.mark.parametrize("hertz", [310.0, 1200.0, 8000.0])
-def test_over_time_it_is_the_force_through_the_transfer_function(hertz: float) -> None:
+def test_over_time_it_is_the_force_through_the_transfer_function(hertz):
     body = housing()
     force = np.random.default_rng(5).normal(size=body.motions)
     found = amplitude(pressure_signal(body, *harmonic(hertz, 32_000, force), AWAY), hertz)
@@ -151,7 +136,7 @@ def test_over_time_it_is_the_force_through_the_transfer_function(hertz: float) -
 
 
 @pytest.mark.parametrize("hertz", [310.0, 1000.0])
-def test_with_the_levels_of_the_estimate_too(hertz: float) -> None:
+def test_with_the_levels_of_the_estimate_too(hertz):
     """Gains over frequency are smooth over some 20 Hz: 0.1 dB."""
     body, force = housing(), np.random.default_rng(5).normal(size=housing().motions)
     estimate = estimated_radiation(body, housing_radiation(body, FREE, [100.0, 1500.0]), AIR)
@@ -162,27 +147,27 @@ def test_with_the_levels_of_the_estimate_too(hertz: float) -> None:
     assert abs(found - whole) < 0.012 * abs(whole) < 0.2 * abs(whole - plain)
 
 
-def test_a_run_of_one_sample_is_refused() -> None:
+def test_a_run_of_one_sample_is_refused():
     body = housing()
     with pytest.raises(InputError, match="time = 1: must be at least two times"):
         pressure_signal(body, np.zeros(1), np.zeros((1, body.motions)), AWAY)
 
 
-def test_forces_superpose() -> None:
+def test_forces_superpose():
     body, time = housing(), np.arange(9000) / RATE
     first, second = np.random.default_rng(6).normal(size=(2, time.size, body.motions))
     whole, one, other = (pressure_signal(body, time, f, AWAY) for f in (first + second, first, second))
     np.testing.assert_allclose(whole, one + other, atol=1e-9 * np.abs(whole).max())
 
 
-def test_far_away_it_falls_with_the_distance_and_comes_later() -> None:
+def test_far_away_it_falls_with_the_distance_and_comes_later():
     body, hertz = housing(), np.array([400.0, 1500.0])
     near, far = (pressure_transfer(body, r * AWAY / np.linalg.norm(AWAY), hertz) for r in (100.0, 200.0))
     late = np.exp(-2j * np.pi * hertz * 100.0 / AIR.sound_speed)
     np.testing.assert_allclose(far, 0.5 * near * late[:, None], atol=2e-3 * np.abs(far).max())
 
 
-def test_nothing_is_heard_before_the_nearest_panel_nor_at_rest() -> None:
+def test_nothing_is_heard_before_the_nearest_panel_nor_at_rest():
     body, time = housing(), np.arange(16_000) / RATE
     constant = np.tile(np.random.default_rng(8).normal(size=body.motions), (time.size, 1))
     assert np.abs(pressure_signal(body, time, constant, AWAY)).max() < 1e-12
@@ -196,7 +181,7 @@ def test_nothing_is_heard_before_the_nearest_panel_nor_at_rest() -> None:
 
 
 @pytest.mark.law
-def test_a_rigid_sphere_oscillates_as_a_dipole_of_monopoles() -> None:
+def test_a_rigid_sphere_oscillates_as_a_dipole_of_monopoles():
     """On its axis far away rho c k a^2 v j_1(ka)/r: the first harmonic of the layer."""
     body = rigid_housing(5.0, 1e9, 0.01, sphere(12, RADIUS))
     ka, far = 1.2, 50.0
@@ -209,7 +194,7 @@ def test_a_rigid_sphere_oscillates_as_a_dipole_of_monopoles() -> None:
     assert abs(found) == pytest.approx(AIR.impedance * k * RADIUS**2 * j1 / far * abs(mobility), rel=0.01)
 
 
-def test_a_microphone_stands_in_the_air() -> None:
+def test_a_microphone_stands_in_the_air():
     body = housing()
     frequency = np.array([300.0])
     with pytest.raises(InputError, match="outside of the housing"):
@@ -222,7 +207,7 @@ def test_a_microphone_stands_in_the_air() -> None:
         pressure_transfer(bare_housing(), AWAY, frequency)
 
 
-def test_it_is_valid_to_where_modes_and_panels_reach() -> None:
+def test_it_is_valid_to_where_modes_and_panels_reach():
     body = housing()
     panels = outer_hull(body).hull.highest_wavenumber * AIR.sound_speed / (2.0 * np.pi)
     assert sound_limit(body) == pytest.approx(min(0.7 * body.frequency.max(), panels))
@@ -266,7 +251,7 @@ def test_damping_of_a_resonance_costs_a_decibel_for_an_eighth():
     near = coarse[int(np.argmax(forced_power(model, coarse, 1)[1].power[0]))]
     fine = np.linspace(0.995 * near, 1.005 * near, 60)
 
-    def level(factor: float) -> float:
+    def level(factor):
         varied = GUESSES["housing_damping"].varied(model, factor)
         return largest_level(fine, forced_power(varied, fine, 1)[1])
 

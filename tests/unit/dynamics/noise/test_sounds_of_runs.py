@@ -1,7 +1,5 @@
 """Sound of runs: of their orders, over time, from recordings of a housing, and where it is loudest."""
 
-from __future__ import annotations
-
 import tracemalloc
 from dataclasses import replace
 from functools import cache
@@ -18,11 +16,10 @@ from sounding_housings import part_of_scene, rigid_housing, smooth_motion, with_
 from sounding_scene import ON, SPEEDS, housing, oscillating, radiation, response, sound
 from swept_runs import BEARINGS, RATE, drawn_amplitudes, order_forces, swept_run
 
+from dynamics import Outputs, RunResult, TimeLaw, forced_response, simulate
 from dynamics.acoustics import Air, ElementalRadiators, EquivalentRadiatedPower, a_weighting
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
-from dynamics.linearize import forced_response
-from dynamics.loads import TimeLaw
 from dynamics.noise import (
     RadiatedSound,
     SoundOverTime,
@@ -38,9 +35,6 @@ from dynamics.noise import (
     velocity_recording,
 )
 from dynamics.orders import bearing_orders
-from dynamics.results import RunResult
-from dynamics.scene import Outputs
-from dynamics.simulation import simulate
 from dynamics.vibration import (
     analyze_vibration,
     housing_motion,
@@ -332,7 +326,7 @@ def amplitude(samples: np.ndarray, rate: float, hertz: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize("coupled", [False, True])
-def test_its_orders_are_those_of_the_force_through_the_transfer_function(coupled: bool) -> None:
+def test_its_orders_are_those_of_the_force_through_the_transfer_function(coupled):
     housing, run = random_housing(coupled=coupled), run_of()
     heard = velocity_recording(housing, run, "b", AXIS)
     assert heard.unit == "m/s"
@@ -347,7 +341,7 @@ def test_its_orders_are_those_of_the_force_through_the_transfer_function(coupled
 
 
 @pytest.mark.law
-def test_it_scales_with_the_load_and_is_heard_where_it_varies_most() -> None:
+def test_it_scales_with_the_load_and_is_heard_where_it_varies_most():
     housing = random_housing()
     once, twice = (velocity_recording(housing, run_of(scale), "a") for scale in (1.0, 2.0))
     np.testing.assert_allclose(twice.samples, 2.0 * once.samples, atol=1e-9 * twice.peak)
@@ -355,7 +349,7 @@ def test_it_scales_with_the_load_and_is_heard_where_it_varies_most() -> None:
     assert np.std(once.samples) >= max(np.std(samples) for samples in along)
 
 
-def test_what_the_housing_or_the_run_does_not_have_is_refused() -> None:
+def test_what_the_housing_or_the_run_does_not_have_is_refused():
     housing, run = random_housing(), run_of()
     with pytest.raises(InputError, match="one of a, b"):
         velocity_recording(housing, run, "lid")
@@ -372,7 +366,7 @@ def sounding():
     return with_surface(bare, hull, smooth_motion(hull, len(bare.stiffness)))
 
 
-def test_orders_of_the_sound_pressure_are_those_of_the_force_through_the_transfer_function() -> None:
+def test_orders_of_the_sound_pressure_are_those_of_the_force_through_the_transfer_function():
     housing, run = sounding(), run_of()
     heard = pressure_recording(housing, run, MICROPHONE)
     assert heard.unit == "Pa"
@@ -389,7 +383,7 @@ def test_orders_of_the_sound_pressure_are_those_of_the_force_through_the_transfe
             assert found < 1e-4 * expected
 
 
-def test_a_run_at_constant_speed_sounds_as_its_forced_response() -> None:
+def test_a_run_at_constant_speed_sounds_as_its_forced_response():
     """Flanks of 1 um at 1500 rpm: 500 Hz, 0.2 s after the start; simulated, and by linear theory."""
     housing, speed = sounding(), 1500.0 * RPM
     scene = gear_pair_scene(spring_table(3e8, 1e-6), effects=ON, speed=TimeLaw.constant(speed), duration=0.5)
@@ -405,7 +399,7 @@ def test_a_run_at_constant_speed_sounds_as_its_forced_response() -> None:
 
 
 @pytest.mark.law
-def test_the_sound_pressure_of_bearings_adds_up_with_its_phase() -> None:
+def test_the_sound_pressure_of_bearings_adds_up_with_its_phase():
     housing, run = sounding(), run_of()
     parts = []
     for silent in (slice(0, 1), slice(1, None)):
@@ -416,7 +410,7 @@ def test_the_sound_pressure_of_bearings_adds_up_with_its_phase() -> None:
     np.testing.assert_allclose(whole.samples, np.sum(parts, axis=0), atol=1e-9 * whole.peak)
 
 
-def test_housings_that_do_not_sound_are_refused() -> None:
+def test_housings_that_do_not_sound_are_refused():
     run = run_of()
     with pytest.raises(InputError, match="with a surface"):
         pressure_recording(random_housing(), run, MICROPHONE)
@@ -431,7 +425,7 @@ def test_housings_that_do_not_sound_are_refused() -> None:
 AIR = Air()
 
 
-def test_the_first_point_is_the_loudest_order_and_speed() -> None:
+def test_the_first_point_is_the_loudest_order_and_speed():
     points, level = loudest(sound()), sound().orders.weighted_level
     assert points[0].weighted_level == pytest.approx(level.max())
     assert [point.weighted_level for point in points] == sorted(
@@ -446,13 +440,13 @@ def test_the_first_point_is_the_loudest_order_and_speed() -> None:
         assert point.bearing == sound().bearing[int(sound().bearing_share[:, s, h].argmax())]
 
 
-def test_silence_has_no_loudest_point() -> None:
+def test_silence_has_no_loudest_point():
     quiet = replace(response(), bearing_force=0.0 * response().bearing_force)
     assert loudest(radiated_sound(quiet, housing(), None, radiation())) == ()
 
 
 @pytest.mark.law
-def test_a_mode_in_resonance_carries_the_sound() -> None:
+def test_a_mode_in_resonance_carries_the_sound():
     body, driven, _, _ = oscillating(5.0, 5.0 * (2.0 * np.pi * 300.0) ** 2)
     plane = cached_radiation(body, EquivalentRadiatedPower(), driven.frequency)
     (point, *_) = loudest(radiated_sound(driven, body, None, plane))
@@ -460,14 +454,14 @@ def test_a_mode_in_resonance_carries_the_sound() -> None:
     assert (point.bearing, point.mode_share) == ("seat", pytest.approx(1.0))
 
 
-def test_models_at_a_point_are_those_of_the_map() -> None:
+def test_models_at_a_point_are_those_of_the_map():
     at = loudest(sound(), 1)[0]
     where = at.speed_index, at.order_index
     ladder = models_at(response(), housing(), None, where, (EquivalentRadiatedPower(), ElementalRadiators()))
     assert ladder.results["monopoles"].level == pytest.approx(at.level, abs=0.5)
 
 
-def test_two_housings_alike_are_3_db_louder_than_one() -> None:
+def test_two_housings_alike_are_3_db_louder_than_one():
     both = RadiatedSound.of_all([sound(), sound()])
     np.testing.assert_allclose(both.power, 2.0 * sound().power, rtol=1e-12)
     np.testing.assert_allclose(both.efficiency, sound().efficiency, rtol=1e-12)
@@ -479,7 +473,7 @@ def test_two_housings_alike_are_3_db_louder_than_one() -> None:
         RadiatedSound.of_all([])
 
 
-def test_the_second_time_comes_from_the_cache_to_the_last_bit(tmp_path, monkeypatch) -> None:
+def test_the_second_time_comes_from_the_cache_to_the_last_bit(tmp_path, monkeypatch):
     module = import_module("dynamics.noise.housing_radiation")
     monkeypatch.setattr(module, "MIN_COST", 0.0)
     body = rigid_housing(1.0, 1e6, 0.02, sphere(6, 0.1))

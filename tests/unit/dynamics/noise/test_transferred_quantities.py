@@ -1,7 +1,5 @@
 """What is heard of other flanks by transfer functions, against a whole response of the scene with them."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np
@@ -45,7 +43,7 @@ def direct(index: int) -> HarmonicResponse:
 
 
 @pytest.mark.parametrize("index", range(len(FAR)))
-def test_flanks_sound_as_a_scene_with_them(index: int) -> None:
+def test_flanks_sound_as_a_scene_with_them(index):
     """Helical flanks far from those of the transfer, elastic shafts, rolling bearings, a housing."""
     _, power = forced_power(sound_model(unit(*FAR[index])), SPEEDS, ORDERS)
     heard = levels(SoundPower(), FAR[index])
@@ -57,7 +55,7 @@ def test_flanks_sound_as_a_scene_with_them(index: int) -> None:
         assert np.abs(heard - nominal)[loud].max() > 3.0
 
 
-def test_a_bearing_and_the_surface_move_as_in_the_response() -> None:
+def test_a_bearing_and_the_surface_move_as_in_the_response():
     response, index = direct(0), direct(0).bearing.index("mid.right")
     force = response.bearing_force[index, :3]
     size = 10.0 * np.log10(0.5 * np.sum(np.abs(force) ** 2, axis=0))
@@ -76,7 +74,7 @@ def test_a_bearing_and_the_surface_move_as_in_the_response() -> None:
     np.testing.assert_allclose(levels(PointVelocity("case", "top", "z"), FAR[0]), moved, rtol=0.0, atol=1e-5)
 
 
-def test_a_microphone_hears_the_forces_on_all_seats() -> None:
+def test_a_microphone_hears_the_forces_on_all_seats():
     response, place = direct(0), (1.0, 0.4, 0.2)
     hertz = response.frequency
     path = pressure_transfer(housing(), np.array(place), hertz.ravel()).reshape(*hertz.shape, -1)
@@ -88,7 +86,7 @@ def test_a_microphone_hears_the_forces_on_all_seats() -> None:
     assert form.decibels(np.array([4e-10]))[0] == pytest.approx(0.0)
 
 
-def test_louder_by_the_square_of_what_excites() -> None:
+def test_louder_by_the_square_of_what_excites():
     own = transfer()
     form = SoundPower().form(own, sound_model(unit()))
     inputs = own.inputs(own.excitation(assemble(unit(*FAR[0]))))
@@ -96,7 +94,7 @@ def test_louder_by_the_square_of_what_excites() -> None:
     np.testing.assert_allclose(form.decibels(form.of(inputs)), sound_power_level(form.of(inputs)))
 
 
-def test_parts_that_are_not_there_are_refused() -> None:
+def test_parts_that_are_not_there_are_refused():
     silent = SoundModel(unit(), {}, {})
     for quantity, words in (
         (BearingForce("none"), "in.left"),

@@ -1,7 +1,5 @@
 """Orders of a recording: amplitudes of known tones, nothing folded onto them, noise found and removed."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -22,7 +20,7 @@ def signal(*further: np.ndarray) -> PositionedSignal:
     return PositionedSignal(TIME, POSITION, np.asarray(sum(further, orders)), "m/s²")
 
 
-def test_orders_of_a_run_up_keep_their_amplitude() -> None:
+def test_orders_of_a_run_up_keep_their_amplitude():
     blocks = recorded_waterfall(signal(), 16, 8, overlap=OVERLAP)
     for order, size in AMPLITUDES.items():
         np.testing.assert_allclose(blocks.cut(order), size, rtol=2e-3, atol=2e-4)
@@ -30,7 +28,7 @@ def test_orders_of_a_run_up_keep_their_amplitude() -> None:
     np.testing.assert_allclose(blocks.mesh_frequency, np.interp(blocks.time, TIME, FREQUENCY), rtol=2e-3)
 
 
-def test_a_tone_far_above_the_orders_does_not_fold_onto_them() -> None:
+def test_a_tone_far_above_the_orders_does_not_fold_onto_them():
     """Where the mesh is slow the tone is at order 160: of 64 samples a pitch it would fold onto the first.
 
     What is left is the error of the interpolation, 0.4 % of a tone at 2.56 samples a period.
@@ -40,7 +38,7 @@ def test_a_tone_far_above_the_orders_does_not_fold_onto_them() -> None:
     assert np.abs(loud.amplitude[:, 1:] - quiet.amplitude[:, 1:]).max() < 0.004 * 3.0
 
 
-def test_noise_is_removed_from_the_power_of_an_order_within_its_error() -> None:
+def test_noise_is_removed_from_the_power_of_an_order_within_its_error():
     """Over 24 draws the mean is right, and two standard deviations hold 9 draws in 10."""
     whole, inside = [], 0
     for seed in range(24):
@@ -55,14 +53,14 @@ def test_noise_is_removed_from_the_power_of_an_order_within_its_error() -> None:
     assert power.noise > 0.05 * power.power  # it would be seen if it stayed
 
 
-def test_an_order_that_is_not_there_is_not_seen() -> None:
+def test_an_order_that_is_not_there_is_not_seen():
     noise = 0.1 * np.random.default_rng(3).standard_normal(TIME.size)
     blocks = recorded_waterfall(signal(noise), 16, 8, overlap=OVERLAP)
     seen = {k: order_power(blocks, k, SPAN, OVERLAP).is_seen for k in (1, 3, 4, 5, 7)}
     assert seen == {1: True, 3: True, 4: False, 5: True, 7: False}
 
 
-def test_a_power_that_follows_the_speed_is_averaged_over_it_whatever_the_blocks() -> None:
+def test_a_power_that_follows_the_speed_is_averaged_over_it_whatever_the_blocks():
     """The mean of (1 + f / 100)^2 / 2 over the span, from blocks that start elsewhere and lie elsewhere."""
     size = 1.0 + FREQUENCY / 100.0
     tone = np.asarray(size * np.cos(2 * np.pi * POSITION))
@@ -76,8 +74,8 @@ def test_a_power_that_follows_the_speed_is_averaged_over_it_whatever_the_blocks(
         assert abs(power.power - mean) < 2.0 * power.deviation + 1e-3 * mean
 
 
-def test_two_signals_share_the_speeds_that_both_pass() -> None:
-    def blocks(low: float, high: float) -> Waterfall:
+def test_two_signals_share_the_speeds_that_both_pass():
+    def blocks(low, high):
         frequency = np.linspace(high, low, 9)
         zeros = np.zeros((9, 3))
         return Waterfall(np.arange(3.0), np.arange(9.0), frequency, zeros, zeros[:, 0], "N", 1.5)
@@ -87,7 +85,7 @@ def test_two_signals_share_the_speeds_that_both_pass() -> None:
     assert shared_frequencies(blocks(50.0, 50.0), blocks(50.4, 50.4)) == (50.0, 50.4)
 
 
-def test_what_cannot_be_analyzed_is_refused() -> None:
+def test_what_cannot_be_analyzed_is_refused():
     with pytest.raises(InputError, match="highest"):
         recorded_waterfall(signal(), 16, 20)
     with pytest.raises(InputError, match="base pitches"):

@@ -4,12 +4,11 @@ import numpy as np
 import pytest
 from geared_scenes import RPM, gear_pair_scene
 
+from dynamics import TimeLaw, mesh_orders, simulate
 from dynamics.errors import InputError
-from dynamics.loads import TimeLaw
 from dynamics.orders import (
     Waterfall,
     find_peaks,
-    mesh_orders,
     order_track,
     resample_to_position,
     spectrum,
@@ -17,7 +16,6 @@ from dynamics.orders import (
     window_spectrum,
 )
 from dynamics.orders.spectrum import WINDOWS
-from dynamics.simulation import simulate
 
 # Spectra: amplitudes of known sinusoids, peaks between lines, mesh orders, order tracking.
 

@@ -8,11 +8,10 @@ from flexible_scenes import flexible_pair
 from geared_scenes import RPM, gear_pair_scene, repeated, spring_table, square_wave_table, with_bushings
 from planetary_scenes import MESH_STIFFNESS, driven_scene, planetary_scene, published_set
 
+from dynamics import Integration, Outputs, RollingContact, TimeLaw, simulate
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
-from dynamics.forces import RollingContact
 from dynamics.linearize import common_period, harmonic_response
-from dynamics.loads import TimeLaw
 from dynamics.periodic import (
     BranchStatus,
     OrbitStatus,
@@ -24,8 +23,6 @@ from dynamics.periodic import (
     spectrum,
 )
 from dynamics.periodic.period_map import PeriodGrid
-from dynamics.scene import Integration, Outputs
-from dynamics.simulation import simulate
 
 SPEED = 900.0 * RPM
 

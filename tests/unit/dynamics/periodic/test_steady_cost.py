@@ -31,7 +31,6 @@ def pair():
 
 @pytest.fixture
 def marched(monkeypatch):
-    """Steps marched over whole periods, by the speed."""
     steps, whole = Counter(), PeriodMap._one_period
 
     def counted(self, y, path, part=None):

@@ -1,7 +1,5 @@
 """Steady states as a study: jumps beside the folds, linear limit, flanks of several rows, status, files."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 
@@ -11,22 +9,12 @@ import pytest
 from geared_scenes import RPM, gear_pair_scene, spring_table, square_wave_table, with_gear, with_mesh
 from sliced_face import sliced_database
 
+from dynamics import CoastFlank, Integration, Outputs, TimeLaw, simulate, steady_states
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError, ResultError
 from dynamics.linearize import harmonic_response
-from dynamics.loads import TimeLaw
-from dynamics.meshes import CoastFlank
-from dynamics.periodic import (
-    OrbitStatus,
-    SteadyStates,
-    find_orbit,
-    periodic_problem,
-    steady_states,
-    sweep,
-)
+from dynamics.periodic import OrbitStatus, SteadyStates, find_orbit, periodic_problem, sweep
 from dynamics.periodic.steady_states import BRANCH, DOWN, UP
-from dynamics.scene import Integration, Outputs
-from dynamics.simulation import simulate
 
 SPEEDS = np.array([11600.0, 11900.0, 12300.0, 12700.0]) * RPM
 
@@ -38,12 +26,11 @@ def light_pair(sense=1.0):
 
 
 @pytest.fixture(scope="module")
-def light() -> SteadyStates:
+def light():
     return steady_states(assemble(light_pair()), SPEEDS)
 
 
 def on(found: SteadyStates, curve: int) -> np.ndarray:
-    """Points of one curve by rising speed."""
     points = np.flatnonzero(found.curve == curve)
     return points[np.argsort(found.speed[points], kind="stable")] if curve != BRANCH else points
 

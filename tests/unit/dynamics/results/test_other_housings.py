@@ -1,20 +1,17 @@
 """Housings of a scene beside those of a run."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 
 import numpy as np
 from geared_scenes import gear_pair_scene
 
-from dynamics.joints import Housing
+from dynamics import Housing, simulate
 from dynamics.results.other_housings import other_housings
-from dynamics.simulation import simulate
 from dynamics.types import FloatArray
 
 
-def test_housings_are_compared_by_what_they_state() -> None:
+def test_housings_are_compared_by_what_they_state():
     """Matrices without damping are the same again, and not those with another mass; without mass none is."""
     run = simulate(gear_pair_scene(duration=0.001))
     unit = np.eye(10)

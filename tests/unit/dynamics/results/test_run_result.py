@@ -1,9 +1,6 @@
 """Results of runs: their quantities, orders that are fitted, figures of contact."""
 
-from __future__ import annotations
-
 from dataclasses import fields, replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,19 +9,11 @@ from planetary_scenes import planetary_scene, published_set
 
 from bounds import engineering
 from bounds.brief import MAX_LINES, WIDTH
+from dynamics import Integration, Outputs, RunResult, TimeLaw, simulate
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError, ResultError
-from dynamics.loads import TimeLaw
-from dynamics.results import RunResult
-from dynamics.results.mesh_figures import (
-    ContactState,
-    contact_shares,
-    dynamic_factor,
-    planet_load_sharing,
-)
+from dynamics.results.mesh_figures import ContactState, contact_shares, dynamic_factor, planet_load_sharing
 from dynamics.results.order_fit import order_amplitudes, orders_seen, unwrapped
-from dynamics.scene import Integration, Outputs
-from dynamics.simulation import simulate
 
 # Series of a result belong together; files give them back bit by bit.
 
@@ -134,7 +123,7 @@ def test_what_no_output_has_takes_nothing_and_changes_nothing_else():
     np.testing.assert_array_equal(part.mesh_force, whole.mesh_force)
 
 
-def test_other_files_are_refused(tmp_path: Path):
+def test_other_files_are_refused(tmp_path):
     import xarray  # noqa: PLC0415
 
     (tmp_path / "text.nc").write_text("no netCDF")

@@ -1,7 +1,5 @@
 """Runs beyond small motion end with the part, its value and the bound; others say what comes nearest."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -10,15 +8,12 @@ import pytest
 from drawn_trains import PITCH, Train
 from geared_scenes import square_wave_table
 
+from dynamics import Bushing, LoadTorque, Outputs, Scene, TimeLaw, simulate
 from dynamics.assembly.assemble import assemble
-from dynamics.bearings import BallBearing, Bushing, RollingBearing
+from dynamics.bearings import BallBearing, RollingBearing
 from dynamics.errors import SolveError
-from dynamics.loads import LoadTorque, TimeLaw
 from dynamics.motion.sampled_states import States
 from dynamics.results.small_motion import SmallMotionCheck
-from dynamics.scene import Scene
-from dynamics.settings import Outputs
-from dynamics.simulation import simulate
 
 
 def pair_on(stiffness: float, **changes) -> Scene:
@@ -94,7 +89,6 @@ def test_flanks_that_part_by_a_base_pitch_end_the_run():
 
 
 def checked(system, **moved):
-    """The checks of freedoms that moved so much, by name."""
     q = np.zeros((3, len(system.freedoms.name)))
     for name, value in moved.items():
         q[1, system.freedoms.name.index(name.replace("__", "."))] = value

@@ -1,7 +1,5 @@
 """Elastic shafts: stiffness, inertia, conical sections."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -11,17 +9,9 @@ from scipy.linalg import eigh
 from scipy.optimize import brentq
 from scipy.special import iv, jv, kv, yv
 
+from dynamics import Inertia, Shaft, hollow_cylinder
 from dynamics.errors import InputError
-from dynamics.shafts import (
-    BeamSection,
-    Disc,
-    Inertia,
-    PointOfApplication,
-    Shaft,
-    elastic_shaft,
-    hollow_cylinder,
-    timoshenko_beam,
-)
+from dynamics.shafts import BeamSection, Disc, PointOfApplication, elastic_shaft, timoshenko_beam
 
 # Elastic coordinates of a shaft: closed forms, orthogonality to rigid motion, and the stated errors.
 
@@ -153,11 +143,6 @@ def test_impossible_sizes_are_refused(sizes):
         hollow_cylinder(*sizes)
 
 
-def test_negative_inertia_is_refused():
-    with pytest.raises(InputError, match=r"^polar"):
-        Inertia(1.0, -1e-9, 0.0)
-
-
 # Conical sections of shafts: closed forms of a cantilever cone, its body, its frequency, bad input.
 
 
@@ -180,7 +165,7 @@ def tip_motion(section: BeamSection, freedom: int, load: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize("r", RATIOS)
-def test_a_cantilever_cone_moves_as_the_closed_form_says(r: float) -> None:
+def test_a_cantilever_cone_moves_as_the_closed_form_says(r):
     """Integrals of (1 - x)^2, 1 - x and 1 over (1 + (r - 1) x)^4, and of 1 over its square."""
     section = cone(r)
     bent = section.youngs_modulus * math.pi / 64.0 * DIAMETER**4
@@ -198,7 +183,7 @@ def test_a_cantilever_cone_moves_as_the_closed_form_says(r: float) -> None:
 
 
 @pytest.mark.parametrize("bores", [(0.0, None), (0.01, 0.03), (0.03, 0.01)])
-def test_as_a_rigid_body_it_is_a_frustum_less_its_bore(bores: tuple[float, float | None]) -> None:
+def test_as_a_rigid_body_it_is_a_frustum_less_its_bore(bores):
     section = replace(cone(1.6), bore_diameter=bores[0], end_bore_diameter=bores[1])
     outer = frustum(DIAMETER, 1.6 * DIAMETER)
     bore = frustum(bores[0], bores[0] if bores[1] is None else bores[1])
@@ -236,7 +221,7 @@ def clamped_frequency(r: float) -> float:
     Z the Bessel functions J, Y, I, K; y = y' = 0 at x = 1, y'' = (x^4 y'')' = 0 at x = r.
     """
 
-    def determinant(p: float) -> float:
+    def determinant(p):
         base, tip = 2.0 * math.sqrt(p), 2.0 * math.sqrt(p * r)
         rows = [[f(2, base), s * f(3, base), f(4, tip), t * f(3, tip)] for f, s, t in KINDS]
         return float(np.linalg.det(rows))
@@ -248,7 +233,7 @@ def clamped_frequency(r: float) -> float:
 
 
 @pytest.mark.parametrize("r", [0.1, 0.5])
-def test_a_slender_cone_clamped_at_its_base_vibrates_at_the_closed_form(r: float) -> None:
+def test_a_slender_cone_clamped_at_its_base_vibrates_at_the_closed_form(r):
     section = BeamSection(1.0, 0.005, end_outer_diameter=r * 0.005)
     beam = timoshenko_beam([section], longest=0.02)
     plane = [i for i in range(6, beam.mass.shape[0]) if i % 6 in (0, 4)]
@@ -258,17 +243,17 @@ def test_a_slender_cone_clamped_at_its_base_vibrates_at_the_closed_form(r: float
     assert math.sqrt(square) / unit == pytest.approx(clamped_frequency(r), rel=2e-5)
 
 
-def test_many_steps_come_to_the_cone() -> None:
+def test_many_steps_come_to_the_cone():
     """The frequencies of a shaft of n cylinders approach those of the cone with 1/n^2."""
     ends = (
         PointOfApplication(0.0, True, True, True, True),
         PointOfApplication(LENGTH, True, True, True, True),
     )
 
-    def first(sections: tuple[BeamSection, ...]) -> float:
+    def first(sections):
         return float(elastic_shaft(sections, (), ends, 4e3, 0.0).bending.frequency[0])
 
-    def stepped(count: int) -> tuple[BeamSection, ...]:
+    def stepped(count):
         middles = (np.arange(count) + 0.5) / count
         return tuple(BeamSection(LENGTH / count, DIAMETER * (1.0 - 0.4 * x)) for x in middles)
 
@@ -278,7 +263,7 @@ def test_many_steps_come_to_the_cone() -> None:
     assert fine < 0.35 * coarse + 1e-4
 
 
-def test_a_shaft_of_two_cones_weighs_what_they_do_and_lies_on_their_centroid() -> None:
+def test_a_shaft_of_two_cones_weighs_what_they_do_and_lies_on_their_centroid():
     shaft = Shaft("shaft", 0.6, sections=(cone(2.0), replace(cone(1.0), outer_diameter=2.0 * DIAMETER)))
     (first, z), (second, there) = shaft.bodies
     assert second.mass == pytest.approx(first.mass, rel=1e-12)
@@ -290,10 +275,9 @@ def test_a_shaft_of_two_cones_weighs_what_they_do_and_lies_on_their_centroid() -
     [
         ("end_bore_diameter", {"end_bore_diameter": 0.05}),
         ("end_bore_diameter", {"bore_diameter": 0.03, "end_outer_diameter": 0.02}),
-        ("end_outer_diameter", {"end_outer_diameter": 0.0}),
     ],
 )
-def test_what_is_no_cone_is_named(field: str, sizes: dict[str, float]) -> None:
+def test_what_is_no_cone_is_named(field, sizes):
     with pytest.raises(InputError) as caught:
         BeamSection(LENGTH, **{"outer_diameter": DIAMETER, **sizes})
     assert caught.value.field == field

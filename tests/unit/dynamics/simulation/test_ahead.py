@@ -22,6 +22,6 @@ print([name for name in found if name.startswith("dynamics.integrators")])
 """
 
 
-def test_after_it_a_run_up_finds_all_loops_of_the_integrators() -> None:
+def test_after_it_a_run_up_finds_all_loops_of_the_integrators():
     with python("-c", RUN_UP_PROGRAM, settings={"PYTHONPATH": str(ROOT / "tests" / "fakes")}) as process:
         assert process.communicate()[0] == "[]\n"

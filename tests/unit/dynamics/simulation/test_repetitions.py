@@ -1,25 +1,18 @@
 """What a repetition goes on from, and the checks of neglected effects for a tolerance or by name."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from geared_scenes import RPM, gear_pair_scene, spring_table, with_gear, with_mesh
 from sliced_face import sliced_database
 
+from dynamics import CoastFlank, Outputs, RunResult, Scene, TimeLaw, simulate, simulate_to_file
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import SolveError
 from dynamics.influence import decide_effects
 from dynamics.integrators import march
 from dynamics.integrators.start_value import added_rows
-from dynamics.loads import TimeLaw
-from dynamics.meshes import CoastFlank, MeshTable
-from dynamics.results import RunResult
-from dynamics.scene import Outputs, Scene
-from dynamics.simulation import simulate, simulate_to_file
 from dynamics.simulation.violations import needed_effects
 from dynamics.types import Json
 
@@ -54,9 +47,7 @@ def check(result: RunResult, assumption: str) -> Json:
     return next(dict(one) for one in result.effect_ledger["checks"] if assumption in one["assumption"])
 
 
-def test_a_run_without_coast_flanks_is_repeated_from_where_the_teeth_had_not_parted(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_run_without_coast_flanks_is_repeated_from_where_the_teeth_had_not_parted(tmp_path, monkeypatch):
     monkeypatch.setattr(march, "BLOCK_WORK", 0)  # save this short run's state as often as a long one's
     scene = coasting()
     repeated = simulate(scene)
@@ -78,11 +69,10 @@ def test_a_run_without_coast_flanks_is_repeated_from_where_the_teeth_had_not_par
     assert streamed.receipt["repeated"]["since"] == since
 
 
-def test_rows_are_matched_in_their_order() -> None:
+def test_rows_are_matched_in_their_order():
     before = assemble(coasting())
     after = assemble(replace(coasting(), effects={"gyroscopic": "on", "backlash": "on"}))
     rows = added_rows(before, after)
-    assert rows is not None
     np.testing.assert_array_equal(after.arrays.direction[rows], before.arrays.direction)
     assert rows.tolist() == [0, *range(2, after.arrays.direction.shape[0])]
     assert added_rows(after, before) is None
@@ -90,7 +80,7 @@ def test_rows_are_matched_in_their_order() -> None:
 
 
 @pytest.mark.law
-def test_what_a_tolerance_neglected_is_on_after_flanks_parted() -> None:
+def test_what_a_tolerance_neglected_is_on_after_flanks_parted():
     scene = dropped(tolerance=0.5)
     left = set(decide_effects(scene).neglected)
     assert "axial" in left
@@ -111,12 +101,12 @@ def test_what_a_tolerance_neglected_is_on_after_flanks_parted() -> None:
 
 
 @pytest.fixture(scope="module")
-def table() -> MeshTable:
+def table():
     knots = (-60e-6, -30e-6, -10e-6, 0.0, 10e-6, 30e-6, 60e-6)
     return sliced_database(knots, (-1e-4, 0.0, 1e-4), positions=12).force_table()
 
 
-def test_tilt_that_a_table_does_not_follow_is_noticed(table: MeshTable) -> None:
+def test_tilt_that_a_table_does_not_follow_is_noticed(table):
     """The pair off the middle of its shafts, one bushing unlike the others."""
     scene = gear_pair_scene(table, duration=0.004, outputs=Outputs(displacements=True))
     scene = with_gear(with_gear(scene, 0, position=0.02), 1, position=0.02)

@@ -10,7 +10,7 @@ from dynamics.integrators import code_choice
 from dynamics.integrators.march import advance_to
 from dynamics.loads import TimeLaw
 from dynamics.simulation import run_cost, run_scene
-from dynamics.simulation.run_cost import FINER, PARTS, SHARE, _probe, probe_run
+from dynamics.simulation.run_cost import FINER, PARTS, WINDOW_SHARE, _probe, probe_run
 from dynamics.structure_code.machine_code import CodeStore
 
 
@@ -49,7 +49,7 @@ def test_a_prediction_is_linear_in_the_duration(scene, monkeypatch):
     once = probed.seconds(1, with_errors=True)
     assert longer.seconds(1, with_errors=True) == pytest.approx(2.0 * once)
     assert probed.seconds(7, with_errors=True) == pytest.approx(7.0 * once)
-    assert probed.seconds(1, with_errors=False) == pytest.approx(once / (1.0 + (1.0 + FINER) * SHARE))
+    assert probed.seconds(1, with_errors=False) == pytest.approx(once / (1.0 + (1.0 + FINER) * WINDOW_SHARE))
 
 
 @pytest.mark.parametrize("light", [False, True])

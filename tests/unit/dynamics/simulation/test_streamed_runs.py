@@ -1,7 +1,5 @@
 """Runs streamed to a file: the same bits as in memory, however often cancelled, killed and resumed."""
 
-from __future__ import annotations
-
 import math
 import signal
 import subprocess
@@ -17,17 +15,14 @@ from flexible_scenes import flexible_pair
 from geared_scenes import RPM, gear_pair_scene
 from planetary_scenes import planetary_scene, published_set
 
+from dynamics import CoastFlank, Integration, Outputs, RunResult, TimeLaw, simulate, simulate_to_file
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError, ResultError, SolveError
 from dynamics.integrators import static_equilibrium
 from dynamics.integrators.checkpoints import leaves_of, read_checkpoint, restore, write_checkpoint
 from dynamics.integrators.march import start_march
 from dynamics.integrators.state_sink import BLOCK
-from dynamics.loads import TimeLaw
-from dynamics.meshes import CoastFlank
-from dynamics.results import RunResult
-from dynamics.scene import Integration, Outputs
-from dynamics.simulation import interrupted_run, simulate, simulate_to_file
+from dynamics.simulation import interrupted_run
 from dynamics.types import RunStatus
 
 FAKES = Path(__file__).parents[3] / "fakes"

@@ -1,21 +1,15 @@
 """A run that shows one of its assumptions to be wrong is repeated, refused or reported."""
 
-from __future__ import annotations
-
 import threading
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene, spring_table, square_wave_table, with_mesh
 
+from dynamics import CoastFlank, Outputs, RunResult, Scene, TimeLaw, simulate, simulate_to_file
 from dynamics.errors import InputError, SolveError
-from dynamics.loads import TimeLaw
-from dynamics.meshes import CoastFlank
-from dynamics.results import RunResult
-from dynamics.scene import Outputs, Scene
-from dynamics.simulation import interrupted_run, simulate, simulate_to_file
+from dynamics.simulation import interrupted_run
 from dynamics.simulation.violations import needed_effects
 from dynamics.types import Json, RunStatus
 
@@ -39,7 +33,7 @@ def backlash(result: RunResult) -> Json:
     return next(dict(one) for one in result.effect_ledger["entries"] if one["effect"] == "backlash")
 
 
-def test_it_is_repeated_with_the_effect_and_says_so() -> None:
+def test_it_is_repeated_with_the_effect_and_says_so():
     repeated, explicit = simulate(dropped()), simulate(dropped(effects={"backlash": "on"}))
     same(repeated, explicit)
     assert repeated.coast_force.max() > 0.0
@@ -53,7 +47,7 @@ def test_it_is_repeated_with_the_effect_and_says_so() -> None:
     assert "repeated" not in explicit.receipt
 
 
-def test_it_may_fail_or_be_reported_and_an_explicit_off_is_obeyed() -> None:
+def test_it_may_fail_or_be_reported_and_an_explicit_off_is_obeyed():
     with pytest.raises(SolveError, match="coast flanks are not reached") as caught:
         simulate(dropped(on_violation="fail"))
     reported = simulate(dropped(on_violation="report"))
@@ -69,7 +63,7 @@ def test_it_may_fail_or_be_reported_and_an_explicit_off_is_obeyed() -> None:
         dropped(on_violation="shrug")
 
 
-def test_a_streamed_run_is_repeated_too_and_may_be_interrupted_in_between(tmp_path: Path) -> None:
+def test_a_streamed_run_is_repeated_too_and_may_be_interrupted_in_between(tmp_path):
     scene, file = dropped(), tmp_path / "run.nc"
     assert simulate_to_file(scene, file) is RunStatus.COMPLETED
     same(RunResult.from_netcdf(file), simulate(scene))
@@ -77,7 +71,7 @@ def test_a_streamed_run_is_repeated_too_and_may_be_interrupted_in_between(tmp_pa
     stop = threading.Event()
     runs: list[float] = []
 
-    def progress(fraction: float, what: str) -> None:
+    def progress(fraction, what):
         if runs and fraction < runs[-1]:
             stop.set()  # the second run has begun
         runs.append(fraction)
@@ -92,7 +86,7 @@ def test_a_streamed_run_is_repeated_too_and_may_be_interrupted_in_between(tmp_pa
         simulate_to_file(replace(scene, on_violation="fail"), file)
 
 
-def test_forces_beyond_the_table_are_noticed() -> None:
+def test_forces_beyond_the_table_are_noticed():
     table = square_wave_table()
     calm = simulate(gear_pair_scene(table, duration=0.01))
     (check,) = (one for one in calm.effect_ledger["checks"] if one["assumption"] == "force inside the table")
@@ -104,8 +98,8 @@ def test_forces_beyond_the_table_are_noticed() -> None:
     assert check["beyond"] == pytest.approx(np.mean(heavy.largest_mesh_force > table.level[-1]), rel=1e-12)
 
 
-def test_a_bearing_that_lets_go_is_noticed() -> None:
-    def checks(result: RunResult) -> list[Json]:
+def test_a_bearing_that_lets_go_is_noticed():
+    def checks(result):
         found = result.effect_ledger["checks"]
         return [one for one in found if one["assumption"] == "linear bearing stays loaded"]
 
@@ -122,7 +116,7 @@ def test_a_bearing_that_lets_go_is_noticed() -> None:
     assert [one["holds"] for one in unloaded] == (share == 0.0).tolist()
 
 
-def test_every_entry_of_the_ledger_is_complete() -> None:
+def test_every_entry_of_the_ledger_is_complete():
     fields = {
         "effect", "part", "choice", "on", "reason", "influence_m", "called_for", "possible", "cost", "price",
         "checked", "holds",

@@ -1,7 +1,5 @@
 """Runs in code of their own: the bits of ordinary loops, the structure by which it is found, its files."""
 
-from __future__ import annotations
-
 import gc
 import math
 from dataclasses import replace
@@ -13,14 +11,13 @@ from geared_scenes import RPM, gear_pair_scene, square_wave_table, with_mesh
 from planetary_scenes import driven_scene, planetary_scene, published_set
 from rotors_on_bearings import KINDS, rotor
 
+from dynamics import CoastFlank, Integration, TimeLaw
 from dynamics.assembly.assemble import assemble
 from dynamics.integrators import code_choice, integrate, static_equilibrium
 from dynamics.integrators.march import start_march
 from dynamics.kernels.by_address import by_address
 from dynamics.kernels.compiled import compiled
-from dynamics.loads import AppliedForce, TimeLaw, Unbalance
-from dynamics.meshes.gear_mesh import CoastFlank
-from dynamics.scene import Integration
+from dynamics.loads import AppliedForce, Unbalance
 from dynamics.structure_code.arithmetic import CALLS
 from dynamics.structure_code.known_parts import Known
 from dynamics.structure_code.machine_code import CodeStore
@@ -148,8 +145,6 @@ def test_code_is_made_after_as_long_as_it_takes_and_sooner_when_seen_before(stor
 
 
 class Count(NamedTuple):
-    """One number."""
-
     number: np.ndarray
 
 

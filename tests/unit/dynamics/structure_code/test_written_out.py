@@ -1,7 +1,5 @@
 """Code written out for a structure does what compiled loops do, to the last bit."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np
@@ -186,7 +184,7 @@ def test_what_only_other_structures_need_is_left_out():
 def test_the_key_is_that_of_what_is_known():
     plan, _ = sample(3)
 
-    def key(changed: Plan, known: Known = Known.ALL) -> str | None:
+    def key(changed, known=Known.ALL):
         return structure_key({by_address(changed): known})
 
     own = key(plan)

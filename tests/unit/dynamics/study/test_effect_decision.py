@@ -1,21 +1,13 @@
 """Effects of a study: decided once, on in all runs where they are on at an end of a factor."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Any
 
 import numpy as np
-import pytest
 from geared_scenes import RPM, gear_pair_scene, with_gear
 
+from dynamics import Outputs, RunResult, Scene, TimeLaw, simulate
 from dynamics.influence import decide_effects, neglected_check
-from dynamics.loads import TimeLaw
-from dynamics.results import RunResult
-from dynamics.scene import Outputs, Scene
-from dynamics.simulation import simulate
 from dynamics.study import (
     Design,
     Factor,
@@ -72,7 +64,7 @@ def figures(scene: Scene) -> list[float]:
     return responses_of(simulate(scene), RESPONSES)[0]
 
 
-def test_runs_whose_own_decision_is_that_of_the_study_are_as_alone_to_the_last_bit() -> None:
+def test_runs_whose_own_decision_is_that_of_the_study_are_as_alone_to_the_last_bit():
     task, design = of_angles(*SMALL)
     made = study(task, design)
     for angle, row in zip(made.value[:, 0], made.figure, strict=True):
@@ -86,7 +78,7 @@ def test_runs_whose_own_decision_is_that_of_the_study_are_as_alone_to_the_last_b
     assert effects["largest"]["decibels"] == max(row["decibels"] for row in effects["neglected"].values())
 
 
-def test_an_effect_that_one_end_of_a_factor_needs_is_on_in_all_runs(tmp_path: Path) -> None:
+def test_an_effect_that_one_end_of_a_factor_needs_is_on_in_all_runs(tmp_path):
     task, design = of_angles(*SMALL, 0.3)
     made = study(task, design, keep_worst=4)
     assert "axial" in made.metadata["effects"]["on"] and made.metadata["effects"]["points"] == 3
@@ -103,7 +95,7 @@ def test_an_effect_that_one_end_of_a_factor_needs_is_on_in_all_runs(tmp_path: Pa
         assert entry["on"] and entry["choice"] == "auto" and "study" in entry["reason"]
 
 
-def test_without_a_decision_for_all_every_run_decides_by_itself() -> None:
+def test_without_a_decision_for_all_every_run_decides_by_itself():
     task, design = of_angles(SMALL[0], 0.3)
     made = study(replace(task, effects=None), design)
     assert made.metadata["effects"] is None
@@ -112,11 +104,11 @@ def test_without_a_decision_for_all_every_run_decides_by_itself() -> None:
     assert made.figure[0].tolist() != study(task, design).figure[0].tolist()
 
 
-def test_sizes_are_estimated_at_the_points_of_the_decision_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_sizes_are_estimated_at_the_points_of_the_decision_alone(monkeypatch):
     estimated: list[Scene] = []
     estimate = neglected_check._estimated
 
-    def counted(scene: Scene, *others: Any) -> object:
+    def counted(scene, *others):
         estimated.append(scene)
         return estimate(scene, *others)
 
@@ -128,7 +120,7 @@ def test_sizes_are_estimated_at_the_points_of_the_decision_alone(monkeypatch: py
     assert made.usable == 12 and len(estimated) == made.metadata["effects"]["points"] == 4
 
 
-def test_a_run_with_a_part_that_the_decision_never_had_decides_by_itself() -> None:
+def test_a_run_with_a_part_that_the_decision_never_had_decides_by_itself():
     task, design = of_angles(*SMALL)
     braced = replace(task, scenes=Helical(braced=0.012))
     for angle in SMALL:
@@ -138,10 +130,10 @@ def test_a_run_with_a_part_that_the_decision_never_had_decides_by_itself() -> No
         alone = decide_effects(scene)
         assert (decision.automatic == alone.automatic) == (angle >= 0.012)
     made = study(braced, design)  # a task keeps its decision
-    assert made.metadata["effects"] == task.effects.to_json()  # type: ignore[union-attr]
+    assert made.metadata["effects"] == task.effects.to_json()
 
 
-def test_points_of_a_decision_are_the_middle_and_the_ends_of_every_factor() -> None:
+def test_points_of_a_decision_are_the_middle_and_the_ends_of_every_factor():
     factors: dict[str, Factor] = {
         "a": Levels((1.0, 2.0, 3.0, 4.0)),
         "b": Listed((5.0, 7.0, 6.0)),
@@ -164,17 +156,17 @@ def test_points_of_a_decision_are_the_middle_and_the_ends_of_every_factor() -> N
     assert set(map(tuple, points)) == expected and len(points) == len(expected)
 
 
-def test_a_small_design_is_decided_at_all_its_points() -> None:
+def test_a_small_design_is_decided_at_all_its_points():
     design = Design({"a": Levels((1.0, 2.0)), "b": Levels((3.0, 4.0))})
     np.testing.assert_array_equal(decision_points(design.points, design.kinds), design.points)
 
 
-def test_points_without_a_scene_decide_nothing() -> None:
+def test_points_without_a_scene_decide_nothing():
     wrong, _ = of_angles(2.0)
     assert wrong.effects is not None and wrong.effects.points == 0 and not wrong.effects.choices
 
 
-def test_the_file_of_a_study_gives_its_decision_back(tmp_path: Path) -> None:
+def test_the_file_of_a_study_gives_its_decision_back(tmp_path):
     task, design = of_angles(*SMALL)
     made = study(task, design)
     made.to_netcdf(tmp_path / "study.nc")

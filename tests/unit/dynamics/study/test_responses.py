@@ -1,17 +1,13 @@
 """Responses of a run: what each is, of one part or of the largest."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene
 from planetary_scenes import planetary_scene, published_set
 
+from dynamics import Outputs, RunResult, simulate
 from dynamics.errors import InputError
-from dynamics.results import RunResult
 from dynamics.results.mesh_figures import contact_shares, planet_load_sharing
-from dynamics.scene import Outputs
-from dynamics.simulation import simulate
 from dynamics.study import Response, responses_of
 
 
@@ -21,11 +17,11 @@ def value(run: RunResult, response: Response, start: float = 0.0) -> float:
 
 
 @pytest.fixture(scope="module")
-def run() -> RunResult:
+def run():
     return simulate(gear_pair_scene(duration=0.1))
 
 
-def test_an_order_of_a_bearing_force_is_the_amplitude_of_its_harmonic(run: RunResult) -> None:
+def test_an_order_of_a_bearing_force_is_the_amplitude_of_its_harmonic(run):
     """Whole periods at constant speed: the line of the Fourier transform."""
     samples = int(run.sample_rate * 30.0 / run.mesh_frequency[0, 0])  # thirty mesh periods
     start = float(run.time[run.time.size - samples])
@@ -37,7 +33,7 @@ def test_an_order_of_a_bearing_force_is_the_amplitude_of_its_harmonic(run: RunRe
     assert value(run, Response("bearing_force", order=1)) == pytest.approx(max(every), rel=1e-9)
 
 
-def test_figures_of_a_mesh_are_those_of_its_series(run: RunResult) -> None:
+def test_figures_of_a_mesh_are_those_of_its_series(run):
     error, from_then = run.dynamic_transmission_error[0], run.time >= 0.05
     assert value(run, Response("dte_peak_to_peak"), 0.05) == np.ptp(error[from_then])
     assert value(run, Response("dte_rms"), 0.05) == np.std(error[from_then])
@@ -47,7 +43,7 @@ def test_figures_of_a_mesh_are_those_of_its_series(run: RunResult) -> None:
     assert value(run, Response("contact_loss")) == contact_shares(run)[0]["off"]
 
 
-def test_the_mesh_load_factor_is_the_largest_of_the_central_gears() -> None:
+def test_the_mesh_load_factor_is_the_largest_of_the_central_gears():
     run = simulate(planetary_scene(published_set(3), duration=0.005))
     shared = [sharing.mesh_load_factor for sharing in planet_load_sharing(run)]
     assert len(shared) == 2 and value(run, Response("mesh_load_factor")) == max(shared)
@@ -63,13 +59,13 @@ def test_the_mesh_load_factor_is_the_largest_of_the_central_gears() -> None:
         (Response("dte_order", order=900), "order"),
     ],
 )
-def test_what_a_run_has_not_is_refused(run: RunResult, response: Response, field: str) -> None:
+def test_what_a_run_has_not_is_refused(run, response, field):
     with pytest.raises(InputError) as error:
         responses_of(run, (response,))
     assert error.value.field == field
 
 
-def test_bearings_that_are_not_stored_are_asked_for() -> None:
+def test_bearings_that_are_not_stored_are_asked_for():
     run = simulate(gear_pair_scene(duration=0.002, outputs=Outputs(bearing_forces=False)))
     with pytest.raises(InputError, match="bearing_forces"):
         responses_of(run, (Response("bearing_force", order=1),))

@@ -1,11 +1,8 @@
 """A study of scenes: its figures are those of single runs, whoever does them and whatever fails."""
 
-from __future__ import annotations
-
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,11 +16,8 @@ from geared_scenes import (
     with_mesh,
 )
 
+from dynamics import RunResult, Scene, TimeLaw, simulate
 from dynamics.errors import InputError, SolveError
-from dynamics.loads import TimeLaw
-from dynamics.results import RunResult
-from dynamics.scene import Scene
-from dynamics.simulation import simulate
 from dynamics.study import (
     Design,
     Levels,
@@ -39,7 +33,7 @@ from dynamics.study import (
     with_effects,
 )
 from model_studies import LeftOut
-from model_studies.workers import ByExecutor, Remembering, Workers
+from model_studies.workers import ByExecutor, Remembering
 
 RESPONSES = (
     Response("bearing_force", "input.left", order=1),
@@ -89,11 +83,11 @@ GRID = Design({TORQUE: Levels((50.0, 100.0, 150.0)), SPEED: Levels((60.0, 90.0))
 
 
 @pytest.fixture(scope="module")
-def found() -> Study:
+def found():
     return study(task(GRID), GRID, keep_worst=2)
 
 
-def test_figures_are_those_of_single_runs_to_the_last_bit(found: Study) -> None:
+def test_figures_are_those_of_single_runs_to_the_last_bit(found):
     for values, figures in zip(found.value, found.figure, strict=True):
         run = simulate(Pairs().scene({TORQUE: values[0], SPEED: values[1]}))  # with all its checks
         np.testing.assert_array_equal(figures, responses_of(run, RESPONSES)[0])
@@ -112,7 +106,7 @@ class Supported:
         return {}
 
 
-def test_every_run_of_a_batch_is_the_run_alone_bit_by_bit() -> None:
+def test_every_run_of_a_batch_is_the_run_alone_bit_by_bit():
     levels = {"stiffness": (8e7, 2e8), "ratio": (0.05, 0.1), "offset": (0.0, 0.3)}
     design = Design({name: Levels(values) for name, values in levels.items()})
     batch = study(task(design, Supported()), design)
@@ -123,8 +117,8 @@ def test_every_run_of_a_batch_is_the_run_alone_bit_by_bit() -> None:
         np.testing.assert_array_equal(figures, responses_of(simulate(fresh), RESPONSES)[0])
 
 
-def test_a_study_describes_no_run(monkeypatch: pytest.MonkeyPatch) -> None:
-    def described(*_: object) -> None:
+def test_a_study_describes_no_run(monkeypatch):
+    def described(*_):
         raise AssertionError("modes of a run whose responses alone are taken")
 
     monkeypatch.setattr("dynamics.simulation.documents.natural_modes", described)
@@ -132,26 +126,26 @@ def test_a_study_describes_no_run(monkeypatch: pytest.MonkeyPatch) -> None:
     assert study(task(design), design).usable == 1
 
 
-def test_threads_give_the_same_bits(found: Study) -> None:
+def test_threads_give_the_same_bits(found):
     with ThreadPoolExecutor(2) as executor:
         threaded = study(task(GRID), GRID, ByExecutor(executor), keep_worst=2)
     np.testing.assert_array_equal(threaded.figure, found.figure)
     np.testing.assert_array_equal(threaded.worst, found.worst)
 
 
-def test_the_last_factor_of_a_grid_changes_fastest(found: Study) -> None:
+def test_the_last_factor_of_a_grid_changes_fastest(found):
     torque, speed = found.value.T
     assert torque.tolist() == [50.0, 50.0, 100.0, 100.0, 150.0, 150.0]
     assert speed.tolist() == [60.0, 90.0] * 3
     assert found.swing(0, 4) > found.swing(1, 4)  # the torque decides on the mesh force
 
 
-def test_lists_change_together_and_meet_every_level() -> None:
+def test_lists_change_together_and_meet_every_level():
     design = Design({"a": Listed((1.0, 2.0)), "b": Levels((5.0, 6.0)), "c": Listed((3.0, 4.0))})
     assert design.points.tolist() == [[1, 5, 3], [2, 5, 4], [1, 6, 3], [2, 6, 4]]
 
 
-def test_every_combination_meets_the_same_samples_and_a_larger_sample_begins_with_a_smaller_one() -> None:
+def test_every_combination_meets_the_same_samples_and_a_larger_sample_begins_with_a_smaller_one():
     factors = {"a": Normal(1.0, 0.1), "b": Levels((1.0, 2.0)), "c": Uniform(0.0, 1.0)}
     few, many = Design(factors, 5, seed=7), Design(factors, 8, seed=7)
     assert few.points.shape == (10, 3)
@@ -161,7 +155,7 @@ def test_every_combination_meets_the_same_samples_and_a_larger_sample_begins_wit
     assert not np.array_equal(few.points, Design(factors, 5, seed=8).points)
 
 
-def test_a_truncated_normal_distribution_keeps_its_ends_and_the_moments_of_its_closed_form() -> None:
+def test_a_truncated_normal_distribution_keeps_its_ends_and_the_moments_of_its_closed_form():
     sample = Design({"a": Normal(2.0, 1.0, 1.0, 3.0)}, 20_000).points[:, 0]
     assert sample.min() >= 1.0 and sample.max() <= 3.0
     variance = 1.0 - 2.0 * np.exp(-0.5) / np.sqrt(2.0 * np.pi) / 0.6826894921370859
@@ -170,7 +164,7 @@ def test_a_truncated_normal_distribution_keeps_its_ends_and_the_moments_of_its_c
 
 
 @pytest.mark.law
-def test_the_mean_of_a_linear_response_is_within_its_stated_bounds() -> None:
+def test_the_mean_of_a_linear_response_is_within_its_stated_bounds():
     design = Design({TORQUE: Normal(100.0, 5.0)}, 64, seed=3)
     made = study(task(design, Springs(), (Response("peak_mesh_force"),)), design)
     spread = made.spread(0)
@@ -181,7 +175,7 @@ def test_the_mean_of_a_linear_response_is_within_its_stated_bounds() -> None:
     assert made.correlation(0)[0] == pytest.approx(1.0)
 
 
-def test_a_failed_run_is_a_marked_point_with_its_reason(tmp_path: Path) -> None:
+def test_a_failed_run_is_a_marked_point_with_its_reason(tmp_path):
     design = Design({TORQUE: Levels((100.0, -1.0, 50.0))})
     made = study(task(design), design, keep_worst=3)
     assert made.reason == ("", "no pair at -1 N m", "")
@@ -194,7 +188,7 @@ def test_a_failed_run_is_a_marked_point_with_its_reason(tmp_path: Path) -> None:
     assert Study.from_netcdf(tmp_path / "study.nc").reason == made.reason
 
 
-def test_an_interrupted_study_goes_on_where_it_was(tmp_path: Path) -> None:
+def test_an_interrupted_study_goes_on_where_it_was(tmp_path):
     design = Design({TORQUE: Levels(tuple(float(torque) for torque in range(50, 74)))})
 
     class EndsInMidRun(InterruptedError):
@@ -205,14 +199,14 @@ def test_an_interrupted_study_goes_on_where_it_was(tmp_path: Path) -> None:
         allowed: int
         done: list[int]
 
-        def run(self, function: Any, shared: Any, items: Sequence[Any]) -> Iterator[Any]:
+        def run(self, function, shared, items):
             for item in items:
                 if len(self.done) == self.allowed:
                     raise EndsInMidRun
                 self.done.append(len(item))
                 yield function(shared, item)
 
-    def study_by(workers: Workers) -> Study:
+    def study_by(workers):
         return study(with_effects(task(design), design, workers), design, workers)
 
     first, second = Counting(5, []), Counting(99, [])
@@ -223,7 +217,7 @@ def test_an_interrupted_study_goes_on_where_it_was(tmp_path: Path) -> None:
     np.testing.assert_array_equal(resumed.figure, study(task(design), design).figure)
 
 
-def test_errors_are_those_that_the_runs_state() -> None:
+def test_errors_are_those_that_the_runs_state():
     design = Design({TORQUE: Levels((100.0,))})
     responses = (Response("bearing_force", order=1), Response("dte_rms"), Response("contact_loss"))
     full = study(task(design, Pairs(1.0), responses, receipt="full"), design)
@@ -238,14 +232,14 @@ def test_errors_are_those_that_the_runs_state() -> None:
     assert len(minimal.metadata["neglected"]) == 3 and len(full.metadata["neglected"]) == 1
 
 
-def test_the_file_gives_the_study_back(found: Study, tmp_path: Path) -> None:
+def test_the_file_gives_the_study_back(found, tmp_path):
     found.to_netcdf(tmp_path / "study.nc")
     read = Study.from_netcdf(tmp_path / "study.nc")
     for name in ("value", "figure", "error", "worst", "factor", "response", "reason", "metadata"):
         np.testing.assert_equal(getattr(read, name), getattr(found, name))
 
 
-def test_worst_cases_are_kept_as_full_runs(found: Study, tmp_path: Path) -> None:
+def test_worst_cases_are_kept_as_full_runs(found, tmp_path):
     files = keep_runs(task(GRID), found, tmp_path)
     assert [file.name for file in files] == [f"point_{k}.nc" for k in found.worst]
     run = RunResult.from_netcdf(files[0])
@@ -254,17 +248,15 @@ def test_worst_cases_are_kept_as_full_runs(found: Study, tmp_path: Path) -> None
     assert found.figure[found.worst[0], 0] == found.figure[:, 0].max()
 
 
-def test_a_kept_run_that_its_checks_refuse_does_not_end_the_study(
-    found: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def refuse(_scene: Scene, _file: Path, **_: object) -> None:
+def test_a_kept_run_that_its_checks_refuse_does_not_end_the_study(found, tmp_path, monkeypatch):
+    def refuse(_scene, _file, **_):
         raise SolveError("more than 1 % of the work is unaccounted for")
 
     monkeypatch.setattr("dynamics.study.run_study.simulate_to_file", refuse)
     assert keep_runs(task(GRID), found, tmp_path) == []
 
 
-def test_a_design_of_other_factors_is_refused() -> None:
+def test_a_design_of_other_factors_is_refused():
     with pytest.raises(InputError, match="torque, speed"):
         study(task(GRID), Design({SPEED: Levels((60.0,))}))
 
@@ -285,7 +277,7 @@ def test_a_design_of_other_factors_is_refused() -> None:
         (lambda: Response("mesh_load_factor", "mesh"), "part"),
     ],
 )
-def test_what_cannot_be_is_refused_by_its_field(refused: Any, field: str) -> None:
+def test_what_cannot_be_is_refused_by_its_field(refused, field):
     with pytest.raises(InputError) as error:
         refused()
     assert error.value.field == field

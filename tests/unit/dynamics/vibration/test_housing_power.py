@@ -1,7 +1,5 @@
 """Power of bearings in a housing: balance, the split between housing and mounts, the whole mesh's mounts."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cache
@@ -88,7 +86,6 @@ def rows(diagonal):
 
 @cache
 def meshed(damping=None, *, dashpot=DASHPOT) -> MeshedHousing:
-    """A tube of steel on one mount."""
     lever = [1.0, 1.0, 1.0, 4e-3, 4e-3, 4e-3]
     mount = Mount(rows([STIFFNESS * a for a in lever]), rows([dashpot * a for a in lever]))
     seat = SeatBore("seat", Bore((0.0, 0.0, 0.075), (0.0, 0.0, 1.0), 0.08, 0.05))
@@ -107,7 +104,7 @@ def forces(seed=1):
     return draw.normal(size=(HERTZ.size, 5)) + 1j * draw.normal(size=(HERTZ.size, 5))
 
 
-def test_what_bearings_put_in_is_lost_in_the_housing_and_its_mounts() -> None:
+def test_what_bearings_put_in_is_lost_in_the_housing_and_its_mounts():
     power = housing_power(reduced(), HERTZ, forces())
     assert power.residual < 1e-9
     assert np.all(power.own > 0.0) and np.all(power.mounts > 0.0)
@@ -116,7 +113,7 @@ def test_what_bearings_put_in_is_lost_in_the_housing_and_its_mounts() -> None:
     assert not np.any(bare.mounts) and bare.residual < 1e-9
 
 
-def test_mounts_take_what_they_take_on_the_whole_mesh() -> None:
+def test_mounts_take_what_they_take_on_the_whole_mesh():
     """A housing without losses of its own: all power leaves through the mounts."""
     lossless = ModalDamping((0.0,))
     power, whole = housing_power(reduced(lossless), HERTZ, forces()), assemble(meshed(lossless))
@@ -129,7 +126,7 @@ def test_mounts_take_what_they_take_on_the_whole_mesh() -> None:
         assert power.mounts[index] == pytest.approx(through, rel=0.01)
 
 
-def test_a_rigid_body_on_a_mount_loses_its_power_there() -> None:
+def test_a_rigid_body_on_a_mount_loses_its_power_there():
     """m x'' + c x' + k x = F along the axis, far below the first mode of the tube."""
     housing, omega = reduced(), 2.0 * math.pi * 50.0
     push = np.array([[0.0, 0.0, 7.0, 0.0, 0.0]], dtype=complex)

@@ -1,7 +1,5 @@
 """Measured mobilities in place of modes: lines, what lies between them, what is left out."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -71,7 +69,7 @@ def test_a_light_resonance_between_lines_is_not_cut_off():
 
 
 @pytest.mark.parametrize(("apart", "close", "bias"), [(0.5, 0.02, 1e-3), (1.0, 0.2, 5e-3)])
-def test_modes_that_overlap_are_followed_without_bias(apart: float, close: float, bias: float):
+def test_modes_that_overlap_are_followed_without_bias(apart, close, bias):
     """Of 23 modes, lines so many half-power bandwidths apart, in dB: 99 % of all values, mean near peaks."""
     housing = random_housing()
     light = replace(housing, damping=0.25 * housing.damping)  # of the critical: 0.005

@@ -8,11 +8,10 @@ from geared_scenes import gear_pair_scene, square_wave_table
 from reduced_housings import PAIR, PER_SEAT, random_housing
 from scipy.integrate import solve_ivp
 
-from dynamics import simulate
+from dynamics import Outputs, simulate
 from dynamics.errors import InputError
 from dynamics.housings import scene_housing
 from dynamics.mechanism.bodies import modal_housing
-from dynamics.scene import Outputs
 from dynamics.vibration import MotionQuantity, housing_motion, motion_pieces, point_signal, run_seat_forces
 
 RATE = 20e3

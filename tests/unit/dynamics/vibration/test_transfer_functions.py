@@ -1,7 +1,5 @@
 """Transfer functions: a beam in closed form, reciprocity, superposition, a rigid body on a mount, units."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

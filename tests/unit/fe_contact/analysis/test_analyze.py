@@ -1,7 +1,5 @@
 """The main flow: laws of its results, support loads, condition numbers, and other bodies."""
 
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np
@@ -10,7 +8,7 @@ from analysis_requests import table_request
 from spur_gears import PAIR
 
 from fe_contact import FlankModification, Gear, GearPair, SteDatabase, analyze
-from fe_contact.analysis.pairs.operating_points import OperatingPoints, operating_points
+from fe_contact.analysis.pairs.operating_points import operating_points
 from fe_contact.analysis.pairs.pair_contact import PairContact
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.contact.condition_number import condition_numbers
@@ -125,7 +123,7 @@ def test_loads_below_and_above_the_only_asked_one_are_true(table, plain_pair):
         assert table.ste(table.position[steady], force) == pytest.approx(expected, rel=2e-3)
 
 
-def test_condition_numbers_leave_out_what_is_no_candidate_or_not_definite() -> None:
+def test_condition_numbers_leave_out_what_is_no_candidate_or_not_definite():
     rng = np.random.default_rng(5)
     basis = rng.normal(size=(3, 5, 5))
     real = 1e-9 * (basis @ basis.transpose(0, 2, 1) + 0.1 * np.eye(5))
@@ -143,7 +141,7 @@ MISALIGNMENTS, CHANGES = (-2e-5, 0.0, 2e-5), (0.0, 1e-4)
 
 
 @pytest.fixture(scope="module")
-def laid_out() -> tuple[OperatingPoints, OperatingPoints, PairContact]:
+def laid_out():
     """Operating points over a draft, those laid out afresh over a standard mesh, and the pair on it."""
     gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
     axes = {"misalignments": MISALIGNMENTS, "center_distance_changes": CHANGES}

@@ -1,7 +1,5 @@
 """Hunting cycles by derivatives, held against all their pitches solved."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -15,7 +13,6 @@ from fe_contact import (
     PitchDeviation,
     Run,
     RunOut,
-    SteDatabase,
     TableAxes,
     ToothFlank,
     Wave,
@@ -25,7 +22,7 @@ from fe_contact.analysis import deviating_cycle as cycle_module
 from fe_contact.analysis.cycle import envelope
 from fe_contact.analysis.cycle.envelope import CycleContact, Envelope
 from fe_contact.analysis.cycle.tangents import nominal_tangent, pitch_tangents
-from fe_contact.analysis.deviating_cycle import DeviatingCycle, cycle_contact, deviating_cycle
+from fe_contact.analysis.deviating_cycle import cycle_contact, deviating_cycle
 from fe_contact.errors import InputError, SolveError
 from fe_contact.planning import cost_of_derivatives
 from fe_contact.planning.cost_of_derivatives import BATCH, solved_pitches
@@ -65,14 +62,14 @@ def contact_of(size: float) -> CycleContact:
 
 
 @pytest.fixture(scope="module")
-def exact() -> np.ndarray:
+def exact():
     contact = contact_of(1.0)
     assert contact.pitches == 17 * 19
     return contact.exact(np.arange(contact.pitches))
 
 
 @pytest.fixture(scope="module")
-def cycle() -> DeviatingCycle:
+def cycle():
     return deviating_cycle(made(1.0), AXES, OPTIONS)
 
 
@@ -188,7 +185,7 @@ def test_what_a_cycle_cannot_be_is_refused(axes, positions, field):
 
 
 @pytest.fixture(scope="module")
-def tables() -> tuple[SteDatabase, SteDatabase]:
+def tables():
     """Return the same table by derivatives, and all its pitches solved."""
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(cost_of_derivatives, "TABLE_SAVES", 0.0)
@@ -281,7 +278,7 @@ def test_a_table_that_needs_many_pitches_says_why_all_were_solved(monkeypatch):
 def test_a_pitch_beyond_what_its_teeth_deviate_is_no_result(monkeypatch):
     """A curve that single teeth lift by more than they deviate fails, with the place and both numbers."""
 
-    def lifted(*_: object) -> tuple:
+    def lifted(*_):
         ste, solved, errors = solve(*_)
         ste[3, 5, 0] += 100e-6
         return ste, solved, errors

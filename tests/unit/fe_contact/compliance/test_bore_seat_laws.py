@@ -1,11 +1,8 @@
 """What seat and key of the bore do to the flank compliance: exact turns, limits, symmetry."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -40,7 +37,7 @@ def turned(gear: Gear) -> float:
 
 @pytest.mark.parametrize("gear", [SPUR, HELICAL], ids=["spur", "helical"])
 @pytest.mark.parametrize("modulus", [1e12, 1e13])
-def test_a_tangential_seat_adds_the_turn_of_a_rigid_body(gear: Gear, modulus: float) -> None:
+def test_a_tangential_seat_adds_the_turn_of_a_rigid_body(gear, modulus):
     """r_b^2 cos^2(beta_b) / (2 pi r^3 b k_t), all else rigid."""
     soft = replace(gear, seat=BoreSeat(tangential_foundation=modulus))
     cosine = math.cos(gear.base_helix_angle)
@@ -50,7 +47,7 @@ def test_a_tangential_seat_adds_the_turn_of_a_rigid_body(gear: Gear, modulus: fl
     assert moved(solved(soft)) - moved(solved(gear)) > added
 
 
-def test_a_stiffening_seat_becomes_the_clamped_bore_at_the_rate_one_over_k() -> None:
+def test_a_stiffening_seat_becomes_the_clamped_bore_at_the_rate_one_over_k():
     rigid = moved(solved(SPUR))
     left = [moved(solved(replace(SPUR, seat=BoreSeat(k, k, k)))) - rigid for k in (1e15, 1e16, 1e17)]
     assert left[1] / left[0] == pytest.approx(0.1, rel=0.1)
@@ -58,7 +55,7 @@ def test_a_stiffening_seat_becomes_the_clamped_bore_at_the_rate_one_over_k() -> 
     assert left[2] < 1e-4 * rigid
 
 
-def test_every_direction_that_gives_way_makes_the_gear_softer() -> None:
+def test_every_direction_that_gives_way_makes_the_gear_softer():
     gives = [
         BoreSeat(),
         BoreSeat(1e13),
@@ -72,7 +69,7 @@ def test_every_direction_that_gives_way_makes_the_gear_softer() -> None:
         assert np.trace(softer) > np.trace(stiffer) * (1.0 + 1e-4)
 
 
-def test_a_narrower_seat_is_softer_and_one_off_the_middle_tilts() -> None:
+def test_a_narrower_seat_is_softer_and_one_off_the_middle_tilts():
     wide, half, aside, mirrored = (
         solved(replace(SPUR, seat=BoreSeat(width=w, offset=z)))
         for w, z in ((None, 0.0), (10e-3, 0.0), (10e-3, 4e-3), (10e-3, -4e-3))
@@ -86,7 +83,7 @@ def test_a_narrower_seat_is_softer_and_one_off_the_middle_tilts() -> None:
 
 
 @pytest.mark.parametrize("rigid", [True, False])
-def test_checks_hold_on_every_seat(rigid: bool) -> None:
+def test_checks_hold_on_every_seat(rigid):
     modulus = None if rigid else 3e13
     seat = BoreSeat(modulus, 2e13, modulus, width=8e-3, offset=3e-3)
     checks = solved(replace(HELICAL, seat=seat)).checks
@@ -96,7 +93,7 @@ def test_checks_hold_on_every_seat(rigid: bool) -> None:
     assert checks.energy < 1e-11
 
 
-def test_a_left_hand_gear_keeps_its_seat_on_its_side() -> None:
+def test_a_left_hand_gear_keeps_its_seat_on_its_side():
     left = replace(HELICAL, helix_angle=-HELICAL.helix_angle, seat=BoreSeat(1e13, 1e13, 1e13, 8e-3, 3e-3))
     found = solved(left)
     assert left.right_handed().seat.offset == -3e-3
@@ -109,7 +106,7 @@ def test_a_left_hand_gear_keeps_its_seat_on_its_side() -> None:
     assert len(keys) == 2
 
 
-def test_a_seat_holds_the_planes_between_its_ends() -> None:
+def test_a_seat_holds_the_planes_between_its_ends():
     gear = replace(SPUR, seat=BoreSeat(None, 1e13, None, width=10e-3))
     grid, recipe = SectorGrid(body_rows=3, tooth_rows=2, land=1, across=2), coarse(SPUR)
     sector = swept_sector(grid, 20e-3, recipe, bore_support(gear))
@@ -127,7 +124,7 @@ def test_a_seat_holds_the_planes_between_its_ends() -> None:
     assert bore_support(SPUR) == ClampedBore()
 
 
-def test_face_functions_share_the_area_and_keep_its_moments() -> None:
+def test_face_functions_share_the_area_and_keep_its_moments():
     mass = face_mass()
     assert mass.sum() == pytest.approx(4.0, rel=1e-14)
     x = np.array([-1.0, 1.0, -1.0, 1.0, 0.0, 0.0, -1.0, 1.0])
@@ -151,7 +148,7 @@ def solved_keyed(gear: Gear, reach: int = 2) -> FlankCompliance3D:
 
 @pytest.mark.law
 @GEARS
-def test_a_key_around_the_whole_bore_is_the_seat_all_round(gear: Gear) -> None:
+def test_a_key_around_the_whole_bore_is_the_seat_all_round(gear):
     seat, key = (solved_keyed(g) for g in (replace(gear, seat=SEAT), keyed(gear, math.pi * 12e-3, 1.0)))
     scale = np.abs(seat.blocks).max()
     for tooth, other in ((0, 0), (2, 0), (-1, 1), (-2, -2)):
@@ -160,7 +157,7 @@ def test_a_key_around_the_whole_bore_is_the_seat_all_round(gear: Gear) -> None:
 
 @pytest.mark.law
 @GEARS
-def test_equals_the_solution_of_the_whole_gear(gear: Gear) -> None:
+def test_equals_the_solution_of_the_whole_gear(gear):
     """All teeth in one sparse factorisation, the key's foundation assembled into it."""
     held = keyed(gear)
     _, sector, number, matrix = whole_gear(held, coarse(held), bore_support(held))
@@ -181,7 +178,7 @@ def test_equals_the_solution_of_the_whole_gear(gear: Gear) -> None:
 
 
 @GEARS
-def test_a_key_one_pitch_further_is_the_same_one_tooth_on(gear: Gear) -> None:
+def test_a_key_one_pitch_further_is_the_same_one_tooth_on(gear):
     pitch = 2.0 * math.pi / gear.teeth
     here, there = (solved_keyed(keyed(gear, angle=angle)) for angle in (0.3, 0.3 + pitch))
     scale = np.abs(here.blocks).max()
@@ -192,7 +189,7 @@ def test_a_key_one_pitch_further_is_the_same_one_tooth_on(gear: Gear) -> None:
     assert abs(moved(here) / moved(there) - 1.0) > 1e-3
 
 
-def test_a_soft_or_narrow_key_lets_the_gear_turn() -> None:
+def test_a_soft_or_narrow_key_lets_the_gear_turn():
     seat = solved_keyed(replace(SPUR, seat=SEAT))
     narrow, wide = (solved_keyed(keyed(SPUR, width)) for width in (3e-3, 9e-3))
     for stiffer, softer in ((seat, wide), (wide, narrow)):
@@ -207,7 +204,7 @@ def test_a_soft_or_narrow_key_lets_the_gear_turn() -> None:
 
 @pytest.mark.parametrize("angle", [0.0, 2.0, math.pi, -1.0])
 @GEARS
-def test_the_key_has_its_area_and_its_place(gear: Gear, angle: float) -> None:
+def test_the_key_has_its_area_and_its_place(gear, angle):
     held = replace(
         keyed(gear, angle=angle), seat=replace(keyed(gear, angle=angle).seat, width=10e-3, offset=4e-3)
     )
@@ -233,7 +230,7 @@ def test_the_key_has_its_area_and_its_place(gear: Gear, angle: float) -> None:
     assert weight @ (share * at[..., 1]).sum(axis=1) / weight.sum() == pytest.approx(4e-3, rel=1e-12)
 
 
-def test_contact_sees_the_key_as_the_blocks_do() -> None:
+def test_contact_sees_the_key_as_the_blocks_do():
     found = solved_keyed(keyed(HELICAL))
     grid, tooth = FaceGrid(found.s, found.z, found.index), np.array([-1, 0, 0, 2])
     middle = 0.5 * (found.s_form + found.s_tip) + np.array([[0.0], [-1e-4], [3e-4], [0.0]])
@@ -253,7 +250,7 @@ def test_contact_sees_the_key_as_the_blocks_do() -> None:
     assert np.array_equal(alone != 0.0, tooth[:, None] == tooth)
 
 
-def test_the_other_hand_and_the_cache_keep_the_key(tmp_path: Path) -> None:
+def test_the_other_hand_and_the_cache_keep_the_key(tmp_path):
     left = replace(keyed(HELICAL), helix_angle=-HELICAL.helix_angle)
     recipe = coarse(left)
     fresh, kept = (flank_compliance_3d(left, recipe, reach=1, cache=tmp_path) for _ in range(2))
@@ -270,7 +267,7 @@ def test_the_other_hand_and_the_cache_keep_the_key(tmp_path: Path) -> None:
         fresh.block(3, 3)
 
 
-def test_impossible_keys_are_refused_by_name() -> None:
+def test_impossible_keys_are_refused_by_name():
     with pytest.raises(InfeasibleGeometry) as misfit:
         keyed(SPUR, 40e-3)
     assert misfit.value.field == "seat.key.width"

@@ -1,7 +1,5 @@
 """Rings closed by a few harmonics against rings of which every harmonic is solved."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +9,7 @@ from compliance_gears import HELICAL, SPUR, coarse, relative
 from fe_contact.compliance import flank_compliance_3d
 from fe_contact.compliance.condensed_gear import CondensedTooth, condensed_tooth, free_turn
 from fe_contact.compliance.cyclic_harmonics import TurningLoads
-from fe_contact.compliance.cyclic_ring import FreeTurn, RingSolution, close_ring
+from fe_contact.compliance.cyclic_ring import FreeTurn, close_ring
 from fe_contact.compliance.tooth_reach import usual_reach
 from fe_contact.geometry import BoreSeat, Gear, GearBlank, Key, RingGear, Toothing
 from fe_contact.mesh import quad_sector
@@ -43,7 +41,7 @@ def solved_harmonics(monkeypatch: pytest.MonkeyPatch, size: int) -> list[int]:
     numbers: list[int] = []
     genuine = TurningLoads.solve
 
-    def counted(ring: TurningLoads, number: int) -> np.ndarray:
+    def counted(ring, number):
         if len(ring.across) == size:
             numbers.append(number)
         return genuine(ring, number)
@@ -55,14 +53,12 @@ def solved_harmonics(monkeypatch: pytest.MonkeyPatch, size: int) -> list[int]:
 @pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize("name", GEARS)
-def test_blocks_are_as_exact_as_stated(
-    name: str, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
-) -> None:
+def test_blocks_are_as_exact_as_stated(name, monkeypatch, request):
     gear = GEARS[name]
     tooth, loads, free = condensed(gear)
     solved = solved_harmonics(monkeypatch, tooth.condensed.cut_size)
 
-    def ring() -> RingSolution:
+    def ring():
         return close_ring(tooth.condensed, gear.teeth, usual_reach(gear), loads, free)
 
     found = ring()
@@ -77,10 +73,10 @@ def test_blocks_are_as_exact_as_stated(
 
 
 @pytest.mark.law
-def test_a_key_adds_no_error(request: pytest.FixtureRequest) -> None:
+def test_a_key_adds_no_error(request):
     """The update by the key is made of displacements that are as exact as the blocks."""
 
-    def blocks() -> np.ndarray:
+    def blocks():
         found = flank_compliance_3d(KEYED, coarse(KEYED, layers=8), reach=2)
         return np.stack([found.block(tooth, other) for tooth, other in ((0, 0), (2, 1), (-1, 1))])
 

@@ -1,14 +1,11 @@
 """The disk cache of compliances returns what was computed, or computes it again; all is in the key."""
 
-from __future__ import annotations
-
 import os
 import tracemalloc
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from threading import Barrier
-from typing import Any
 
 import numpy as np
 import pytest
@@ -17,10 +14,10 @@ from spur_gears import gear as make_gear
 
 import fe_contact.compliance.cyclic_compliance as cyclic
 import fe_contact.compliance.flank_compliance_2d as flow
+from fe_contact import FlankModification, Gear, Material, RunOut
 from fe_contact.cache_reads import COMPLIANCE_READS
 from fe_contact.compliance import (
     FlankCompliance,
-    FlankCompliance3D,
     PlaneHypothesis,
     cache,
     condensation_cost,
@@ -30,22 +27,19 @@ from fe_contact.compliance import (
     flank_compliances_3d,
     predict_cost,
 )
-from fe_contact.geometry import FlankModification, Gear
-from fe_contact.geometry.tooth_deviations import RunOut
-from fe_contact.material import Material
 from fe_contact.mesh import ClampedBore, PlaneStrain, SectorRecipe, quadratic_mesh
 from host import lock
 
 
 @pytest.fixture
-def counted(monkeypatch: pytest.MonkeyPatch) -> list[Gear]:
+def counted(monkeypatch):
     """Collect the gears that were computed."""
     computed: list[Gear] = []
     genuine = flow.compute_flank_compliance
 
-    def counting(gear: Gear, *arguments: object) -> FlankCompliance:
+    def counting(gear, *arguments):
         computed.append(gear)
-        return genuine(gear, *arguments)  # type: ignore[arg-type]
+        return genuine(gear, *arguments)
 
     monkeypatch.setattr(flow, "compute_flank_compliance", counting)
     return computed
@@ -66,7 +60,7 @@ def same(first: FlankCompliance, second: FlankCompliance) -> bool:
     return arrays and all(getattr(first, n) == getattr(second, n) for n in plain)
 
 
-def test_second_call_reads_the_same_bits(tmp_path: Path, counted: list[Gear]) -> None:
+def test_second_call_reads_the_same_bits(tmp_path, counted):
     gear, before = make_gear(), replace(COMPLIANCE_READS)
     first = flank_compliance(gear, coarse_plane(gear), cache=tmp_path / "deep" / "cache")
     second = flank_compliance(gear, coarse_plane(gear), cache=tmp_path / "deep" / "cache")
@@ -78,13 +72,11 @@ def test_second_call_reads_the_same_bits(tmp_path: Path, counted: list[Gear]) ->
 
 
 @pytest.mark.law
-def test_who_wants_a_body_that_is_being_condensed_waits_for_it(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, counted: list[Gear]
-) -> None:
+def test_who_wants_a_body_that_is_being_condensed_waits_for_it(tmp_path, monkeypatch, counted):
     gear, all_missed = make_gear(), Barrier(4)
     recipe, read = coarse_plane(gear), cache.read_compliance
 
-    def missed(*arguments: Any) -> Any:
+    def missed(*arguments):
         result = read(*arguments)
         all_missed.wait(60.0)
         return result
@@ -99,14 +91,12 @@ def test_who_wants_a_body_that_is_being_condensed_waits_for_it(
     assert [file.suffix for file in tmp_path.iterdir()] == [".npz"]
 
 
-def test_a_process_that_does_not_come_back_is_not_waited_for(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, counted: list[Gear]
-) -> None:
+def test_a_process_that_does_not_come_back_is_not_waited_for(tmp_path, monkeypatch, counted):
     gear, tries = make_gear(), []
     recipe, strain = coarse_plane(gear), PlaneHypothesis.PLANE_STRAIN
     key = flow.compliance_key(gear, recipe, strain, flow.condensed_teeth(gear, recipe, 1))
 
-    def counting(descriptor: int) -> None:
+    def counting(descriptor):
         tries.append(descriptor)
         lock(descriptor)
 
@@ -121,12 +111,10 @@ def test_a_process_that_does_not_come_back_is_not_waited_for(
     assert len(counted) == 1
 
 
-def test_an_interruption_while_it_waits_is_told_as_such(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, counted: list[Gear]
-) -> None:
+def test_an_interruption_while_it_waits_is_told_as_such(tmp_path, monkeypatch, counted):
     gear, descriptors = make_gear(), []
 
-    def interrupted(descriptor: int) -> None:
+    def interrupted(descriptor):
         descriptors.append(descriptor)
         raise KeyboardInterrupt
 
@@ -138,8 +126,8 @@ def test_an_interruption_while_it_waits_is_told_as_such(
     assert not counted
 
 
-def test_a_failure_where_nothing_can_be_locked_is_that_of_the_computation(tmp_path: Path) -> None:
-    def failing() -> FlankCompliance:
+def test_a_failure_where_nothing_can_be_locked_is_that_of_the_computation(tmp_path):
+    def failing():
         raise ZeroDivisionError
 
     file = tmp_path / "no directory"
@@ -150,9 +138,7 @@ def test_a_failure_where_nothing_can_be_locked_is_that_of_the_computation(tmp_pa
 
 
 @pytest.mark.parametrize("damage", ["flipped bit", "truncated", "empty", "foreign", "another result"])
-def test_a_damaged_file_is_computed_again_and_mended(
-    tmp_path: Path, counted: list[Gear], damage: str
-) -> None:
+def test_a_damaged_file_is_computed_again_and_mended(tmp_path, counted, damage):
     gear = make_gear()
     first = flank_compliance(gear, coarse_plane(gear), cache=tmp_path)
     (file,) = tmp_path.iterdir()
@@ -178,7 +164,7 @@ def test_a_damaged_file_is_computed_again_and_mended(
     assert len(counted) == 2
 
 
-def test_all_that_decides_the_result_is_in_the_key() -> None:
+def test_all_that_decides_the_result_is_in_the_key():
     gear, strain = make_gear(), PlaneHypothesis.PLANE_STRAIN
     recipe = coarse_plane(gear)
     keys = [
@@ -204,9 +190,7 @@ def test_all_that_decides_the_result_is_in_the_key() -> None:
         assert flow.compliance_key(make_gear(**change), recipe, strain, 5) == keys[0]
 
 
-def test_a_new_model_version_does_not_read_old_files(
-    tmp_path: Path, counted: list[Gear], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_new_model_version_does_not_read_old_files(tmp_path, counted, monkeypatch):
     gear = make_gear()
     flank_compliance(gear, coarse_plane(gear), cache=tmp_path)
     monkeypatch.setattr(flow, "MODEL_VERSION", flow.MODEL_VERSION + 1)
@@ -214,7 +198,7 @@ def test_a_new_model_version_does_not_read_old_files(
     assert len(counted) == 2
 
 
-def test_without_a_directory_nothing_is_kept_and_no_result_lost(counted: list[Gear], tmp_path: Path) -> None:
+def test_without_a_directory_nothing_is_kept_and_no_result_lost(counted, tmp_path):
     gear = make_gear()
     for _ in range(2):
         flank_compliance(gear, coarse_plane(gear), cache=None)
@@ -225,9 +209,7 @@ def test_without_a_directory_nothing_is_kept_and_no_result_lost(counted: list[Ge
     assert not same(found, replace(found, matrix=np.nextafter(found.matrix, 1.0)))
 
 
-def test_the_default_directory_follows_the_environment(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_default_directory_follows_the_environment(tmp_path, monkeypatch):
     monkeypatch.setenv("LINEOFACTION_CACHE", str(tmp_path))
     assert default_cache_directory() == tmp_path
     for off in ("off", "OFF", "0", ""):
@@ -241,7 +223,7 @@ def test_the_default_directory_follows_the_environment(
     assert default_cache_directory() == Path.home() / ".cache" / "lineofaction"
 
 
-def test_hands_of_one_pair_share_a_computation(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_hands_of_one_pair_share_a_computation(monkeypatch):
     computed = count_runs(monkeypatch)
     left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
     found = flank_compliances_3d([HELICAL, left, HELICAL], [coarse(HELICAL)] * 3)
@@ -258,15 +240,15 @@ def count_runs(monkeypatch: pytest.MonkeyPatch) -> list[Gear]:
     computed: list[Gear] = []
     genuine = cyclic.compute_flank_compliance_3d
 
-    def counting(gear: Gear, *arguments: object, **reports: object) -> FlankCompliance3D:
+    def counting(gear, *arguments, **reports):
         computed.append(gear)
-        return genuine(gear, *arguments, **reports)  # type: ignore[arg-type]
+        return genuine(gear, *arguments, **reports)
 
     monkeypatch.setattr(cyclic, "compute_flank_compliance_3d", counting)
     return computed
 
 
-def test_the_cache_returns_the_same_bits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_cache_returns_the_same_bits(tmp_path, monkeypatch):
     computed = count_runs(monkeypatch)
     recipe = coarse(HELICAL)
     first = flank_compliance_3d(HELICAL, recipe, cache=tmp_path)
@@ -296,7 +278,7 @@ def test_the_cache_returns_the_same_bits(tmp_path: Path, monkeypatch: pytest.Mon
     assert not flank_compliance_3d(HELICAL, recipe, cache=tmp_path).from_cache
 
 
-def test_all_that_decides_the_result_in_three_dimensions_is_in_the_key() -> None:
+def test_all_that_decides_the_result_in_three_dimensions_is_in_the_key():
     clamped, recipe = ClampedBore(), coarse(SPUR)
     keys = [
         cyclic.compliance_key_3d(SPUR, recipe, 2, clamped),
@@ -311,7 +293,7 @@ def test_all_that_decides_the_result_in_three_dimensions_is_in_the_key() -> None
         {"teeth": 10},
         {"material": Material(poissons_ratio=0.29)},
     ):
-        keys.append(cyclic.compliance_key_3d(replace(SPUR, **change), recipe, 2, clamped))  # type: ignore[arg-type]
+        keys.append(cyclic.compliance_key_3d(replace(SPUR, **change), recipe, 2, clamped))
     assert len(set(keys)) == len(keys)
     hands = [cyclic.compliance_key_3d(replace(SPUR, helix_angle=a), recipe, 2, clamped) for a in (0.1, -0.1)]
     assert hands[0] == hands[1]
@@ -322,7 +304,7 @@ def test_all_that_decides_the_result_in_three_dimensions_is_in_the_key() -> None
     [replace(SPUR, teeth=20, bore_diameter=40e-3), WEBBED],
     ids=["spur", "helical with a web"],
 )
-def test_cost_is_known_before_the_run(gear: Gear) -> None:
+def test_cost_is_known_before_the_run(gear):
     recipe = SectorRecipe.draft(gear)
     flank_compliance_3d(gear, recipe)  # compiled code and libraries are loaded
     predicted = predict_cost(gear, recipe)  # its seconds are held against measured ones in benchmarks/
@@ -335,7 +317,7 @@ def test_cost_is_known_before_the_run(gear: Gear) -> None:
 
 
 @pytest.mark.law
-def test_gears_of_one_shape_cost_the_same_and_are_predicted_once(monkeypatch, tmp_path) -> None:
+def test_gears_of_one_shape_cost_the_same_and_are_predicted_once(monkeypatch, tmp_path):
     """Reliefs and deviations change no body; another tip diameter does.
 
     One elimination tree serves the plan, which knows the host, and the progress, which does not.
@@ -356,9 +338,7 @@ def test_gears_of_one_shape_cost_the_same_and_are_predicted_once(monkeypatch, tm
     assert len(built) == 2
 
 
-def test_one_process_meshes_a_pair_and_the_coarse_meshes_that_follow(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_one_process_meshes_a_pair_and_the_coarse_meshes_that_follow(tmp_path, monkeypatch):
     """What is in the cache is not meshed, and all is as each gear has it alone, to the last bit."""
     gears = [make_gear(20), make_gear(22)]
     fine = [coarse_plane(gear) for gear in gears]
@@ -369,7 +349,7 @@ def test_one_process_meshes_a_pair_and_the_coarse_meshes_that_follow(
     sizes: list[int] = []
     genuine = quadratic_mesh.ask_gmsh
 
-    def counted(request: dict[str, Any], *rest: Any) -> dict[str, Any]:
+    def counted(request, *rest):
         sizes.append(len(request["regions"]))
         return genuine(request, *rest)
 

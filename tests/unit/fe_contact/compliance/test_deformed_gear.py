@@ -1,7 +1,5 @@
 """Expanded gears move as their compliance says, are in equilibrium, and stress exactly where they must."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -42,7 +40,7 @@ def random_load(size: int, seed: int) -> np.ndarray:
 
 @SOLIDS
 @pytest.mark.usefixtures("exact_ring")
-def test_flanks_move_as_compliance_times_force(gear: Toothing) -> None:
+def test_flanks_move_as_compliance_times_force(gear):
     """Several loaded teeth at once, two sets of loads in one go; every tooth shown, loaded or not."""
     recipe = coarse(gear)
     flank = flank_compliance_3d(gear, recipe, reach=4)
@@ -58,7 +56,7 @@ def test_flanks_move_as_compliance_times_force(gear: Toothing) -> None:
 
 @pytest.mark.law
 @pytest.mark.parametrize("teeth", [None, 5])
-def test_sections_move_as_compliance_times_force(teeth: int | None) -> None:
+def test_sections_move_as_compliance_times_force(teeth):
     gear = make_gear()
     recipe = coarse_plane(gear, real_teeth=teeth)
     strain = PlaneHypothesis.PLANE_STRAIN
@@ -73,7 +71,7 @@ def test_sections_move_as_compliance_times_force(teeth: int | None) -> None:
 
 
 @pytest.mark.parametrize("hypothesis", list(PlaneHypothesis))
-def test_sections_bear_along_their_axis_what_their_hypothesis_says(hypothesis: PlaneHypothesis) -> None:
+def test_sections_bear_along_their_axis_what_their_hypothesis_says(hypothesis):
     gear = make_gear()
     recipe = coarse_plane(gear)
     size = flank_compliance(gear, recipe, hypothesis, teeth=1).s.size
@@ -85,7 +83,7 @@ def test_sections_bear_along_their_axis_what_their_hypothesis_says(hypothesis: P
 
 
 @SOLIDS
-def test_elements_agree_and_a_linear_displacement_gives_its_constant_stress(gear: Toothing) -> None:
+def test_elements_agree_and_a_linear_displacement_gives_its_constant_stress(gear):
     """At every node of every element, those that hang on coarser ones too."""
     elements = sector_of(gear)
     moved = elements.nodes @ GRADIENT.T
@@ -109,7 +107,7 @@ def sector_of(gear: Toothing) -> SectorElements:
 
 
 @pytest.mark.parametrize("hypothesis", list(PlaneHypothesis))
-def test_linear_displacement_gives_its_constant_plane_stress(hypothesis: PlaneHypothesis) -> None:
+def test_linear_displacement_gives_its_constant_plane_stress(hypothesis):
     """Against Hooke's law in E and nu."""
     gear = make_gear()
     mesh = mesh_gear(gear, coarse_plane(gear))
@@ -129,7 +127,7 @@ def test_linear_displacement_gives_its_constant_plane_stress(hypothesis: PlaneHy
 
 
 @SOLIDS
-def test_solids_are_whole_and_right_side_out(gear: Toothing) -> None:
+def test_solids_are_whole_and_right_side_out(gear):
     """Each point is used; neighbors share their cut; volumes are positive; tips are where they belong."""
     recipe = coarse(gear)
     size = flank_compliance_3d(gear, recipe, reach=0).blocks.shape[1]
@@ -163,7 +161,7 @@ def tip_at(found: DeformedGear, gear: Toothing, z: float) -> float:
     return math.atan2(nearest[1], nearest[0])
 
 
-def test_a_whole_ring_closes() -> None:
+def test_a_whole_ring_closes():
     recipe = coarse(SPUR)
     size = flank_compliance_3d(SPUR, recipe, reach=0).blocks.shape[1]
     (found,) = deformed_solids(SPUR, recipe, [{0: -random_load(size, 5)}], unloaded=20)
@@ -173,7 +171,7 @@ def test_a_whole_ring_closes() -> None:
     assert found.residual < 1e-10
 
 
-def test_a_gear_on_an_elastic_seat_moves_as_its_compliance_and_a_key_is_refused() -> None:
+def test_a_gear_on_an_elastic_seat_moves_as_its_compliance_and_a_key_is_refused():
     seat = BoreSeat(5e13, 3e13, 5e13, width=12e-3)
     gear, recipe = replace(LEFT, seat=seat), coarse(LEFT)
     flank = flank_compliance_3d(gear, recipe, reach=1)
@@ -188,7 +186,7 @@ def test_a_gear_on_an_elastic_seat_moves_as_its_compliance_and_a_key_is_refused(
         deformed_solids(replace(gear, seat=replace(seat, key=Key(1e-3))), recipe, [load])
 
 
-def test_invariants_of_known_stresses() -> None:
+def test_invariants_of_known_stresses():
     uniaxial, shear = np.diag([0.0, 7.0, 0.0]), np.zeros((3, 3))
     shear[0, 2] = shear[2, 0] = 2.0
     nodes = np.zeros((2, 3))

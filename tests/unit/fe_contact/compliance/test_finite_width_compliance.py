@@ -1,13 +1,12 @@
 """Laws of the compliance that a finite face width adds to plane strain."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
+from fe_contact import Gear, Material
 from fe_contact.compliance import (
     FiniteWidthCompliance,
     PlaneHypothesis,
@@ -19,8 +18,6 @@ from fe_contact.compliance.finite_width import even_load, shape_functions, under
 from fe_contact.contact.face_patch import FaceGrid, face_loads
 from fe_contact.contact.patch import load_vector
 from fe_contact.errors import InputError
-from fe_contact.geometry import Gear
-from fe_contact.material import Material
 from fe_contact.mesh import MeshRecipe, SectorRecipe
 
 
@@ -44,18 +41,18 @@ def self_compliance(found: FiniteWidthCompliance) -> float:
 
 
 @pytest.fixture(scope="module")
-def gear() -> Gear:
+def gear():
     return Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 
 
 @pytest.fixture(scope="module")
-def usual(gear: Gear) -> FiniteWidthCompliance:
+def usual(gear):
     return beyond(gear)
 
 
 @pytest.mark.law
 @pytest.mark.usefixtures("exact_ring")
-def test_half_a_face_stands_for_the_whole(gear: Gear) -> None:
+def test_half_a_face_stands_for_the_whole(gear):
     """Under even loads mid-face is a plane of symmetry."""
     half = replace(SectorRecipe.even_load(gear), layers=2, layer_growth=1.0)
     whole = replace(half, layers=4, half_face=False)
@@ -63,7 +60,7 @@ def test_half_a_face_stands_for_the_whole(gear: Gear) -> None:
     assert np.abs(first - second).max() <= 1e-11 * np.abs(second).max()
 
 
-def test_an_even_load_is_the_box_over_the_whole_face(gear: Gear) -> None:
+def test_an_even_load_is_the_box_over_the_whole_face(gear):
     """Two integrations of the same patch, on uneven layers: nodal forces agree."""
     solid = flank_compliance_3d(gear, replace(SectorRecipe.even_load(gear), layers=2))
     center, width, share = 0.5 * (solid.s_form + solid.s_tip), 0.35 * gear.normal_module, 0.0
@@ -80,7 +77,7 @@ def test_an_even_load_is_the_box_over_the_whole_face(gear: Gear) -> None:
     assert even_load(solid.z, solid.index) @ profile == pytest.approx(box, abs=1e-12)
 
 
-def test_it_vanishes_with_poissons_ratio_and_scales(gear: Gear, usual: FiniteWidthCompliance) -> None:
+def test_it_vanishes_with_poissons_ratio_and_scales(gear, usual):
     none = beyond(replace(gear, material=Material(210e9, 0.0)))
     assert np.abs(none.blocks).max() <= 5e-4 * np.abs(usual.blocks).max()
     assert abs(self_compliance(none)) <= 1e-5 * self_compliance(usual)
@@ -96,7 +93,7 @@ def test_it_vanishes_with_poissons_ratio_and_scales(gear: Gear, usual: FiniteWid
     assert soft * self_compliance(beyond(other)) == pytest.approx(self_compliance(usual), rel=1e-6, abs=0.0)
 
 
-def test_the_solid_gives_way_more_under_every_even_load() -> None:
+def test_the_solid_gives_way_more_under_every_even_load():
     """The functions of plane strain are among those of the solid: all teeth of a small gear at once."""
     small = Gear(9, 4e-3, 12e-3, 10e-3, profile_shift_coefficient=0.5)
     found = beyond(small, teeth=5)
@@ -106,7 +103,7 @@ def test_the_solid_gives_way_more_under_every_even_load() -> None:
     assert values[0] >= -1e-9 * values[-1]
 
 
-def test_a_thin_gear_is_in_plane_stress(gear: Gear) -> None:
+def test_a_thin_gear_is_in_plane_stress(gear):
     """Against the two-dimensional code: the difference of its hypotheses, own tooth and the next."""
     thin = beyond(replace(gear, face_width=0.1 * gear.normal_module))
     recipe = MeshRecipe.standard(gear).refined(0.25)
@@ -119,7 +116,7 @@ def test_a_thin_gear_is_in_plane_stress(gear: Gear) -> None:
         assert float(coarse @ thin.block(tooth) @ coarse) == pytest.approx(expected, rel=0.02, abs=0.0)
 
 
-def test_of_a_wide_gear_only_the_ends_count(gear: Gear) -> None:
+def test_of_a_wide_gear_only_the_ends_count(gear):
     """Twice the width has the same ends, so half the mean; the more exactly, the wider."""
     wide = [self_compliance(beyond(replace(gear, face_width=w * gear.normal_module))) for w in (10, 20, 40)]
     first, second = (2.0 * b / a - 1.0 for a, b in pairwise(wide))
@@ -127,7 +124,7 @@ def test_of_a_wide_gear_only_the_ends_count(gear: Gear) -> None:
     assert abs(second) < 0.5 * abs(first)
 
 
-def test_it_is_added_tooth_by_tooth(gear: Gear, usual: FiniteWidthCompliance) -> None:
+def test_it_is_added_tooth_by_tooth(gear, usual):
     flat = flank_compliance(gear, MeshRecipe.standard(gear).refined(0.25), teeth=5)
     corrected = usual.added_to(flat)
     shape = shape_functions(usual.s, flat.s)
@@ -137,7 +134,7 @@ def test_it_is_added_tooth_by_tooth(gear: Gear, usual: FiniteWidthCompliance) ->
     assert corrected.matrix == pytest.approx(corrected.matrix.T, rel=1e-9, abs=1e-19)
 
 
-def test_shape_functions_reproduce_parabolas_and_a_helical_gear_is_refused(gear: Gear) -> None:
+def test_shape_functions_reproduce_parabolas_and_a_helical_gear_is_refused(gear):
     nodes = np.array([0.0, 0.5, 1.0, 2.0, 3.0])
     at = np.array([-1.0, 0.0, 0.3, 1.7, 3.0])
     inside = np.maximum(at, 0.0)

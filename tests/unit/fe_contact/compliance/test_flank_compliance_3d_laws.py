@@ -1,7 +1,5 @@
 """Laws that a three-dimensional flank compliance keeps on every mesh."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace
@@ -13,18 +11,15 @@ from compliance_gears import HELICAL, SPUR, WEBBED, coarse, relative, whole_gear
 import fe_contact.compliance.condensed_gear as gear_module
 import fe_contact.compliance.cyclic_compliance as flow
 import fe_contact.compliance.sector_stiffness as stiffness_module
-from fe_contact.compliance import (
-    flank_compliance_3d,
-    flank_compliances_3d,
-)
+from fe_contact import Material, RingGear
+from fe_contact.compliance import ComplianceChecks, flank_compliance_3d, flank_compliances_3d
 from fe_contact.compliance.condensed_gear import pressure_forces
 from fe_contact.compliance.factorization import factorise
-from fe_contact.compliance.flank import ComplianceChecks, refuse_broken_laws
+from fe_contact.compliance.flank import refuse_broken_laws
 from fe_contact.compliance.gear_checks import least_eigenvalue
 from fe_contact.compliance.sector_stiffness import twist
 from fe_contact.errors import InputError, SolveError
-from fe_contact.geometry import Gear, RingGear, Toothing
-from fe_contact.material import Material
+from fe_contact.geometry import Toothing
 from fe_contact.mesh import ClampedBore, SectorRecipe
 
 GEARS = pytest.mark.parametrize("gear", [SPUR, HELICAL], ids=["spur", "helical"])
@@ -53,7 +48,7 @@ def global_compliance(gear: Toothing, recipe: SectorRecipe) -> np.ndarray:
     ids=["spur", "helical", "helical with a web", "ring", "helical ring"],
 )
 @pytest.mark.usefixtures("exact_ring")
-def test_equals_the_solution_of_the_whole_gear(gear: Toothing) -> None:
+def test_equals_the_solution_of_the_whole_gear(gear):
     found = flank_compliance_3d(gear, coarse(gear), reach=4)
     direct = global_compliance(gear, coarse(gear))
     for m in range(-4, 5):
@@ -62,7 +57,7 @@ def test_equals_the_solution_of_the_whole_gear(gear: Toothing) -> None:
 
 
 @BOTH_KINDS
-def test_checks_hold_to_rounding(gear: Toothing) -> None:
+def test_checks_hold_to_rounding(gear):
     found = flank_compliance_3d(gear, coarse(gear))
     assert found.checks.residual < 1e-11
     assert found.checks.reciprocity < 1e-13
@@ -74,7 +69,7 @@ def test_checks_hold_to_rounding(gear: Toothing) -> None:
     assert found.checks.least_eigenvalue == pytest.approx(values[0], rel=0.02)
 
 
-def test_numbering_of_teeth_closes_the_ring() -> None:
+def test_numbering_of_teeth_closes_the_ring():
     found = flank_compliance_3d(HELICAL, coarse(HELICAL), reach=4)
     assert np.array_equal(found.block(3, 1), found.blocks[2])
     assert np.array_equal(found.block(1, 3), found.blocks[2].T)
@@ -91,7 +86,7 @@ def test_numbering_of_teeth_closes_the_ring() -> None:
 
 
 @pytest.mark.law
-def test_opposite_hands_are_mirror_images_to_the_last_bit() -> None:
+def test_opposite_hands_are_mirror_images_to_the_last_bit():
     left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
     recipe = coarse(HELICAL)
     right, found = flank_compliance_3d(HELICAL, recipe), flank_compliance_3d(left, recipe)
@@ -112,9 +107,7 @@ def test_opposite_hands_are_mirror_images_to_the_last_bit() -> None:
 
 @pytest.mark.parametrize("gear", [HELICAL, replace(RING, rim_diameter=160e-3, helix_angle=0.3)])
 @pytest.mark.usefixtures("exact_ring")
-def test_a_gear_swept_the_other_way_is_the_mirror_image(
-    gear: Gear | RingGear, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_gear_swept_the_other_way_is_the_mirror_image(gear, monkeypatch):
     left = replace(gear, helix_angle=-gear.helix_angle)
     mirrored = flank_compliance_3d(left, coarse(gear), reach=2)
     signed = "twist", lambda gear: math.tan(gear.helix_angle) / gear.reference_radius
@@ -123,7 +116,7 @@ def test_a_gear_swept_the_other_way_is_the_mirror_image(
     assert relative(swept.blocks, mirrored.blocks) < 1e-10
 
 
-def test_a_right_hand_tooth_leans_counter_clockwise() -> None:
+def test_a_right_hand_tooth_leans_counter_clockwise():
     """Seen from +z a right-hand helix turns counter-clockwise on the way up (ISO 21771-1)."""
     assert twist(HELICAL) == pytest.approx(
         math.tan(HELICAL.helix_angle) / HELICAL.reference_radius, rel=1e-15
@@ -142,7 +135,7 @@ def test_a_right_hand_tooth_leans_counter_clockwise() -> None:
 
 @pytest.mark.law
 @GEARS
-def test_compliance_goes_with_one_over_modulus_and_length(gear: Gear) -> None:
+def test_compliance_goes_with_one_over_modulus_and_length(gear):
     found = flank_compliance_3d(gear, coarse(gear))
     large = replace(gear, normal_module=32e-3, face_width=160e-3, bore_diameter=96e-3)
     scaled = flank_compliance_3d(large, coarse(large))
@@ -152,7 +145,7 @@ def test_compliance_goes_with_one_over_modulus_and_length(gear: Gear) -> None:
     assert relative(0.1 * flank_compliance_3d(soft, coarse(gear)).blocks, found.blocks) < 1e-10
 
 
-def test_reach_is_bounded_by_the_ring_and_alike_gears_computed_once() -> None:
+def test_reach_is_bounded_by_the_ring_and_alike_gears_computed_once():
     recipe = coarse(SPUR)
     twins = flank_compliances_3d(
         [SPUR, replace(SPUR, material=replace(SPUR.material, density=7000.0))], [recipe] * 2
@@ -172,7 +165,7 @@ def test_reach_is_bounded_by_the_ring_and_alike_gears_computed_once() -> None:
 
 
 @pytest.mark.parametrize("name", ["residual", "reciprocity", "bore_moment", "energy", "least_eigenvalue"])
-def test_a_broken_law_is_refused_by_name(name: str) -> None:
+def test_a_broken_law_is_refused_by_name(name):
     found = flank_compliance_3d(SPUR, coarse(SPUR, layers=2), reach=0)
     broken: ComplianceChecks = replace(found.checks, **{name: -1.0 if name == "least_eigenvalue" else 1e-3})
     with pytest.raises(SolveError, match=name.replace("_", ".")) as refusal:
@@ -180,13 +173,13 @@ def test_a_broken_law_is_refused_by_name(name: str) -> None:
     assert refusal.value.partial is not None
 
 
-def test_checks_see_a_wrong_ring(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_checks_see_a_wrong_ring(monkeypatch):
     """Each check is blind to none of: cuts that do not fit, blocks that do not belong."""
     genuine = gear_module.close_ring
     spoil: Callable[..., object]
 
-    def spoiled(*arguments: object) -> object:
-        return spoil(genuine(*arguments))  # type: ignore[arg-type]
+    def spoiled(*arguments):
+        return spoil(genuine(*arguments))
 
     monkeypatch.setattr(gear_module, "close_ring", spoiled)
     for law, change in {
@@ -197,11 +190,11 @@ def test_checks_see_a_wrong_ring(monkeypatch: pytest.MonkeyPatch) -> None:
         spoil = change
         with pytest.raises(SolveError) as refusal:
             flank_compliance_3d(HELICAL, coarse(HELICAL), reach=1)
-        checks = refusal.value.partial.checks  # type: ignore[attr-defined]
+        checks = refusal.value.partial.checks
         assert getattr(checks, law) > 1e-7, law
 
 
-def test_least_eigenvalue_and_pressure_are_those_of_closed_forms() -> None:
+def test_least_eigenvalue_and_pressure_are_those_of_closed_forms():
     basis, _ = np.linalg.qr(np.random.default_rng(3).normal(size=(30, 30)))
     values = np.linspace(0.5, 4.0, 30)
     assert least_eigenvalue(basis * values @ basis.T) == pytest.approx(0.5, rel=0.02)
@@ -218,7 +211,7 @@ def test_least_eigenvalue_and_pressure_are_those_of_closed_forms() -> None:
     grid_s, grid_z = np.broadcast_arrays(s, planes[:, None])
     for p, q in ((0, 0), (1, 0), (0, 1), (1, 1), (2, 0), (0, 2)):
 
-        def integral(low: float, high: float, power: int) -> float:
+        def integral(low, high, power):
             return float((high ** (power + 1) - low ** (power + 1)) / (power + 1))
 
         exact = integral(0, 1, p) * integral(-1, 0, q) + 2.0 * integral(1, 3, p) * integral(0, 2, q)

@@ -1,7 +1,5 @@
 """Laws that a flank compliance keeps on every mesh."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 
@@ -60,7 +58,7 @@ def along_flank(mesh: fe_contact.mesh.gear_mesh.GearMesh, middle: int, found: Fl
 @pytest.mark.drawn
 @pytest.mark.law
 @ALL_RINGS
-def test_equals_the_solution_of_the_whole_uncondensed_mesh(gear: Toothing, real: int | None) -> None:
+def test_equals_the_solution_of_the_whole_uncondensed_mesh(gear, real):
     recipe = coarse_plane(gear, real_teeth=real)
     found = of_ring(gear, recipe)
     mesh = mesh_gear(gear, recipe)
@@ -81,7 +79,7 @@ def test_equals_the_solution_of_the_whole_uncondensed_mesh(gear: Toothing, real:
 
 
 @ALL_RINGS
-def test_checks_hold_to_rounding(gear: Toothing, real: int | None) -> None:
+def test_checks_hold_to_rounding(gear, real):
     found = of_ring(gear, coarse_plane(gear, real_teeth=real))
     checks = found.checks
     assert checks.residual < 1e-10
@@ -101,7 +99,7 @@ def under_pressure(compliance: FlankCompliance) -> np.ndarray:
     )
 
 
-def test_teeth_around_the_ring_are_all_alike() -> None:
+def test_teeth_around_the_ring_are_all_alike():
     gear = make_gear()
     found = flank_compliance(gear, coarse_plane(gear))
     for distance in (0, 1, 2):
@@ -120,7 +118,7 @@ def test_teeth_around_the_ring_are_all_alike() -> None:
         assert relative(five.block(0, tooth), seven.block(0, tooth)) < 1e-11
 
 
-def test_compliance_scales_with_modulus_and_is_free_of_length() -> None:
+def test_compliance_scales_with_modulus_and_is_free_of_length():
     steel, soft = make_gear(), make_gear(material=Material(youngs_modulus=3e9))
     ratio = (
         flank_compliance(soft, coarse_plane(soft)).matrix
@@ -152,7 +150,7 @@ def test_compliance_scales_with_modulus_and_is_free_of_length() -> None:
     assert np.trace(other[1].matrix) > np.trace(other[0].matrix)
 
 
-def test_fewer_real_teeth_are_softer() -> None:
+def test_fewer_real_teeth_are_softer():
     gear = make_gear()
     found = [
         under_pressure(flank_compliance(gear, coarse_plane(gear, real_teeth=n))) for n in (5, 7, 11, None)
@@ -163,7 +161,7 @@ def test_fewer_real_teeth_are_softer() -> None:
     assert 1e-4 < found[0][2, 2] / found[-1][2, 2] - 1.0 < 3e-3
 
 
-def test_hub_and_sectors_to_the_bore_agree(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_hub_and_sectors_to_the_bore_agree(monkeypatch):
     gear = make_gear()
     recipe = coarse_plane(gear)
     sectors = flank_compliance(gear, recipe)
@@ -173,14 +171,14 @@ def test_hub_and_sectors_to_the_bore_agree(monkeypatch: pytest.MonkeyPatch) -> N
     assert under_pressure(with_hub) == pytest.approx(under_pressure(sectors), rel=2e-4)
 
 
-def test_another_factorization_gives_the_same_compliance(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_another_factorization_gives_the_same_compliance(monkeypatch):
     gear = make_gear()
     matrix = flank_compliance(gear, coarse_plane(gear)).matrix
     monkeypatch.setattr(ring_2d, "factorise", lambda matrix, block: splu(matrix).solve)  # COLAMD, pivoting
     assert relative(flank_compliance(gear, coarse_plane(gear)).matrix, matrix) < 1e-10
 
 
-def test_a_singular_matrix_is_a_solve_error() -> None:
+def test_a_singular_matrix_is_a_solve_error():
     singular = sp.csc_array(
         np.array([[1.0, -1.0, 0.0, 0.0], [-1.0, 1.0, 0.0, 0.0], [0, 0, 1.0, 0], [0, 0, 0, 1.0]])
     )
@@ -188,7 +186,7 @@ def test_a_singular_matrix_is_a_solve_error() -> None:
         ring_2d.factorise(singular, block=2)
 
 
-def test_condensed_teeth_are_centred_and_bounded_by_the_real_ones() -> None:
+def test_condensed_teeth_are_centred_and_bounded_by_the_real_ones():
     gear = make_gear()
     recipe = coarse_plane(gear, real_teeth=7)
     assert flank_compliance(gear, recipe).teeth.tolist() == [-2, -1, 0, 1, 2]
@@ -204,7 +202,7 @@ def test_condensed_teeth_are_centred_and_bounded_by_the_real_ones() -> None:
 
 
 @pytest.mark.parametrize("name", ["residual", "reciprocity", "bore_moment", "energy", "least_eigenvalue"])
-def test_a_broken_law_is_refused_by_name(name: str) -> None:
+def test_a_broken_law_is_refused_by_name(name):
     gear = make_gear()
     found: FlankCompliance = flank_compliance(gear, coarse_plane(gear), teeth=1)
     assert refuse_broken_laws(found) is found

@@ -1,14 +1,12 @@
 """Memory of fronts: as large as the tree says, whatever it held before, and summed like dense matrices."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from fe_contact.compliance import front_memory
-from fe_contact.compliance.elimination_tree import EliminationTree, Front, bisected_tree
+from fe_contact.compliance.elimination_tree import EliminationTree, bisected_tree
 from fe_contact.compliance.front_assembly import add_elements, add_updates, pack
 from fe_contact.compliance.front_memory import FrontMemory
 from fe_contact.compliance.sector_stiffness import ElementStiffness
@@ -29,11 +27,11 @@ def sheet() -> tuple[EliminationTree, np.ndarray, ElementStiffness]:
     return bisected_tree(nodes, nodes - 1, np.array(cells, float), KEPT, 3), nodes - 1, stiffness
 
 
-def test_updates_wait_apart_and_fill_the_memory_that_the_tree_names() -> None:
+def test_updates_wait_apart_and_fill_the_memory_that_the_tree_names():
     tree, _, _ = sheet()
     memory, waiting, most = FrontMemory(tree), 0, 0
 
-    def walk(front: Front) -> None:
+    def walk(front):
         """Write a number of its own into each update; its parent finds it as it was."""
         nonlocal waiting, most
         updates = []
@@ -49,16 +47,15 @@ def test_updates_wait_apart_and_fill_the_memory_that_the_tree_names() -> None:
     assert most == tree.waiting_entries
 
 
-def test_all_factors_lie_in_one_piece_of_the_named_size() -> None:
+def test_all_factors_lie_in_one_piece_of_the_named_size():
     tree, freedoms, stiffness = sheet()
     _, condensation = condense(tree, freedoms, stiffness)
     owner = condensation.factors[0].factor.base
-    assert owner is not None
     assert owner.size == tree.factor_entries
     assert all(part.factor.base is owner and part.coupling.base is owner for part in condensation.factors)
 
 
-def test_factors_take_the_memory_of_those_that_are_gone_and_of_no_others() -> None:
+def test_factors_take_the_memory_of_those_that_are_gone_and_of_no_others():
     tree, freedoms, stiffness = sheet()
     alone = condense(tree, freedoms, stiffness)[1].expand(np.eye(len(KEPT)))
     with front_memory.shared_factors():
@@ -76,7 +73,7 @@ def test_factors_take_the_memory_of_those_that_are_gone_and_of_no_others() -> No
     assert condense(tree, freedoms, stiffness)[1].factors[-1].factor.__array_interface__["data"] != address
 
 
-def test_what_memory_held_before_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_memory_held_before_changes_nothing(monkeypatch):
     tree, freedoms, stiffness = sheet()
     matrix, condensation = condense(tree, freedoms, stiffness)
     field = condensation.expand(np.eye(len(KEPT)))
@@ -87,7 +84,7 @@ def test_what_memory_held_before_changes_nothing(monkeypatch: pytest.MonkeyPatch
 
 
 @pytest.mark.parametrize("inner", [0, 1, 4, 9])
-def test_a_front_is_the_sum_of_its_children_to_the_last_bit(inner: int) -> None:
+def test_a_front_is_the_sum_of_its_children_to_the_last_bit(inner):
     size = 9
     dense, blocks = np.zeros((size, size)), _garbage(inner, size - inner)
     updates = []
@@ -102,7 +99,7 @@ def test_a_front_is_the_sum_of_its_children_to_the_last_bit(inner: int) -> None:
     _assert_lower_parts(blocks, dense, inner)
 
 
-def test_elements_are_added_where_they_are_free() -> None:
+def test_elements_are_added_where_they_are_free():
     matrices, inner, size = RANDOM.normal(size=(2, 3, 3)), 2, 5
     matrices += matrices.transpose(0, 2, 1)
     rows, nothing = np.array([[0, 2, -1], [4, 1, 3]]), (np.zeros(0), np.zeros(0, dtype=np.int64))

@@ -1,7 +1,5 @@
 """Hexahedra of swept layers against scikit-fem's own assembly, rigid motion and constant strain."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -27,12 +25,12 @@ RECIPE = replace(SectorRecipe.draft(GEAR), layers=8, merge_rows=(-1, -3))
 
 
 @pytest.fixture(scope="module")
-def section() -> QuadSector:
+def section():
     return quad_sector(GEAR, RECIPE)
 
 
 @pytest.fixture(scope="module")
-def nodes(section: QuadSector) -> np.ndarray:
+def nodes(section):
     """Nodes (m, 20, 3) of one strongly turned layer."""
     return layer_nodes(section.points[section.grid.quads], 5e-3, 0.1)
 
@@ -47,7 +45,7 @@ def serendipity(at: np.ndarray) -> np.ndarray:
     return np.stack(functions, axis=-1)
 
 
-def test_equals_the_assembly_of_scikit_fem(nodes: np.ndarray) -> None:
+def test_equals_the_assembly_of_scikit_fem(nodes):
     count = 40
     some = nodes[::4][:count]
     count = len(some)
@@ -70,7 +68,7 @@ def test_equals_the_assembly_of_scikit_fem(nodes: np.ndarray) -> None:
         assert found[e] == pytest.approx(matrix[np.ix_(dofs, dofs)], abs=1e-12 * np.abs(found[e]).max())
 
 
-def test_only_the_six_rigid_motions_are_free(nodes: np.ndarray) -> None:
+def test_only_the_six_rigid_motions_are_free(nodes):
     for stiffness in stiffness_of(nodes[::20], LAME):
         assert (
             np.array_equal(stiffness, stiffness.T)
@@ -81,7 +79,7 @@ def test_only_the_six_rigid_motions_are_free(nodes: np.ndarray) -> None:
         assert values[0] > -1e-12 * values[-1]
 
 
-def test_a_rotation_about_the_axis_is_tangential(section: QuadSector) -> None:
+def test_a_rotation_about_the_axis_is_tangential(section):
     quads = np.arange(0, len(section.grid.quads), 20)
     batch = Batch(quads, 5e-3, 0, np.arange(len(quads))[None])
     nodes, transform = placed_layer(section, batch, np.tile(np.eye(3), (section.grid.nodes, 1, 1)), 20.0)
@@ -94,7 +92,7 @@ def test_a_rotation_about_the_axis_is_tangential(section: QuadSector) -> None:
     assert cartesian == pytest.approx(np.cross([0.0, 0.0, 1.0], nodes), abs=1e-15)
 
 
-def test_a_folded_element_is_named(section: QuadSector) -> None:
+def test_a_folded_element_is_named(section):
     squares = section.points[section.grid.quads]
     squares[2] = squares[2][[1, 0, 3, 2, 4, 7, 6, 5]]  # clockwise
     with pytest.raises(MeshError, match=r"element 2 at .* is folded"):
@@ -120,10 +118,10 @@ class FreeBore:
     seat = BoreSeat()
 
     def constrained(self, grid: object, z: np.ndarray) -> np.ndarray:
-        return np.zeros((len(z), grid.nodes, 3), dtype=bool)  # type: ignore[attr-defined]
+        return np.zeros((len(z), grid.nodes, 3), dtype=bool)
 
 
-def test_constant_strain_is_exact_in_a_merged_helical_sector(section: QuadSector) -> None:
+def test_constant_strain_is_exact_in_a_merged_helical_sector(section):
     """Patch test: inner nodes, hanging ones included, balance under a linear field; the energy is exact."""
     sector = swept_sector(section.grid, GEAR.face_width, RECIPE, FreeBore())
     frames = flank_frames(section, twist(GEAR))
@@ -164,7 +162,7 @@ def test_constant_strain_is_exact_in_a_merged_helical_sector(section: QuadSector
     assert float(np.sum(field * forces)) == pytest.approx(density * volume, rel=1e-9)
 
 
-def test_the_flank_frame_is_the_helicoid(section: QuadSector) -> None:
+def test_the_flank_frame_is_the_helicoid(section):
     frames = flank_frames(section, twist(GEAR))
     assert np.einsum("kab,kac->kbc", frames, frames) == pytest.approx(
         np.tile(np.eye(3), (len(frames), 1, 1)), abs=1e-14

@@ -1,11 +1,8 @@
 """Laws that unit-load root stresses keep on every mesh, in the plane and over the face."""
 
-from __future__ import annotations
-
 import functools
 import math
 from dataclasses import fields, replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,36 +12,29 @@ from scipy.sparse.linalg import splu
 
 import fe_contact.compliance.root_stress_3d as face_module
 import fe_contact.compliance.sector_stiffness as stiffness_module
-from fe_contact.compliance import PlaneHypothesis
-from fe_contact.compliance.condensed_gear import pressure_forces
-from fe_contact.compliance.condensed_sector import freedoms, inward_loads
-from fe_contact.compliance.factorization import factorise
-from fe_contact.compliance.plane_elasticity import stiffness_matrix
-from fe_contact.compliance.root_stress import UnitRootStress, refuse_broken_stress
-from fe_contact.compliance.root_stress_3d import compute_root_stress_3d, root_functionals
-from fe_contact.compliance.root_surface_3d import quad_root
-from fe_contact.compliance.unit_root_stress import (
-    edge_stress,
-    triangle_root,
+from fe_contact import Gear, Material, RingGear
+from fe_contact.compliance import (
+    PlaneHypothesis,
+    UnitRootStress,
     unit_root_stress,
     unit_root_stress_3d,
     unit_root_stresses,
     unit_root_stresses_3d,
 )
+from fe_contact.compliance.condensed_gear import pressure_forces
+from fe_contact.compliance.condensed_sector import freedoms, inward_loads
+from fe_contact.compliance.factorization import factorise
+from fe_contact.compliance.plane_elasticity import stiffness_matrix
+from fe_contact.compliance.root_stress import refuse_broken_stress
+from fe_contact.compliance.root_stress_3d import compute_root_stress_3d, root_functionals
+from fe_contact.compliance.root_surface_3d import quad_root
+from fe_contact.compliance.unit_root_stress import edge_stress, triangle_root
 from fe_contact.contact.face_patch import FaceGrid, face_loads
 from fe_contact.contact.patch import load_vector
 from fe_contact.errors import SolveError
-from fe_contact.geometry import Gear, RingGear, Toothing, tooth_profile
+from fe_contact.geometry import Toothing, tooth_profile
 from fe_contact.geometry.root_tangent import critical_section, tangent_angle
-from fe_contact.material import Material
-from fe_contact.mesh import (
-    ClampedBore,
-    MeshRecipe,
-    PlaneStrain,
-    SectorRecipe,
-    mesh_gear,
-    quad_sector,
-)
+from fe_contact.mesh import ClampedBore, MeshRecipe, PlaneStrain, SectorRecipe, mesh_gear, quad_sector
 
 GEARS = pytest.mark.parametrize("gear", [SPUR, HELICAL], ids=["spur", "helical"])
 PLANE = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
@@ -62,7 +52,6 @@ over_face = functools.cache(unit_root_stress_3d)
 
 
 def on_flank(found: UnitRootStress) -> np.ndarray:
-    """Forces of a pressure on the upper part of the flank, all of the face."""
     upper = found.s[:-2:2] > 0.4 * found.s[0] + 0.6 * found.s[-1]
     if found.across_face:
         return pressure_forces(
@@ -81,12 +70,12 @@ def some_forces(count: int) -> np.ndarray:
 
 @pytest.mark.law
 @pytest.mark.parametrize(("teeth", "bore", "real"), RINGS, ids=RING_NAMES)
-def test_equals_the_uncondensed_solution_in_the_plane(teeth: int, bore: float, real: int | None) -> None:
+def test_equals_the_uncondensed_solution_in_the_plane(teeth, bore, real):
     gear = replace(PLANE, teeth=teeth, bore_diameter=bore)
     assert_agrees_with_the_whole_mesh(gear, coarse_plane(gear, real_teeth=real))
 
 
-def test_equals_the_uncondensed_solution_of_a_ring_gear() -> None:
+def test_equals_the_uncondensed_solution_of_a_ring_gear():
     assert_agrees_with_the_whole_mesh(RING, coarse_plane(RING))
 
 
@@ -121,7 +110,7 @@ def whole_gear_stress(gear: Gear, recipe: SectorRecipe) -> np.ndarray:
 
 
 @GEARS
-def test_equals_the_uncondensed_solution_over_the_face(gear: Gear) -> None:
+def test_equals_the_uncondensed_solution_over_the_face(gear):
     """To 1e-6 of the stress: what the cuts cannot tell apart by more is dropped (`MIN_SIGNIFICANT`)."""
     recipe = two_on_land(gear)
     found = over_face(gear, recipe, reach=4)
@@ -133,7 +122,7 @@ def test_equals_the_uncondensed_solution_over_the_face(gear: Gear) -> None:
 
 
 @GEARS
-def test_checks_hold(gear: Gear) -> None:
+def test_checks_hold(gear):
     face = over_face(gear, two_on_land(gear))
     assert face.checks.residual < 1e-11
     assert face.checks.recovery < 2e-6
@@ -143,7 +132,7 @@ def test_checks_hold(gear: Gear) -> None:
 
 
 @pytest.mark.law
-def test_the_load_pulls_its_own_side_and_pushes_the_other() -> None:
+def test_the_load_pulls_its_own_side_and_pushes_the_other():
     ring = replace(SectorRecipe.draft(RING), layers=2, merge_rows=())
     for found in (
         in_plane(PLANE),
@@ -174,7 +163,7 @@ def patch(found: UnitRootStress, gear: Gear) -> np.ndarray:
 
 
 @pytest.mark.law
-def test_one_layer_without_axial_displacement_is_the_plane() -> None:
+def test_one_layer_without_axial_displacement_is_the_plane():
     """Two meshes and two ways to condense: eight-node quadrilaterals and triangles."""
     recipe = replace(SectorRecipe.fine(PLANE), layers=1, merge_rows=(), layer_growth=1.0, land_elements=8)
     face, plane = over_face(PLANE, recipe, support=PlaneStrain()), in_plane(PLANE)
@@ -189,7 +178,7 @@ def test_one_layer_without_axial_displacement_is_the_plane() -> None:
         assert relative(sums[0], sums[1]) < (0.015 if distance == 0 else 0.03)
 
 
-def test_opposite_hands_are_mirror_images() -> None:
+def test_opposite_hands_are_mirror_images():
     left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
     right, found = (over_face(gear, two_on_land(gear), reach=1) for gear in (HELICAL, left))
     assert np.array_equal(found.stress, right.mirrored().stress)
@@ -201,7 +190,7 @@ def test_opposite_hands_are_mirror_images() -> None:
     assert np.abs(shear + shear[..., ::-1]).max() < 1e-6 * np.abs(found.stress @ on_flank(found)).max()
 
 
-def test_a_gear_swept_the_other_way_is_the_mirror_image(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_gear_swept_the_other_way_is_the_mirror_image(monkeypatch):
     left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
     mirrored = over_face(left, two_on_land(left), reach=1)
     for module in (stiffness_module, face_module):
@@ -211,7 +200,7 @@ def test_a_gear_swept_the_other_way_is_the_mirror_image(monkeypatch: pytest.Monk
     assert relative(swept.stress, mirrored.stress) < 2e-6
 
 
-def test_stress_per_force_goes_with_one_over_length_and_not_with_stiffness() -> None:
+def test_stress_per_force_goes_with_one_over_length_and_not_with_stiffness():
     """Lengths by s and forces by s^2: the same stress; per unit of width, forces by s."""
     large = replace(SPUR, normal_module=32e-3, face_width=160e-3, bore_diameter=96e-3)
     soft = replace(SPUR, material=Material(youngs_modulus=21e9))
@@ -224,7 +213,7 @@ def test_stress_per_force_goes_with_one_over_length_and_not_with_stiffness() -> 
     assert relative(softer.stress, found.stress) < 1e-9
 
 
-def test_stations_lie_on_the_fillet_with_its_tangents() -> None:
+def test_stations_lie_on_the_fillet_with_its_tangents():
     profile = tooth_profile(PLANE)
     for found in (in_plane(PLANE), over_face(PLANE, SectorRecipe.draft(PLANE))):
         assert profile.s_space < found.station_s[0] < found.station_s[-1] < profile.s_form
@@ -246,7 +235,7 @@ def test_stations_lie_on_the_fillet_with_its_tangents() -> None:
 
 
 @pytest.mark.parametrize("gear", [PLANE, RING], ids=["external", "internal"])
-def test_nodes_of_the_root_have_their_flank_coordinates(gear: Toothing) -> None:
+def test_nodes_of_the_root_have_their_flank_coordinates(gear):
     profile = tooth_profile(gear)
     section = quad_sector(gear, SectorRecipe.draft(gear))
     sector = mesh_gear(gear, MeshRecipe.standard(gear)).sector
@@ -262,7 +251,7 @@ def test_nodes_of_the_root_have_their_flank_coordinates(gear: Toothing) -> None:
         assert root.s[1::2] == pytest.approx(middles, abs=1e-8)
 
 
-def test_the_cache_returns_the_same_bits(tmp_path: Path) -> None:
+def test_the_cache_returns_the_same_bits(tmp_path):
     left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
     recipe = two_on_land(HELICAL)
     first, second = (unit_root_stress_3d(HELICAL, recipe, reach=1, cache=tmp_path) for _ in range(2))
@@ -282,7 +271,7 @@ def test_the_cache_returns_the_same_bits(tmp_path: Path) -> None:
     assert not unit_root_stress(SPUR, coarse_plane(SPUR), cache=tmp_path).from_cache
 
 
-def test_gears_alike_are_computed_once(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_gears_alike_are_computed_once(monkeypatch):
     left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
     found = unit_root_stresses_3d([HELICAL, left], [two_on_land(HELICAL)] * 2)
     assert np.array_equal(found[1].mirrored().stress, found[0].stress)
@@ -292,7 +281,7 @@ def test_gears_alike_are_computed_once(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("name", ["residual", "recovery"])
-def test_a_broken_law_is_refused_by_name(name: str) -> None:
+def test_a_broken_law_is_refused_by_name(name):
     found = unit_root_stress(SPUR, coarse_plane(SPUR))
     broken = replace(found, checks=replace(found.checks, **{name: 1e-3}))
     with pytest.raises(SolveError, match=name) as refusal:
@@ -300,11 +289,11 @@ def test_a_broken_law_is_refused_by_name(name: str) -> None:
     assert refusal.value.partial is broken
 
 
-def test_checks_see_a_wrong_ring(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_checks_see_a_wrong_ring(monkeypatch):
     genuine = face_module.loaded_cuts
 
-    def spoiled(*arguments: object) -> object:
-        cuts = genuine(*arguments)  # type: ignore[arg-type]
+    def spoiled(*arguments):
+        cuts = genuine(*arguments)
         return replace(cuts, near={m: cuts.near[m] * (1.0 + 1e-3) for m in cuts.near})
 
     monkeypatch.setattr(face_module, "loaded_cuts", spoiled)

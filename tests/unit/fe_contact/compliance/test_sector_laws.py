@@ -1,19 +1,16 @@
 """A sector that is cut out of a gear, its cut planes and bore fixed, in the plane."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from compliance_gears import coarse_plane
 
-from fe_contact import AnalysisOptions, GearPair, TableAxes, analyze
+from fe_contact import AnalysisOptions, Gear, GearBlank, GearPair, TableAxes, analyze
 from fe_contact.compliance import PlaneHypothesis, flank_compliance, flank_compliance_3d
 from fe_contact.compliance.deformed_section import deformed_sections
 from fe_contact.compliance.ring_checks import uniform_pressure
 from fe_contact.errors import InfeasibleGeometry, InputError
-from fe_contact.geometry import Gear, GearBlank
 
 WHOLE = Gear(teeth=21, normal_module=4e-3, face_width=24e-3, bore_diameter=50e-3)
 
@@ -26,7 +23,7 @@ def mean_motion(gear: Gear) -> float:
 
 
 @pytest.mark.law
-def test_a_wider_sector_is_softer_and_the_whole_gear_is_its_limit() -> None:
+def test_a_wider_sector_is_softer_and_the_whole_gear_is_its_limit():
     motions = [mean_motion(replace(WHOLE, sector_teeth=teeth)) for teeth in (5, 7, 11, 19)]
     whole = mean_motion(WHOLE)
     assert all(first < second for first, second in zip(motions, [*motions[1:], whole], strict=True))
@@ -35,7 +32,7 @@ def test_a_wider_sector_is_softer_and_the_whole_gear_is_its_limit() -> None:
 
 
 @pytest.mark.law
-def test_cut_planes_and_bore_do_not_move() -> None:
+def test_cut_planes_and_bore_do_not_move():
     gear = replace(WHOLE, sector_teeth=7)
     recipe = coarse_plane(gear)
     count = len(flank_compliance(gear, recipe, teeth=3).s)
@@ -51,8 +48,8 @@ def test_cut_planes_and_bore_do_not_move() -> None:
 
 
 @pytest.mark.filterwarnings("ignore::bounds.PlausibilityWarning")
-def test_a_pair_with_a_sector_deflects_less_and_is_another_result() -> None:
-    def mean(gear: Gear) -> float:
+def test_a_pair_with_a_sector_deflects_less_and_is_another_result():
+    def mean(gear):
         pair = GearPair(WHOLE, gear)
         options = AnalysisOptions(level="draft", model="plane_strain", positions=8, receipt="minimal")
         return float(analyze(pair, TableAxes(torques=[100.0]), options).static_transmission_error.mean())
@@ -62,12 +59,12 @@ def test_a_pair_with_a_sector_deflects_less_and_is_another_result() -> None:
 
 
 @pytest.mark.parametrize("teeth", [6, 21, 23])
-def test_a_sector_is_centered_on_a_tooth_and_smaller_than_the_gear(teeth: int) -> None:
+def test_a_sector_is_centered_on_a_tooth_and_smaller_than_the_gear(teeth):
     with pytest.raises(InfeasibleGeometry, match="sector_teeth"):
         replace(WHOLE, sector_teeth=teeth)
 
 
-def test_a_sector_has_neither_web_nor_third_dimension() -> None:
+def test_a_sector_has_neither_web_nor_third_dimension():
     with pytest.raises(InfeasibleGeometry, match="sector_teeth"):
         replace(WHOLE, sector_teeth=7, blank=GearBlank(rim_thickness=6e-3, web_thickness=8e-3))
     sector = replace(WHOLE, sector_teeth=7)
@@ -77,6 +74,6 @@ def test_a_sector_has_neither_web_nor_third_dimension() -> None:
         analyze(GearPair(WHOLE, sector), TableAxes(torques=[100.0]), AnalysisOptions(model="3d"))
 
 
-def test_a_sector_too_narrow_for_the_contact_is_refused_by_its_field() -> None:
+def test_a_sector_too_narrow_for_the_contact_is_refused_by_its_field():
     with pytest.raises(InputError, match="sector_teeth = 5: must be 7 or more"):
         flank_compliance(replace(WHOLE, sector_teeth=5), teeth=5)

@@ -1,7 +1,5 @@
 """Substructures and cyclic harmonics against dense algebra, orderings, and what rounding leaves."""
 
-from __future__ import annotations
-
 import gc
 import math
 import weakref
@@ -12,13 +10,12 @@ import scipy.sparse as sp
 from analysis_requests import table_request
 from scipy.sparse.linalg import splu
 
-from fe_contact import Gear, GearPair
+from fe_contact import STEEL, Gear, GearPair
 from fe_contact.analysis.request.request_check import check_request
-from fe_contact.compliance import flank_compliance_3d
+from fe_contact.compliance import ComplianceChecks, flank_compliance_3d
 from fe_contact.compliance.cyclic_ring import close_ring, hold_sector
 from fe_contact.compliance.elimination_tree import EliminationTree, bisected_tree
 from fe_contact.compliance.factorization import factorise, fill_reducing_order
-from fe_contact.compliance.flank import ComplianceChecks
 from fe_contact.compliance.rounding import (
     EPSILON,
     LARGEST_ROUNDING,
@@ -29,7 +26,6 @@ from fe_contact.compliance.rounding import (
 from fe_contact.compliance.sector_stiffness import ElementStiffness
 from fe_contact.compliance.substructure import condense
 from fe_contact.errors import InputError, SolveError
-from fe_contact.material import STEEL
 from fe_contact.mesh import SectorRecipe
 
 RANDOM = np.random.default_rng(7)
@@ -56,7 +52,7 @@ def dense(freedoms: np.ndarray, stiffness: ElementStiffness) -> np.ndarray:
 
 
 @pytest.mark.parametrize("leaf", [1, 3, 100])
-def test_condensation_is_the_schur_complement(leaf: int) -> None:
+def test_condensation_is_the_schur_complement(leaf):
     nodes, freedoms, place, stiffness = sheet()
     tree = bisected_tree(nodes, freedoms, place, KEPT, leaf)
     condensed, found = condense(tree, freedoms, stiffness)
@@ -74,7 +70,7 @@ def test_condensation_is_the_schur_complement(leaf: int) -> None:
     assert (matrix @ field)[KEPT] == pytest.approx(exact @ values, abs=1e-12)
 
 
-def test_factors_go_with_their_condensation() -> None:
+def test_factors_go_with_their_condensation():
     """They are the largest part of a gear's memory: waiting for the collector doubles its peak."""
     nodes, freedoms, place, stiffness = sheet()
     _, condensation = condense(bisected_tree(nodes, freedoms, place, KEPT, 3), freedoms, stiffness)
@@ -89,7 +85,7 @@ def test_factors_go_with_their_condensation() -> None:
             gc.enable()
 
 
-def test_every_freedom_is_eliminated_once_and_counted() -> None:
+def test_every_freedom_is_eliminated_once_and_counted():
     nodes, freedoms, place, _ = sheet()
     tree: EliminationTree = bisected_tree(nodes, freedoms, place, KEPT, 3)
     inner = np.concatenate([front.inner for front in tree.root.fronts()])
@@ -105,7 +101,7 @@ def test_every_freedom_is_eliminated_once_and_counted() -> None:
     assert tree.factor_entries < alone.factor_entries
 
 
-def test_an_indefinite_structure_is_a_solve_error() -> None:
+def test_an_indefinite_structure_is_a_solve_error():
     nodes, freedoms, place, stiffness = sheet(floor=-50.0)
     with pytest.raises(SolveError, match="not positive definite"):
         condense(bisected_tree(nodes, freedoms, place, KEPT, 3), freedoms, stiffness)
@@ -120,7 +116,7 @@ def random_sector() -> np.ndarray:
 
 
 @pytest.mark.parametrize("teeth", [2, 3, 7, 8])
-def test_ring_equals_the_dense_ring(teeth: int) -> None:
+def test_ring_equals_the_dense_ring(teeth):
     matrix = random_sector()
     own = FLANK + CUT  # flank and left cut of each sector
     ring = np.zeros((teeth * own, teeth * own))
@@ -144,7 +140,7 @@ def test_ring_equals_the_dense_ring(teeth: int) -> None:
         assert found.left[j] == pytest.approx(inverse[left, flank[0]] @ probes, rel=1e-9, abs=1e-12)
 
 
-def test_an_unsupported_ring_is_a_solve_error() -> None:
+def test_an_unsupported_ring_is_a_solve_error():
     spring = np.array([[2.0, -2.0], [-2.0, 2.0]])
     matrix = np.zeros((FLANK + 2 * CUT,) * 2)
     matrix[:FLANK, :FLANK] = np.eye(FLANK)
@@ -172,9 +168,7 @@ def fill(matrix: sp.csc_array, order: np.ndarray) -> int:
 
 
 @pytest.mark.parametrize("ordering", ["METIS", "minimum-degree"])
-def test_the_order_is_of_whole_nodes_saves_fill_and_solves(
-    ordering: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_order_is_of_whole_nodes_saves_fill_and_solves(ordering, monkeypatch):
     monkeypatch.setattr("host.graph_order.ORDERING", ordering)
     matrix = grid(60)
     order = fill_reducing_order(matrix, 2)
@@ -197,7 +191,7 @@ def slenderness(gear: Gear) -> float:
     return (gear.root_radius - gear.seat_radius) / gear.face_width
 
 
-def test_a_chain_of_springs_keeps_what_it_must() -> None:
+def test_a_chain_of_springs_keeps_what_it_must():
     """Springs k between stiff ones, moved as a whole: K_ii u_i^2 is large, what is strained is little."""
     stiff, soft, count = 1e6, 1.0, 40
     matrix = stiff * (2.0 * np.eye(count) - np.eye(count, k=1) - np.eye(count, k=-1))
@@ -215,9 +209,7 @@ def test_a_chain_of_springs_keeps_what_it_must() -> None:
 
 @pytest.mark.law
 @pytest.mark.parametrize(("helix", "modules", "power"), [(0.3, 0.5, 4.0), (0.0, 0.1, 2.0)])
-def test_rounding_grows_as_a_helical_disc_bends_as_a_plate(
-    helix: float, modules: float, power: float
-) -> None:
+def test_rounding_grows_as_a_helical_disc_bends_as_a_plate(helix, modules, power):
     """(D/w)^4 with a helix, whose axial force bends the disc; (D/w)^2 without."""
     wide, thin = disc(modules, helix, 20), disc(0.5 * modules, helix, 20)
     found = [flank_compliance_3d(gear, SectorRecipe.draft(gear), reach=0).checks for gear in (wide, thin)]
@@ -229,7 +221,7 @@ def test_rounding_grows_as_a_helical_disc_bends_as_a_plate(
 
 
 @pytest.mark.law
-def test_a_disc_as_thin_as_allowed_is_computed_and_a_thinner_one_refused() -> None:
+def test_a_disc_as_thin_as_allowed_is_computed_and_a_thinner_one_refused():
     layers = SectorRecipe.draft(disc(1.0)).layers
     minimum = least_face_width(disc(1.0), layers) / 4e-3
     assert disc_rounding(slenderness(disc(minimum)), 0.3, layers, STEEL) == pytest.approx(LARGEST_ROUNDING)
@@ -250,13 +242,13 @@ def mate_of(gear: Gear) -> Gear:
 
 
 @pytest.mark.law
-def test_a_body_beyond_the_bound_names_rounding() -> None:
+def test_a_body_beyond_the_bound_names_rounding():
     gear = disc(0.1, teeth=20)
     with pytest.raises(SolveError, match=r"rounding may change it by .* Widen the face"):
         flank_compliance_3d(gear, SectorRecipe.draft(gear), reach=0)
 
 
-def test_energy_may_round_by_the_order_of_its_sums_and_no_more() -> None:
+def test_energy_may_round_by_the_order_of_its_sums_and_no_more():
     """Linear algebra on two threads rounded the energy of a helical gear to 1.2 of the bound of one term."""
     checks = ComplianceChecks(0.0, 0.0, 0.0, 1.0e-11, 1.0, 1e-12, 8.3e-12)
     assert checks.energy < checks.limits["energy"] < 5.0 * checks.energy_rounding

@@ -1,7 +1,5 @@
 """Stress of a free surface from the displacement of its nodes: exact fields, rates, and finite elements."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np
@@ -21,7 +19,7 @@ STRAIN, STRESS = PlaneHypothesis.PLANE_STRAIN, PlaneHypothesis.PLANE_STRESS
 Displacement = Callable[[np.ndarray], np.ndarray]
 
 
-def test_values_between_nodes_are_those_of_the_parabola() -> None:
+def test_values_between_nodes_are_those_of_the_parabola():
     s = np.array([0.0, 1.0, 2.0, 3.5, 5.0])
     at = between_nodes(s)
     assert at == pytest.approx(
@@ -38,7 +36,7 @@ def hole(edges: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 @pytest.mark.parametrize("hypothesis", [STRAIN, STRESS])
-def test_stress_round_a_hole_converges_with_the_cube(hypothesis: PlaneHypothesis) -> None:
+def test_stress_round_a_hole_converges_with_the_cube(hypothesis):
     """Kirsch: a plate in unit tension moves on the hole by 2/E' (r (1 + 2 cos 2t), -2 sin 2t) / 2."""
     errors = []
     for edges in (4, 8, 16):
@@ -122,9 +120,7 @@ def inner_stress_error(refinement: int) -> float:
     return float(np.abs(found - exact)[middle].max() / np.abs(exact).max())
 
 
-def test_stress_of_a_curved_bar_converges_with_the_square(
-    record_figure: Callable[..., None],
-) -> None:
+def test_stress_of_a_curved_bar_converges_with_the_square(record_figure):
     errors = [inner_stress_error(n) for n in (1, 2, 4)]
     rate = float(np.log2(errors[1] / errors[2]))
     assert rate == pytest.approx(2.0, abs=0.2)
@@ -158,12 +154,12 @@ def stress_of(elements: SurfaceElements, field: Displacement) -> np.ndarray:
 
 
 @pytest.mark.parametrize("skew", [0.0, 0.7])
-def test_a_prism_in_tension_carries_it_on_its_surface(skew: float) -> None:
+def test_a_prism_in_tension_carries_it_on_its_surface(skew):
     """Exact on any element: the displacement is linear, and the surface is free."""
     elements = shaft(2, 0.8, 0.0)
     nu, E = STEEL.poissons_ratio, STEEL.youngs_modulus
 
-    def stretched(x: np.ndarray) -> np.ndarray:
+    def stretched(x):
         return x * [-nu, -nu, 1.0] / E
 
     along, across, shear = stress_of(elements, stretched)
@@ -176,7 +172,7 @@ def test_a_prism_in_tension_carries_it_on_its_surface(skew: float) -> None:
     assert along * across - shear**2 == pytest.approx(0.0, abs=5e-3)
 
 
-def test_neither_a_turn_nor_a_held_freedom_gives_stress() -> None:
+def test_neither_a_turn_nor_a_held_freedom_gives_stress():
     spin = np.array([[0.0, -3.0, 2.0], [3.0, 0.0, -1.0], [-2.0, 1.0, 0.0]]) / STEEL.youngs_modulus
     found = stress_of(shaft(2, 0.8, 0.7), lambda x: x @ spin.T + 0.1 / STEEL.youngs_modulus)
     assert np.abs(found).max() < 1e-12  # a stretch of that size gives 3
@@ -189,7 +185,7 @@ def test_neither_a_turn_nor_a_held_freedom_gives_stress() -> None:
 
 
 @pytest.mark.parametrize("skew", [0.0, 0.7])
-def test_a_twisted_shaft_is_sheared(skew: float) -> None:
+def test_a_twisted_shaft_is_sheared(skew):
     """u = w z (-y, x, 0): shear of G w a between circumference and axis, nothing else; sign by z x r."""
     radius, G = 0.8, 0.5 * STEEL.youngs_modulus / (1.0 + STEEL.poissons_ratio)
     errors = []

@@ -1,7 +1,5 @@
 """Strips at tip edges: where their pressure acts, and the energy whose derivatives their motions are."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -53,7 +51,7 @@ def test_motions_are_derivatives_of_one_energy(offset, force, side):
     edge, tilt = table(offset, side=side), 1.3e-3
     step, turn = 1e-4 * force, 1e-4 * tilt
 
-    def energy(force: float, tilt: float) -> float:
+    def energy(force, tilt):
         place = edge_position(offset - 0.5 * RADIUS * side * tilt, RADIUS, SOFTNESS, force)[0]
         return force * side * tilt * (place - PATCH)
 

@@ -1,7 +1,5 @@
 """Free ends of the face in the contact problem: where they are, and that no reference length remains."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -33,13 +31,13 @@ def pair_of(wheel: Gear, offset: float = 0.0) -> GearPair:
     return GearPair(GEAR, wheel, 72e-3, axial_offset=offset)
 
 
-def test_both_gears_of_equal_faces_end_at_both_ends() -> None:
+def test_both_gears_of_equal_faces_end_at_both_ends():
     slices = problem(pair_of(GEAR)).candidates.slices
     softness = end_softness(GEAR.material.poissons_ratio)
     assert slices.end_1 == slices.end_2 == (-0.5 * FACE, 0.5 * FACE, softness)
 
 
-def test_a_body_that_goes_on_beside_the_contact_has_no_end_there() -> None:
+def test_a_body_that_goes_on_beside_the_contact_has_no_end_there():
     wide = problem(pair_of(replace(GEAR, face_width=1.5 * FACE))).candidates.slices
     assert wide.end_1[:2] == (-0.5 * FACE, 0.5 * FACE)
     assert wide.end_2[:2] == (-math.inf, math.inf)
@@ -48,13 +46,13 @@ def test_a_body_that_goes_on_beside_the_contact_has_no_end_there() -> None:
     assert shifted.end_2[:2] == (-0.25 * FACE, math.inf)
 
 
-def test_a_plane_has_no_ends() -> None:
+def test_a_plane_has_no_ends():
     plane = problem(pair_of(GEAR), slices=1)
     assert plane.candidates.slices.endless
     assert np.all(plane.law_length == plane.candidates.slices.law_length)
 
 
-def test_contacts_give_way_more_at_the_ends_alone() -> None:
+def test_contacts_give_way_more_at_the_ends_alone():
     made = problem(pair_of(GEAR))
     line = (made.law_length[0] / made.candidates.slices.law_length)[made.candidates.pair == 0]
     assert line == pytest.approx(line[::-1], rel=1e-12)
@@ -63,9 +61,7 @@ def test_contacts_give_way_more_at_the_ends_alone() -> None:
     assert np.all(line[18:-18] < 1.01)
 
 
-def test_an_even_load_moves_an_end_slice_alike_for_any_reference_length(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_an_even_load_moves_an_end_slice_alike_for_any_reference_length(monkeypatch):
     """What the law gives way more is less in the bodies: means over a slice stay."""
     moved = []
     for smooth in (1.5, 2.0, 4.0):

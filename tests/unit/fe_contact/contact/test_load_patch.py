@@ -1,7 +1,5 @@
 """Load patches: nodal forces along the profile and over the face, and the pressure of their strips."""
 
-from __future__ import annotations
-
 import math
 from types import SimpleNamespace
 
@@ -38,7 +36,6 @@ MESHES = pytest.mark.parametrize("nodes", [UNIFORM, GRADED, SINGLE], ids=["unifo
 
 
 def patch(nodes, center, half_width, share=0.0):
-    """Nodal forces on all nodes."""
     out = np.full(nodes.size, np.nan)
     first, last = load_vector(nodes, center, half_width, share, out)
     forces = np.zeros(nodes.size)
@@ -366,7 +363,7 @@ def problem(slope=0.0, low=-math.inf, high=math.inf, place=math.inf, jump=0.0) -
     one = [np.array([[value]]) for value in (slope, 1.0 / RADIUS, low, high)]
     breaks = [np.array([[[value]]]) for value in (place, jump, 0.0)]
 
-    def gap_at(places) -> Gap:
+    def gap_at(places):
         return Gap(*(each[places] for each in (*one, *breaks)))
 
     candidates = SimpleNamespace(gap_at=gap_at, width=np.array([[WIDTH]]))
@@ -410,10 +407,10 @@ def test_a_strip_that_reaches_an_edge_or_a_chamfer_is_told_apart():
     assert not any(edge(**about) for about in BESIDE)
 
 
-def test_means_and_differences_are_those_of_the_forces_on_every_node() -> None:
+def test_means_and_differences_are_those_of_the_forces_on_every_node():
     draw = np.random.default_rng(7)
 
-    def loads(width: int) -> FaceLoads:
+    def loads(width):
         """Return loads on six slices; some use all of their numbers, some but one."""
         used = np.array([width, 1, *draw.integers(1, width, 4)])
         nodes = np.array([draw.permutation(40)[:width] for _ in used])
@@ -422,7 +419,7 @@ def test_means_and_differences_are_those_of_the_forces_on_every_node() -> None:
             np.where(beyond, -1, nodes), np.where(beyond, 0.0, draw.normal(size=nodes.shape)), used
         )
 
-    def on_nodes(given: FaceLoads) -> np.ndarray:
+    def on_nodes(given):
         forces = np.zeros((len(given.used), 40))
         for row, nodes, values, used in zip(forces, given.nodes, given.forces, given.used, strict=True):
             np.add.at(row, nodes[:used], values[:used])

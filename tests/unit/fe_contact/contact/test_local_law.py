@@ -1,7 +1,5 @@
 """The compiled local law is the hertz room's, with slope and guards."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The contact solver on problems with known answers: outcomes, sweeps, and where it starts."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from types import SimpleNamespace
@@ -10,7 +8,7 @@ import numpy as np
 import pytest
 from numba import typeof
 
-from fe_contact import Gear, GearPair
+from fe_contact import Gear, GearPair, Status
 from fe_contact.contact import (
     Candidates,
     ContactModel,
@@ -30,7 +28,6 @@ from fe_contact.contact.patch import Patches
 from fe_contact.contact.point_problem import PointProblem, State, point_problems, problem_at
 from fe_contact.contact.strip import Gap, gap_table
 from fe_contact.effects.influence.estimated_curve import Springs
-from fe_contact.types import Status
 
 MODULUS = 115e9
 HALF_PLANE = 1.0 / (math.pi * MODULUS)
@@ -268,11 +265,11 @@ def candidates(slices: int, corner: bool = True) -> Candidates:
 
 
 @pytest.fixture(scope="module")
-def springs() -> ContactProblem:
+def springs():
     return Springs(PAIR)._springs(MODEL)
 
 
-def test_compiled_code_sees_one_order_in_memory(springs: ContactProblem) -> None:
+def test_compiled_code_sees_one_order_in_memory(springs):
     """Candidates column by column or row by row: compiled once for both."""
     touch, width = springs.candidates.touch, springs.candidates.width
     kinds = set()
@@ -284,7 +281,7 @@ def test_compiled_code_sees_one_order_in_memory(springs: ContactProblem) -> None
 
 
 @pytest.mark.law
-def test_the_solution_is_the_same_wherever_it_starts_and_nearer_is_sooner(springs: ContactProblem) -> None:
+def test_the_solution_is_the_same_wherever_it_starts_and_nearer_is_sooner(springs):
     """There is one alone: from its own forces, from others by far, and from none."""
     cold = solve_contact(springs, THREE_LOADS)
     rng = np.random.default_rng(3)
@@ -306,7 +303,7 @@ def test_the_solution_is_the_same_wherever_it_starts_and_nearer_is_sooner(spring
 
 
 @pytest.mark.law
-def test_curves_move_the_contacts_as_the_means_of_their_slices_do() -> None:
+def test_curves_move_the_contacts_as_the_means_of_their_slices_do():
     here, rng = candidates(7), np.random.default_rng(2)
     root = rng.normal(size=(here.position.size, here.slices.pair.size, 60))
     bodies = root @ root.transpose(0, 2, 1)
@@ -323,7 +320,7 @@ def test_curves_move_the_contacts_as_the_means_of_their_slices_do() -> None:
         assert parts @ point.bodies @ parts.T == pytest.approx(expected, abs=1e-12 * np.abs(expected).max())
 
 
-def test_a_misleading_start_is_given_up(springs: ContactProblem) -> None:
+def test_a_misleading_start_is_given_up(springs):
     """Where bodies are barely definite, forces on a few points may lead nowhere: a guess of its own does."""
     present = springs.candidates.slices.present
     minimum = np.linalg.eigvalsh(springs.bodies[0][np.ix_(present[0], present[0])])[0]
@@ -338,7 +335,7 @@ def test_a_misleading_start_is_given_up(springs: ContactProblem) -> None:
     assert warm.deflection == pytest.approx(cold.deflection, rel=1e-9, abs=0.0)
 
 
-def test_forces_carried_to_other_slices_keep_the_line_load_of_their_pair() -> None:
+def test_forces_carried_to_other_slices_keep_the_line_load_of_their_pair():
     fine, coarse = candidates(21), candidates(7)
     load = np.arange(1.0, fine.pair.size + 1.0)[None, None, :]
     carried = Start(fine, load).on(coarse)[0, 0]

@@ -1,7 +1,5 @@
 """Strips of rough flanks against half planes that are solved by another method."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

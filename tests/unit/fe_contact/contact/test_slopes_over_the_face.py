@@ -1,7 +1,5 @@
 """Patches over the face that follow the slope of the flanks: how the compliance changes along them."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -60,12 +58,12 @@ BODIES = smooth_body(PAIR.pinion, 1), smooth_body(PAIR.wheel, 2)
 
 
 @pytest.fixture(scope="module", params=[True, False], ids=["teeth coupled", "each tooth by itself"])
-def coupled(request: pytest.FixtureRequest) -> bool:
+def coupled(request):
     return request.param
 
 
 @pytest.fixture(scope="module")
-def problem(coupled) -> ContactProblem:
+def problem(coupled):
     rule, model = PatchRule(HALF, 0.02 * MODULE, 1e-6), ContactModel(corner_contact=True, across_face=True)
     plain = contact_candidates(PAIR, model, np.array([0.1, 0.45]), rule, Slices.of_pair(PAIR, 3))
     return with_face_tilt(face_contact_problem(plain, BODIES, 0.0, coupled), BODIES, 0.0, coupled)

@@ -1,13 +1,10 @@
 """How many teeth have to be condensed so that every contact finds its tooth."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
 from fe_contact import Gear, GearPair, analyze
-from fe_contact.contact import PatchRule, Slices, contact_candidates, teeth_in_reach
-from fe_contact.contact.model import ContactModel
+from fe_contact.contact import ContactModel, PatchRule, Slices, contact_candidates, teeth_in_reach
 
 RULE = PatchRule(half_width=3e-4, edge_length=2e-4)
 COMMON = {"normal_module": 1e-3, "face_width": 10e-3, "bore_diameter": 15e-3}
@@ -29,20 +26,20 @@ def nearly_off_center() -> GearPair:
     "pair", [off_center(), off_center().swapped(), GearPair(*2 * [Gear(teeth=20, **COMMON)])]
 )
 @pytest.mark.parametrize("corners", [False, True])
-def test_no_candidate_lies_beyond_the_teeth_in_reach(pair: GearPair, corners: bool) -> None:
+def test_no_candidate_lies_beyond_the_teeth_in_reach(pair, corners):
     positions = np.linspace(0.0, 1.0, 400, endpoint=False)
     model = ContactModel(corner_contact=corners)
     found = contact_candidates(pair, model, positions, RULE, Slices.of_pair(pair, 1))
     assert np.abs(found.pair).max() <= teeth_in_reach(pair) // 2
 
 
-def test_usual_pairs_need_what_their_contact_ratio_says() -> None:
+def test_usual_pairs_need_what_their_contact_ratio_says():
     gear = Gear(teeth=20, **COMMON)
     assert teeth_in_reach(GearPair(gear, gear)) == 5
 
 
 @pytest.mark.law
-def test_a_path_of_contact_off_the_pitch_point_is_analyzed() -> None:
+def test_a_path_of_contact_off_the_pitch_point_is_analyzed():
     pair = off_center()
     assert pair.transverse_contact_ratio < 2.0
     path = pair.path_of_contact
@@ -51,7 +48,7 @@ def test_a_path_of_contact_off_the_pitch_point_is_analyzed() -> None:
     assert table.n_failed == 0
 
 
-def test_so_is_one_that_only_another_center_distance_moves_there() -> None:
+def test_so_is_one_that_only_another_center_distance_moves_there():
     near = nearly_off_center()
     far = near.at_center_distance(near.center_distance + 0.1e-3)
     assert teeth_in_reach(near) == 7 and teeth_in_reach(far) == 5

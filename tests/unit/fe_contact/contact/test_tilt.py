@@ -1,7 +1,5 @@
 """Flanks that tilt under load: how compliance changes along the flank, and the energy it belongs to."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -9,7 +7,7 @@ import numpy as np
 import pytest
 from compliance_gears import coarse_plane
 
-from fe_contact import Gear, GearPair
+from fe_contact import Gear, GearPair, Status
 from fe_contact.compliance import flank_compliances
 from fe_contact.contact import (
     ContactModel,
@@ -25,7 +23,6 @@ from fe_contact.contact.edge_strip import SIDE, edge_motion, edge_position
 from fe_contact.contact.newton import solve_point
 from fe_contact.contact.point_problem import PointProblem, State, point_problems, problem_at
 from fe_contact.contact.tilted_bodies import fill_yielding, move
-from fe_contact.types import Status
 
 MODULE = 3e-3
 SHAPE = {"normal_module": MODULE, "face_width": 20e-3}
@@ -43,7 +40,7 @@ def bodies():
 
 
 @pytest.fixture(scope="module")
-def problem(bodies) -> ContactProblem:
+def problem(bodies):
     rule = PatchRule(0.25 * MODULE, 0.02 * MODULE, 1e-6)
     plain = contact_candidates(
         PAIR, ContactModel(corner_contact=True), POSITION, rule, Slices.of_pair(PAIR, 1)
@@ -51,9 +48,7 @@ def problem(bodies) -> ContactProblem:
     return contact_problem(plain, bodies)
 
 
-def test_teeth_without_candidates_leave_the_compliance_to_the_last_bit(
-    problem: ContactProblem, bodies
-) -> None:
+def test_teeth_without_candidates_leave_the_compliance_to_the_last_bit(problem, bodies):
     """It is read in place: the condensed flanks are not copied."""
     fewer = []
     for flank in bodies:
@@ -199,7 +194,7 @@ def test_the_tangent_is_the_change_of_the_deflection_with_the_load(problem):
     point, total = tilted(problem), 4000.0
     point = point._replace(radius=np.full(len(point.bodies), 6e-3))
 
-    def solve(load: float, point: PointProblem = point) -> tuple[float, float]:
+    def solve(load, point=point):
         residual, force = np.zeros(4), np.zeros(point.gap.size)
         deflection, tangent, status, *_ = solve_point(point, load, force, residual)
         assert status == Status.CONVERGED

@@ -1,7 +1,5 @@
 """Where rigid modified flanks come closest."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

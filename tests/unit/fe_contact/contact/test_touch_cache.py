@@ -1,7 +1,5 @@
 """The cache of touching points returns what is found without it, for the gaps that are asked for."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,24 +1,15 @@
 """Where flanks with measured traces come closest, against nothing but many samples of the true gap."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from tooth_traces import KINDS, SHAPES, on_profile, pair_with, sampled_gap, traced_pair
 
-from fe_contact.contact import (
-    ContactProblem,
-    PatchRule,
-    Slices,
-    contact_candidates,
-    in_pitches,
-    with_gaps,
-)
+from fe_contact import FlankModification, RunOut, ToothFlank, Wave
+from fe_contact.contact import ContactProblem, PatchRule, Slices, contact_candidates, in_pitches, with_gaps
 from fe_contact.contact.flank_slope import rolls_at
 from fe_contact.contact.least_gap import least_gap
 from fe_contact.contact.model import MeetingTeeth
 from fe_contact.effects import EFFECTS, ContactScene, compose
-from fe_contact.geometry import FlankModification, RunOut, ToothFlank, Wave
 
 SAMPLES = 1601
 RESOLVED = 5e-9

@@ -1,7 +1,5 @@
 """Effects of the bodies: bore seat, thin rim and finite width, called for where they act."""
 
-from __future__ import annotations
-
 import dataclasses
 from dataclasses import fields, replace
 
@@ -29,7 +27,7 @@ SEATED = replace(GEAR, seat=BoreSeat(tangential_foundation=1e13))
 FIXED, SEATED_PAIR = GearPair(GEAR, GEAR), GearPair(SEATED, GEAR)
 
 
-def test_a_seat_calls_for_its_effect_and_off_is_the_fixed_bore() -> None:
+def test_a_seat_calls_for_its_effect_and_off_is_the_fixed_bore():
     off, on = (
         BoreSeatElasticity().called_for(ContactScene(p, np.array([100.0]), EFFECTS))
         for p in (FIXED, SEATED_PAIR)
@@ -45,7 +43,7 @@ def test_a_seat_calls_for_its_effect_and_off_is_the_fixed_bore() -> None:
     assert make_plan(FIXED, loads, AnalysisOptions(), after).bodies(FIXED)[0] is GEAR
 
 
-def test_a_seat_acts_across_the_face_and_is_refused_in_the_plane() -> None:
+def test_a_seat_acts_across_the_face_and_is_refused_in_the_plane():
     assert check_request(SEATED_PAIR, TableAxes(torques=[1.0])).model.across_face
     with pytest.raises(InputError) as refusal:
         check_request(SEATED_PAIR, TableAxes(torques=[1.0]), AnalysisOptions(model="plane_strain"))
@@ -61,7 +59,7 @@ SOLID, WEBBED = GearPair(PINION, WHEEL.with_parts(("seat",))), GearPair(PINION, 
 COARSE = {"torques": [100.0], "level": "draft", "positions": 8}
 
 
-def test_called_for_by_a_web_only_and_contributes_nothing_else() -> None:
+def test_called_for_by_a_web_only_and_contributes_nothing_else():
     off, on = (
         ThinRim().called_for(ContactScene(p, np.array([50.0, 100.0]), EFFECTS)) for p in (SOLID, WEBBED)
     )
@@ -74,18 +72,18 @@ def test_called_for_by_a_web_only_and_contributes_nothing_else() -> None:
 
 
 @pytest.mark.law
-def test_off_is_the_solid_pair_and_on_for_it_changes_no_bit() -> None:
-    solid = analyze(SOLID, **COARSE, model="plane_strain")  # type: ignore[arg-type]
+def test_off_is_the_solid_pair_and_on_for_it_changes_no_bit():
+    solid = analyze(SOLID, **COARSE, model="plane_strain")
     for pair, choice in ((SOLID, "on"), (WEBBED, "off")):
-        found = analyze(pair, **COARSE, model="plane_strain", effects={"thin_rim": choice})  # type: ignore[arg-type]
+        found = analyze(pair, **COARSE, model="plane_strain", effects={"thin_rim": choice})
         assert np.array_equal(found.static_transmission_error, solid.static_transmission_error)
-    webbed = analyze(WEBBED, **COARSE, model="plane_strain")  # type: ignore[arg-type]
+    webbed = analyze(WEBBED, **COARSE, model="plane_strain")
     change = webbed.mean(torque=100.0).value - solid.mean(torque=100.0).value
     minimum = 100.0 / PINION.base_radius * web_compliance(WHEEL)
     assert minimum < change < 6.0 * minimum
 
 
-def test_a_web_acts_across_the_face_and_off_the_middle_not_in_the_plane() -> None:
+def test_a_web_acts_across_the_face_and_off_the_middle_not_in_the_plane():
     assert not check_request(SOLID, TableAxes(torques=[1.0])).model.across_face
     checked = check_request(WEBBED, TableAxes(torques=[1.0]))
     assert checked.model.across_face
@@ -99,10 +97,10 @@ def test_a_web_acts_across_the_face_and_off_the_middle_not_in_the_plane() -> Non
 
 def model(**options: object):
     asked = {"torques": [100.0], "level": "draft"} | options
-    return check_request(PAIR, *table_request(**asked))  # type: ignore[arg-type]
+    return check_request(PAIR, *table_request(**asked))
 
 
-def test_an_aligned_spur_pair_is_corrected_and_nothing_else() -> None:
+def test_an_aligned_spur_pair_is_corrected_and_nothing_else():
     scene = ContactScene(PAIR, np.array([100.0]), EFFECTS)
     assert FiniteWidth().called_for(scene).on
     assert not FaceLoadDistribution().called_for(scene).on
@@ -129,7 +127,7 @@ def test_an_aligned_spur_pair_is_corrected_and_nothing_else() -> None:
         ({"misalignments": [0.0, 1e-5]}, True, False),
     ],
 )
-def test_an_explicit_model_decides(options: dict[str, object], across: bool, corrected: bool) -> None:
+def test_an_explicit_model_decides(options, across, corrected):
     checked = model(**options)
     assert (checked.model.across_face, checked.model.finite_width) == (across, corrected)
     on = {entry.name: entry.on for entry in checked.ledger}
@@ -139,8 +137,8 @@ def test_an_explicit_model_decides(options: dict[str, object], across: bool, cor
     assert ("finite_width" in plan.to_json()) is corrected
 
 
-def test_the_estimate_falls_with_width_and_vanishes_with_poissons_ratio() -> None:
-    def excess(width: float, ratio: float) -> float:
+def test_the_estimate_falls_with_width_and_vanishes_with_poissons_ratio():
+    def excess(width, ratio):
         gear = dataclasses.replace(GEAR, face_width=width, material=Material(210e9, ratio))
         return finite_width_excess(GearPair(gear, gear, 80e-3))[0]
 

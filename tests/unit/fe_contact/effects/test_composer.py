@@ -1,27 +1,16 @@
 """Composition of effects: order, neutrality, refusals, the ledger, and a scene without one of them."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 
-from fe_contact.contact.model import ContactModel
+from fe_contact import FlankModification, Gear, GearPair, PitchDeviation, RunOut, Shaft, ToothFlank, Wave
+from fe_contact.contact import ContactModel
 from fe_contact.effects import EFFECTS, ContactScene, Effect, Verdict, compose
 from fe_contact.effects.effect import across_face
 from fe_contact.errors import InputError
-from fe_contact.geometry import (
-    FlankModification,
-    Gear,
-    GearPair,
-    PitchDeviation,
-    RunOut,
-    Shaft,
-    ToothFlank,
-    Wave,
-)
 
 NAMES = [effect.name for effect in EFFECTS]
 EVERYTHING_ON = dict.fromkeys(NAMES, "on")

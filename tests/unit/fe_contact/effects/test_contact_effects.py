@@ -1,7 +1,5 @@
 """What each effect on flanks contributes, when it is called for, and that neutral settings change no bit."""
 
-from __future__ import annotations
-
 from dataclasses import fields, is_dataclass, replace
 from typing import Any
 
@@ -9,13 +7,12 @@ import numpy as np
 import pytest
 from spur_gears import GEAR
 
-from fe_contact.contact import PatchRule, Slices, contact_candidates, with_gaps
-from fe_contact.contact.model import ContactModel
+from fe_contact import FlankGrid, FlankModification, Gear, GearPair
+from fe_contact.contact import ContactModel, PatchRule, Slices, contact_candidates, with_gaps
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.effects.corner_contact import CornerContact
 from fe_contact.effects.flank_modification import LeadModification, ProfileModification
 from fe_contact.effects.tooth_coupling import ToothCoupling
-from fe_contact.geometry import FlankGrid, FlankModification, Gear, GearPair
 
 RELIEF = FlankModification(tip_relief=30e-6, tip_relief_length=1e-3)
 POSITIONS = np.arange(64) / 64

@@ -1,16 +1,13 @@
 """Influence of effects and parts of the deflection without finite elements: springs, and laws of both."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from analysis_requests import table_request
 
-from fe_contact import FlankModification, Gear, GearPair
+from fe_contact import FlankModification, Gear, GearPair, Shaft, TableAxes
 from fe_contact.analysis.pairs.pair_contact import pair_contact
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.compliance import flank_compliance
@@ -23,9 +20,8 @@ from fe_contact.effects.influence.estimated_curve import Springs
 from fe_contact.effects.influence.slice_compliance import slice_compliance
 from fe_contact.effects.influence.tooth_bending import half_plane, tooth_bending
 from fe_contact.hertz import contact_modulus, half_width, relative_radius
-from fe_contact.options import TableAxes
 from fe_contact.planning.plan import make_plan
-from fe_contact.shaft import Shaft, Shafts
+from fe_contact.shaft import Shafts
 from fe_contact.types import FloatArray
 
 M = 3e-3
@@ -38,7 +34,7 @@ HELICAL = GearPair(replace(GEAR, helix_angle=0.35), replace(GEAR, helix_angle=-0
 
 def influence(pair: GearPair, name: str, **asked: object) -> EstimatedInfluence:
     """Estimate one effect of a request at one load."""
-    checked = check_request(pair, *table_request(**{"normal_forces": [2000.0]} | asked))  # type: ignore[arg-type]
+    checked = check_request(pair, *table_request(**{"normal_forces": [2000.0]} | asked))
     found = estimate_influence(checked.request.scene, checked.decision, name)
     assert found is not None
     return found
@@ -53,7 +49,7 @@ def compliance(pair: GearPair, model: ContactModel, slices: int) -> FloatArray:
 
 
 @pytest.mark.law
-def test_springs_are_as_soft_as_finite_elements() -> None:
+def test_springs_are_as_soft_as_finite_elements():
     model, position = ContactModel(couple_teeth=True, corner_contact=True), np.arange(16) / 16
     rule = PatchRule(0.15 * M, 0.0125 * M)
     candidates = contact_candidates(PAIR, model, position, rule, Slices.of_pair(PAIR, 1))
@@ -70,7 +66,7 @@ def test_springs_are_as_soft_as_finite_elements() -> None:
 
 
 @pytest.mark.law
-def test_springs_of_helical_teeth_are_as_soft_as_finite_elements(tmp_path: Path) -> None:
+def test_springs_of_helical_teeth_are_as_soft_as_finite_elements(tmp_path):
     """A force with an axial part bends the discs: without that teeth move their neighbors half as far."""
     narrow = {name: replace(getattr(HELICAL, name), face_width=4 * M) for name in ("pinion", "wheel")}
     checked = check_request(
@@ -88,7 +84,7 @@ def test_springs_of_helical_teeth_are_as_soft_as_finite_elements(tmp_path: Path)
         assert springs[both].mean() == pytest.approx(exact[both].mean(), rel=bound)
 
 
-def test_a_narrow_disc_bends_as_a_cantilever() -> None:
+def test_a_narrow_disc_bends_as_a_cantilever():
     """Held inside or outside: the plate's even harmonic is a beam as long as the ring is wide."""
     length, above = 1e-3, 0.2e-3
     beam = length**3 / 3.0 + above * length**2 + above**2 * length
@@ -98,14 +94,14 @@ def test_a_narrow_disc_bends_as_a_cantilever() -> None:
 
 
 @pytest.mark.parametrize("pair", [PAIR, HELICAL])
-def test_springs_are_symmetric_and_positive(pair: GearPair) -> None:
+def test_springs_are_symmetric_and_positive(pair):
     model = ContactModel(couple_teeth=True, across_face=True, corner_contact=True)
     for matrix in compliance(pair, model, 9):
         np.testing.assert_allclose(matrix, matrix.T, rtol=1e-12)
         assert np.linalg.eigvalsh(matrix).min() > 0.0
 
 
-def test_an_even_load_over_the_face_is_the_plane() -> None:
+def test_an_even_load_over_the_face_is_the_plane():
     flat = compliance(PAIR, ContactModel(couple_teeth=True, finite_width=True), 1)[0]
     count = 41
     face = compliance(PAIR, ContactModel(couple_teeth=True, across_face=True), count)[0]
@@ -116,7 +112,7 @@ def test_an_even_load_over_the_face_is_the_plane() -> None:
     assert np.ptp(even, axis=1).max() < 2e-3 * flat.max()
 
 
-def test_lengths_and_loads_together_change_no_ratio() -> None:
+def test_lengths_and_loads_together_change_no_ratio():
     large = replace(
         PAIR,
         **{
@@ -131,7 +127,7 @@ def test_lengths_and_loads_together_change_no_ratio() -> None:
     np.testing.assert_allclose(big.peak_to_peak, 2.0 * small.peak_to_peak, rtol=1e-9)
 
 
-def test_a_rigid_gap_under_all_of_the_load_is_seen_whole() -> None:
+def test_a_rigid_gap_under_all_of_the_load_is_seen_whole():
     relieved = FlankModification(tip_relief=5e-6, tip_relief_length=0.5 * M)
     pair = replace(PAIR, pinion=replace(GEAR, modification=relieved))
     found = influence(pair, "profile_modification", normal_forces=[1.0], effects={"corner_contact": "off"})
@@ -140,7 +136,7 @@ def test_a_rigid_gap_under_all_of_the_load_is_seen_whole() -> None:
     assert found.largest < 1.0
 
 
-def test_what_a_scene_does_not_hold_changes_nothing_and_more_more() -> None:
+def test_what_a_scene_does_not_hold_changes_nothing_and_more_more():
     for name in ("lead_modification", "misalignment", "pitch_error", "shaft_deflection", "thin_rim"):
         assert influence(PAIR, name).largest == 0.0
     checked = check_request(HELICAL, TableAxes(normal_forces=[2000.0]))
@@ -174,14 +170,14 @@ def budget(pair: GearPair, skew: float = 0.0, **choices: str) -> DeflectionBudge
     return deflection_budget(scene(pair, skew), choices)
 
 
-def test_the_parts_are_the_deflection_of_the_springs() -> None:
+def test_the_parts_are_the_deflection_of_the_springs():
     pair = helical_pair(FlankModification(tip_relief=15e-6, tip_relief_length=1e-3))
     parts = budget(pair, skew=10e-6)
     curve = Springs(pair).curve(compose(scene(pair, 10e-6), {})[0], pair.normal_force(np.array([TORQUE])))
     assert float(np.mean(parts.total)) == pytest.approx(float(curve.mean[0]), rel=1e-9)
 
 
-def test_hertz_is_what_two_half_planes_approach_down_to_the_middles_of_the_teeth() -> None:
+def test_hertz_is_what_two_half_planes_approach_down_to_the_middles_of_the_teeth():
     """K. L. Johnson, Contact Mechanics, eq. 5.57, where one pair carries all: at the pitch point."""
     pair = spur_pair()
     parts = budget(pair, **PLANE)
@@ -200,7 +196,7 @@ def test_hertz_is_what_two_half_planes_approach_down_to_the_middles_of_the_teeth
     assert parts.contact[0] == pytest.approx(expected, rel=1e-6)
 
 
-def test_a_wider_bore_stiffens_the_bodies_alone_where_one_pair_carries() -> None:
+def test_a_wider_bore_stiffens_the_bodies_alone_where_one_pair_carries():
     thick, thin = (budget(spur_pair(bore), **PLANE) for bore in (15e-3, 30e-3))
     for part in ("teeth", "bodies"):
         for side in (0, 1):
@@ -209,7 +205,7 @@ def test_a_wider_bore_stiffens_the_bodies_alone_where_one_pair_carries() -> None
     assert thin.contact[0] == pytest.approx(thick.contact[0], rel=1e-6)
 
 
-def test_every_cause_has_a_part_of_its_own() -> None:
+def test_every_cause_has_a_part_of_its_own():
     plain, relieved = budget(spur_pair(), **PLANE), budget(spur_pair(relief=10e-6), **PLANE)
     for gap in (plain.modification, plain.misalignment, plain.corner):
         np.testing.assert_allclose(gap, 0.0, atol=1e-15)

@@ -1,7 +1,5 @@
 """Misalignment is a tilt of the axes: its gap is that of rigid gears rotated in space."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -9,7 +7,7 @@ import pytest
 from tilted_gears import TiltedGap, rigid_gap
 
 from fe_contact.effects.misalignment import MisalignmentGap
-from fe_contact.geometry import Gear, GearPair, InternalGearPair, ParallelAxes, RingGear
+from fe_contact.geometry import Gear, GearPair, InternalGearPair, RingGear
 
 SHAPE = {"normal_module": 3e-3, "face_width": 24e-3}
 GROWTH = 1e-6
@@ -40,7 +38,7 @@ PAIRS = {
 
 
 @pytest.mark.parametrize("pair", PAIRS.values(), ids=PAIRS)
-def test_the_gap_is_that_of_rigid_gears_rotated_in_space(pair: ParallelAxes) -> None:
+def test_the_gap_is_that_of_rigid_gears_rotated_in_space(pair):
     """All over the flanks, along the line of action as well as over the face."""
     path, tilt = pair.path_of_contact, GROWTH / pair.face_width
     rolls = np.linspace(path.start, path.end, 5)[:, None]
@@ -53,7 +51,7 @@ def test_the_gap_is_that_of_rigid_gears_rotated_in_space(pair: ParallelAxes) -> 
 
 
 @pytest.mark.parametrize("name", ["right hand", "left hand"])
-def test_before_the_path_the_tip_edge_opens_as_its_place_along_the_line_of_action(name: str) -> None:
+def test_before_the_path_the_tip_edge_opens_as_its_place_along_the_line_of_action(name):
     """There the wheel's edge touches beside the line of action: to the first order of the way beyond it."""
     pair, face, beyond = PAIRS[name], 5e-3, 0.2e-3
     roll, face = np.array(pair.path_of_contact.start - beyond), np.array(face)
@@ -64,7 +62,7 @@ def test_before_the_path_the_tip_edge_opens_as_its_place_along_the_line_of_actio
     assert abs(ours - opened) < 0.1 * abs(held - opened)
 
 
-def test_the_largest_gap_is_at_a_corner_of_the_plane_of_action() -> None:
+def test_the_largest_gap_is_at_a_corner_of_the_plane_of_action():
     for pair in PAIRS.values():
         path, tangent = pair.path_of_contact, abs(math.tan(pair.base_helix_angle))
         reach = max(path.pitch_point - path.start, path.end - path.pitch_point)
@@ -73,7 +71,7 @@ def test_the_largest_gap_is_at_a_corner_of_the_plane_of_action() -> None:
 
 
 @pytest.mark.parametrize("name", PAIRS)
-def test_along_a_line_of_contact_the_arm_grows_with_the_face_over_the_squared_cosine(name: str) -> None:
+def test_along_a_line_of_contact_the_arm_grows_with_the_face_over_the_squared_cosine(name):
     """And pairs one base pitch apart are offset by tan(beta_b) times it."""
     pair, face = PAIRS[name], np.array([-8e-3, 0.0, 5e-3])
     angle = pair.base_helix_angle
@@ -84,7 +82,7 @@ def test_along_a_line_of_contact_the_arm_grows_with_the_face_over_the_squared_co
     assert arms[1] - arms[0] == pytest.approx(-math.tan(angle) * pair.base_pitch, rel=1e-9, abs=1e-15)
 
 
-def test_the_middle_of_the_common_face_stays() -> None:
+def test_the_middle_of_the_common_face_stays():
     """A wheel beside its pinion: the axes tilt about the pitch point in the middle of what meshes."""
     gear = PAIRS["spur"].pinion
     pair = GearPair(gear, gear, axial_offset=6e-3)

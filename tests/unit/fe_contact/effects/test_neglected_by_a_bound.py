@@ -1,9 +1,6 @@
 """An effect is left out by a bound: by the pair's moduli and bodies, and by the largest gap anywhere."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -26,7 +23,7 @@ TOLERANCE = {"torques": [20.0, 200.0], "tolerance": 0.02}
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 
@@ -35,7 +32,7 @@ def reason(pair: GearPair, **asked: Any) -> str:
     return next(entry.verdict.reason for entry in checked.ledger if entry.name == "corner_contact")
 
 
-def test_plastic_on_steel_is_planned_as_its_run_shows_it(cache: Path) -> None:
+def test_plastic_on_steel_is_planned_as_its_run_shows_it(cache):
     asked: dict[str, Any] = {"torques": [20.0], "level": "draft", "positions": 32}
     steel = GearPair(SOFT.wheel, SOFT.wheel)
     assert not check_request(steel, *table_request(**asked)).model.corner_contact
@@ -51,8 +48,8 @@ def test_plastic_on_steel_is_planned_as_its_run_shows_it(cache: Path) -> None:
     assert analyze(steel, cache=cache, **asked).metadata.receipt["repeated"] == []
 
 
-def test_the_deflection_that_closes_a_gap_is_inverse_to_the_moduli() -> None:
-    def deflection(modulus: float) -> float:
+def test_the_deflection_that_closes_a_gap_is_inverse_to_the_moduli():
+    def deflection(modulus):
         gears = replace(gear(), material=Material(modulus, 0.3))
         words = reason(GearPair(gears, gears), torques=[100.0])
         return float(words.removeprefix("deflections up to ").partition(" ")[0])
@@ -66,7 +63,7 @@ TRACES = [(0.0, 0.0, -5.4, 0.0, 13.8), (0.0, 0.0, 0.0, 0.0, 13.8)]
 
 @pytest.mark.parametrize("removed", TRACES)
 @pytest.mark.parametrize("tooth", [3, 40])
-def test_the_end_of_a_measured_trace_is_not_dropped(removed: tuple[float, ...], tooth: int) -> None:
+def test_the_end_of_a_measured_trace_is_not_dropped(removed, tooth):
     """Samples of 32 of 67 base pitches, 64 positions in each, passed it by."""
     wheel = gear(67)
     roll = np.array([5e-3, *(wheel.tip_roll_length - np.array([1.2e-3, 0.45e-3, 0.15e-3, 0.0]))])
@@ -93,7 +90,7 @@ def drawn(seed: int) -> GearPair:
 @pytest.mark.law
 @pytest.mark.drawn
 @pytest.mark.parametrize("seed", range(6))
-def test_what_is_neglected_changes_less_than_its_bound_and_the_tolerance(seed: int) -> None:
+def test_what_is_neglected_changes_less_than_its_bound_and_the_tolerance(seed):
     tilt = 10.0 ** np.random.default_rng([seed, 1]).uniform(-8.0, -6.5)
     asked = TOLERANCE | {"torques": [150.0], "pitches": 20, "misalignments": [tilt]}
     checked = check_request(drawn(seed), *table_request(**asked))
@@ -103,14 +100,13 @@ def test_what_is_neglected_changes_less_than_its_bound_and_the_tolerance(seed: i
         scene, decision = checked.assessing(name)
         influence = estimate_influence(scene, decision, name)
         extent = scene.effect(name).extent(scene)
-        assert influence is not None
         assert np.all(np.abs(influence.mean) <= extent.reach + 1e-12)
         assert np.all(np.abs(influence.peak_to_peak) <= extent.span + 1e-12)
         bounds.append(largest_part(extent, influence.full.mean, influence.full.peak_to_peak, allowed))
     assert sum(bounds) <= 0.501 * allowed.relative
 
 
-def test_drawn_pairs_have_neglected_effects_and_others() -> None:
+def test_drawn_pairs_have_neglected_effects_and_others():
     """The law above is not empty."""
     asked = TOLERANCE | {"torques": [150.0], "pitches": 20}
     counts = [len(check_request(drawn(seed), *table_request(**asked)).request.neglected) for seed in range(6)]
@@ -118,7 +114,7 @@ def test_drawn_pairs_have_neglected_effects_and_others() -> None:
     assert min(counts) < 4
 
 
-def test_a_table_without_what_is_neglected_is_within_the_tolerance(cache: Path) -> None:
+def test_a_table_without_what_is_neglected_is_within_the_tolerance(cache):
     """Solved by finite elements: switched on, what was neglected changes less than the tolerance."""
     asked: dict[str, Any] = {"torques": [150.0], "positions": 64, "pitches": 20, "tolerance": 0.02}
     pair = next(
@@ -132,5 +128,5 @@ def test_a_table_without_what_is_neglected_is_within_the_tolerance(cache: Path) 
         assert abs(less - more) <= max(0.02 * more, 20e-9)
 
 
-def test_the_pair_itself_is_as_ever() -> None:
+def test_the_pair_itself_is_as_ever():
     assert check_request(PAIR, *table_request(torques=[100.0])).model.corner_contact

@@ -211,19 +211,6 @@ def test_swapped_gears_meet_the_same_teeth_going_backwards(solved):
     assert back == pytest.approx(there, rel=1e-6)
 
 
-def test_lengths_scale(solved):
-    rng = np.random.default_rng(11)
-    deviation, s = rng.normal(0, 3e-6, Z1), 2.5
-    large = {"normal_module": 4e-3 * s, "face_width": 25e-3 * s, "bore_diameter": 40e-3 * s}
-    small = solved(GearPair(gear(Z1, deviation), gear(Z2)), [3, 4])
-    big = solved(
-        GearPair(gear(Z1, s * deviation, **large), gear(Z2, **large)),
-        [3, 4],
-        torques=(LIGHT * s**3, HEAVY * s**3),
-    )
-    assert big == pytest.approx(s * small, rel=1e-6)
-
-
 def test_neutral_or_off_is_the_perfect_pair_to_the_bit(solved, perfect):
     erring = GearPair(gear(Z1, one_tooth(Z1, 0, 9e-6)), gear(Z2))
     assert np.array_equal(solved(erring, [0], effects={"pitch_error": "off"})[0], perfect)

@@ -1,7 +1,5 @@
 """Shaft deflection: the beam against textbooks, the term against vector algebra, when it is called for."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Base pitches by which effects are estimated where teeth differ: few, with both gears at all angles."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -15,7 +13,7 @@ PAIRS = [(23, 67), (20, 64), (32, 96), (34, 55), (17, 23), (53, 102), (61, 125),
 
 @pytest.mark.law
 @pytest.mark.parametrize("teeth", PAIRS, ids=lambda pair: "/".join(map(str, pair)))
-def test_run_outs_and_their_beat_are_seen_whole_and_have_no_mean(teeth: tuple[int, int]) -> None:
+def test_run_outs_and_their_beat_are_seen_whole_and_have_no_mean(teeth):
     pitch = spread_pitches(teeth)
     assert len(set(pitch)) == len(pitch) == MAX_PITCHES
     assert np.all((pitch >= 0) & (pitch < math.lcm(*teeth)))
@@ -28,5 +26,5 @@ def test_run_outs_and_their_beat_are_seen_whole_and_have_no_mean(teeth: tuple[in
 
 
 @pytest.mark.parametrize(("teeth", "number"), [((1, 1), 1), ((25, 1), 25), ((21, 21), 21), ((4, 6), 12)])
-def test_short_periods_are_taken_whole(teeth: tuple[int, int], number: int) -> None:
+def test_short_periods_are_taken_whole(teeth, number):
     assert spread_pitches(teeth).tolist() == list(range(number))

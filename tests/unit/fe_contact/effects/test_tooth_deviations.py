@@ -1,7 +1,5 @@
 """What turns with a gear: run-out, waves, flanks of teeth, against the closed forms of stiff teeth."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

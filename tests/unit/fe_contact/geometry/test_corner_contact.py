@@ -1,39 +1,28 @@
 """Corner contact and sliding, against rates of the gap and velocities of rigid bodies."""
 
-from __future__ import annotations
-
 import importlib
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
 from spur_gears import PAIR, make_gear
 
+from fe_contact import GearPair, InternalGearPair, RingGear
 from fe_contact.errors import InputError
-from fe_contact.geometry import (
-    GearPair,
-    InternalGearPair,
-    ParallelAxes,
-    RingGear,
-    corner_contact,
-    sliding_factor,
-    specific_sliding,
-)
-from fe_contact.geometry.corner_contact import Side
+from fe_contact.geometry import ParallelAxes, Side, corner_contact, sliding_factor, specific_sliding
 
 SIDES: tuple[Side, Side] = ("approach", "exit")
 sides = pytest.mark.parametrize("side", SIDES)
 
 
 @pytest.fixture
-def pair() -> GearPair:
+def pair():
     return GearPair(make_gear(teeth=17, profile_shift_coefficient=0.3), make_gear(teeth=43))
 
 
 @sides
-def test_gap_and_slope_grow_from_the_path_until_the_edge_leaves_the_flank(pair: GearPair, side: Side) -> None:
+def test_gap_and_slope_grow_from_the_path_until_the_edge_leaves_the_flank(pair, side):
     start = corner_contact(pair, side, 0.0)
     on_path = (
         pair.path_of_contact.start if side == "approach" else pair.common_tangent - pair.path_of_contact.end
@@ -64,7 +53,7 @@ def test_gap_and_slope_grow_from_the_path_until_the_edge_leaves_the_flank(pair: 
     assert np.all((inside >= flank.form_roll_length) & (inside <= flank.tip_roll_length))
 
 
-def test_lever_arms_are_rates_of_the_gap(pair: GearPair) -> None:
+def test_lever_arms_are_rates_of_the_gap(pair):
     over, step = np.linspace(1e-4, 6e-3, 20), 1e-7
     rate = (corner_contact(pair, "exit", over + step).gap - corner_contact(pair, "exit", over - step).gap) / (
         2.0 * step
@@ -81,7 +70,7 @@ def test_lever_arms_are_rates_of_the_gap(pair: GearPair) -> None:
     assert np.all(state.lever_arm_ratio_pinion == 1.0)
 
 
-def test_swapping_the_gears_swaps_the_sides_to_first_order(pair: GearPair) -> None:
+def test_swapping_the_gears_swaps_the_sides_to_first_order(pair):
     # the driving gear is held in both cases, so they differ by the gap itself over the overshoot only
     over = np.array([1e-6, 1e-5])
     exit_gap, approach_gap = (
@@ -94,7 +83,7 @@ def test_swapping_the_gears_swaps_the_sides_to_first_order(pair: GearPair) -> No
 
 
 @sides
-def test_lengths_scale(side: Side) -> None:
+def test_lengths_scale(side):
     large: dict[str, Any] = {"normal_module": 12e-3}
     one = GearPair(make_gear(teeth=25), make_gear(teeth=31))
     three = GearPair(make_gear(teeth=25, **large), make_gear(teeth=31, **large))
@@ -104,15 +93,15 @@ def test_lengths_scale(side: Side) -> None:
     )
 
 
-def test_bad_arguments_are_refused(pair: GearPair) -> None:
+def test_bad_arguments_are_refused(pair):
     for overshoot in (-1e-9, np.nan):
         with pytest.raises(InputError, match="overshoot"):
             corner_contact(pair, "exit", overshoot)
     with pytest.raises(InputError, match="side"):
-        corner_contact(pair, "middle", 0.0)  # type: ignore[arg-type]
+        corner_contact(pair, "middle", 0.0)
 
 
-def test_newton_ends_where_rounding_begins(pair: GearPair, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_newton_ends_where_rounding_begins(pair, monkeypatch):
     """Requested less than the rounding of a gap it would go to and fro in the last bits to its limit."""
     module = importlib.import_module("fe_contact.geometry.corner_contact")
     calls, touch = [], module._touch
@@ -154,7 +143,7 @@ def tangential_speeds(pair: ParallelAxes, roll: float) -> tuple[float, float]:
 
 
 @pytest.mark.parametrize("make_pair", [external_pair, internal_pair])
-def test_sliding_is_the_difference_of_the_flanks_velocities(make_pair: Callable[..., ParallelAxes]) -> None:
+def test_sliding_is_the_difference_of_the_flanks_velocities(make_pair):
     pair = make_pair()
     for roll in pair.path_of_contact.points:
         first, second = tangential_speeds(pair, roll)
@@ -165,14 +154,14 @@ def test_sliding_is_the_difference_of_the_flanks_velocities(make_pair: Callable[
         )
 
 
-def test_sliding_changes_its_sense_at_the_pitch_point() -> None:
+def test_sliding_changes_its_sense_at_the_pitch_point():
     pair = external_pair()
     a, _, c, _, e = (float(sliding_factor(pair, roll)) for roll in pair.path_of_contact.points)
     assert a < 0.0 < e
     assert c == pytest.approx(0.0, abs=1e-14)
 
 
-def test_specific_sliding_of_equal_spur_gears_by_hand() -> None:
+def test_specific_sliding_of_equal_spur_gears_by_hand():
     """20/20, module 4: at A the roll lengths are sqrt(37.8548^2 - 37.5877^2) = 4.489 and 22.873 mm."""
     pair = PAIR
     first, second = specific_sliding(pair, pair.path_of_contact.start)
@@ -181,9 +170,7 @@ def test_specific_sliding_of_equal_spur_gears_by_hand() -> None:
 
 
 @pytest.mark.parametrize("make_pair", [external_pair, internal_pair])
-def test_tips_clear_the_mating_roots_by_dedendum_less_addendum(
-    make_pair: Callable[..., ParallelAxes],
-) -> None:
+def test_tips_clear_the_mating_roots_by_dedendum_less_addendum(make_pair):
     pair = make_pair()
     low, high = pair.tip_clearances
     nearest = pair.center_distance if not pair.internal else -pair.center_distance

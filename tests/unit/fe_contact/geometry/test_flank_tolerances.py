@@ -1,9 +1,6 @@
 """Pitch, run-out and form of ISO 1328-1:2013 (formulas 5, 6, 8 and 11, and annex E), by hand."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Callable
 from itertools import pairwise
 
 import pytest
@@ -46,14 +43,12 @@ def gear_of(module_mm: float, teeth: int, width_mm: float, helix_deg: float = 0.
         (gear_of(4, 20, 25), 1, (1.7, 5.0, 4.5, 1.8, 1.7)),
     ],
 )
-def test_pitch_run_out_and_form_are_those_of_the_formulas(
-    gear: Gear, tolerance_class: int, micrometers: tuple[float, ...]
-) -> None:
+def test_pitch_run_out_and_form_are_those_of_the_formulas(gear, tolerance_class, micrometers):
     found = [1e6 * tolerance(gear, tolerance_class) for tolerance in FORMED]
     assert found == pytest.approx(micrometers, rel=1e-12)
 
 
-def test_the_whole_profile_has_the_root_of_both_squares() -> None:
+def test_the_whole_profile_has_the_root_of_both_squares():
     """m_n 4, d 80, class 5: slope 1.6 + 0.08 + 4 = 5.68, form 2.2 + 5 = 7.2, in all 9.171: to halves 9.0."""
     assert profile_tolerance(gear_of(4, 20, 25), 5) == pytest.approx(9.0e-6, rel=1e-12)
     # of class 7 twice as much, 18.342: to whole ones
@@ -61,14 +56,14 @@ def test_the_whole_profile_has_the_root_of_both_squares() -> None:
 
 
 @pytest.mark.parametrize("tolerance", [*OF_TEETH, *OF_FLANKS])
-def test_two_classes_double_a_tolerance(tolerance: Callable[[Gear, int], float]) -> None:
+def test_two_classes_double_a_tolerance(tolerance):
     gear = gear_of(4, 20, 25)
     widths = [tolerance(gear, grade) for grade in range(1, 12)]
     assert all(1.3 < b / a < 1.55 for a, b in pairwise(widths))
     assert all(b / a == pytest.approx(2.0, rel=0.06) for a, b in zip(widths, widths[2:], strict=False))
 
 
-def test_the_whole_helix_is_slope_and_form_by_squares() -> None:
+def test_the_whole_helix_is_slope_and_form_by_squares():
     gear = gear_of(10, 100, 200)
     parts = helix_slope_tolerance(gear, 11), helix_form_tolerance(gear, 11)
     assert helix_tolerance(gear, 11) == pytest.approx(math.hypot(*parts), rel=0.01)

@@ -1,12 +1,9 @@
 """Closed forms of gears and ring gears, of their involutes, and of the mesh stiffness of the standard."""
 
-from __future__ import annotations
-
 import dataclasses
 import json
 import math
 import pickle
-from typing import Any
 
 import numpy as np
 import pytest
@@ -24,7 +21,7 @@ from fe_contact.involute import (
 from fe_contact.material import Material
 
 
-def test_circles_and_thicknesses_follow_the_textbook() -> None:
+def test_circles_and_thicknesses_follow_the_textbook():
     gear = make_gear()
     assert gear.reference_radius == pytest.approx(0.04, rel=1e-15)
     assert gear.base_radius == pytest.approx(0.04 * math.cos(math.radians(20.0)), rel=1e-15)
@@ -41,7 +38,7 @@ def test_circles_and_thicknesses_follow_the_textbook() -> None:
     assert gear.tip_tooth_thickness == pytest.approx(expected, rel=1e-12)
 
 
-def test_helical_quantities_come_from_the_normal_plane() -> None:
+def test_helical_quantities_come_from_the_normal_plane():
     beta = math.radians(26.0)
     gear = make_gear(teeth=39, helix_angle=beta, profile_shift_coefficient=0.2)
     assert gear.transverse_module == pytest.approx(4e-3 / math.cos(beta))
@@ -55,7 +52,7 @@ def test_helical_quantities_come_from_the_normal_plane() -> None:
     assert gear.reference_radius - gear.root_radius == pytest.approx(4e-3 * 1.05)
 
 
-def test_left_hand_and_allowance_change_what_they_should() -> None:
+def test_left_hand_and_allowance_change_what_they_should():
     right, left = make_gear(helix_angle=0.2), make_gear(helix_angle=-0.2)
     assert left.base_helix_angle == -right.base_helix_angle
     for name in ("base_radius", "form_radius", "tip_radius", "base_tooth_thickness", "base_pitch"):
@@ -68,7 +65,7 @@ def test_left_hand_and_allowance_change_what_they_should() -> None:
     assert thin.form_roll_length == pytest.approx(nominal.form_roll_length, rel=1e-14)
 
 
-def test_form_point_without_undercut_is_generated_by_the_end_of_the_tool_flank() -> None:
+def test_form_point_without_undercut_is_generated_by_the_end_of_the_tool_flank():
     # ISO 21771-1: d_Ff from the end of the straight flank of the rack, h_Fa0 = h_fP - rho_fP (1 - sin alpha)
     gear, alpha = make_gear(teeth=40), math.radians(20.0)
     straight = 4e-3 * (1.25 - 0.38 * (1.0 - math.sin(alpha)))
@@ -77,7 +74,7 @@ def test_form_point_without_undercut_is_generated_by_the_end_of_the_tool_flank()
     assert gear.form_radius == pytest.approx(math.hypot(gear.base_radius, roll), rel=1e-15)
 
 
-def test_undercut_begins_where_the_textbook_says() -> None:
+def test_undercut_begins_where_the_textbook_says():
     sharp = {"root_radius_coefficient": 0.0, "dedendum_coefficient": 1.0, "teeth": 12}
     shift = 1.0 - 12.0 * math.sin(math.radians(20.0)) ** 2 / 2.0
     assert not make_gear(profile_shift_coefficient=shift + 1e-6, **sharp).form_point.undercut
@@ -97,7 +94,7 @@ def test_undercut_begins_where_the_textbook_says() -> None:
         make_gear(5, profile_shift_coefficient=-0.3, bore_diameter=1e-4, root_radius_coefficient=0.1, **tool)
 
 
-def test_macro_geometry_is_plain_and_complete() -> None:
+def test_macro_geometry_is_plain_and_complete():
     gear = make_gear(helix_angle=-0.0)
     facts = gear.macro_geometry()
     assert json.loads(json.dumps(facts)) == facts
@@ -126,7 +123,7 @@ def test_macro_geometry_is_plain_and_complete() -> None:
         assert make_gear(**{field: value}).macro_geometry() != facts, field
 
 
-def test_gear_is_a_value() -> None:
+def test_gear_is_a_value():
     gear = make_gear(profile_shift_coefficient=0.1)
     assert gear == make_gear(profile_shift_coefficient=0.1)
     assert hash(gear) == hash(make_gear(profile_shift_coefficient=0.1))
@@ -143,7 +140,7 @@ def test_gear_is_a_value() -> None:
         {"teeth": 80, "profile_shift_coefficient": 0.2, "addendum_coefficient": 0.7},
     ],
 )
-def test_closed_forms_are_the_standards_with_a_negative_tooth_number(fields: dict[str, Any]) -> None:
+def test_closed_forms_are_the_standards_with_a_negative_tooth_number(fields):
     gear = make_ring(**fields)
     module, x = gear.normal_module, gear.profile_shift_coefficient
     transverse = math.atan(math.tan(gear.normal_pressure_angle) / math.cos(gear.helix_angle))
@@ -167,7 +164,7 @@ def test_closed_forms_are_the_standards_with_a_negative_tooth_number(fields: dic
     assert gear.tip_roll_length < gear.form_roll_length
 
 
-def test_cutter_and_ring_fill_the_pitch_on_their_generating_circles() -> None:
+def test_cutter_and_ring_fill_the_pitch_on_their_generating_circles():
     gear = make_ring(
         profile_shift_coefficient=-0.4, cutter_profile_shift_coefficient=0.1, thickness_allowance=6e-5
     )
@@ -182,7 +179,7 @@ def test_cutter_and_ring_fill_the_pitch_on_their_generating_circles() -> None:
     assert cutter.center_distance + cutter.tip_radius == pytest.approx(gear.root_radius, rel=1e-14)
 
 
-def test_every_number_of_the_shape_is_in_the_macro_geometry_and_no_other() -> None:
+def test_every_number_of_the_shape_is_in_the_macro_geometry_and_no_other():
     gear = make_ring()
     changed = {
         "teeth": 61,
@@ -207,7 +204,7 @@ def test_every_number_of_the_shape_is_in_the_macro_geometry_and_no_other() -> No
     assert gear.macro_geometry()["teeth"] == -60  # never the hash of an external gear
 
 
-def test_modification_counts_from_the_tip_inwards_as_on_an_external_gear() -> None:
+def test_modification_counts_from_the_tip_inwards_as_on_an_external_gear():
     relief = FlankModification(
         tip_relief=20e-6,
         tip_relief_length=1e-3,
@@ -226,7 +223,7 @@ def test_modification_counts_from_the_tip_inwards_as_on_an_external_gear() -> No
     assert sloped - np.array([20e-6, 10e-6]) == pytest.approx([2e-6, -2e-6], rel=1e-9, abs=0.0)
 
 
-def test_involute_function_is_tabulated_and_inverted() -> None:
+def test_involute_function_is_tabulated_and_inverted():
     assert involute_function(math.radians(20.0)) == pytest.approx(0.014904384, abs=5e-10)
     assert inverse_involute(0.0) == 0.0
     with pytest.raises(ValueError, match="involute function"):
@@ -237,13 +234,13 @@ def test_involute_function_is_tabulated_and_inverted() -> None:
 
 
 @pytest.mark.parametrize("degrees", [1e-3, 0.5, 5.0, 20.0, 45.0, 70.0, 89.0])
-def test_inverse_involute_undoes_the_involute_function(degrees: float) -> None:
+def test_inverse_involute_undoes_the_involute_function(degrees):
     angle = math.radians(degrees)
     # tan(a) - a loses a^2/3 of its digits at small angles
     assert inverse_involute(involute_function(angle)) == pytest.approx(angle, rel=1e-14 + 1e-15 / angle**2)
 
 
-def test_point_is_one_roll_length_along_its_normal_from_the_base_circle() -> None:
+def test_point_is_one_roll_length_along_its_normal_from_the_base_circle():
     base, half, roll = 0.04, 0.1, np.linspace(0.0, 0.03, 7)
     foot = involute_point(base, half, roll) - roll[:, None] * involute_normal(base, half, roll)
     assert np.hypot(*foot.T) == pytest.approx(np.full(7, base), rel=1e-14)
@@ -256,7 +253,7 @@ def test_point_is_one_roll_length_along_its_normal_from_the_base_circle() -> Non
     assert np.sum(normal * tangent, axis=1) / np.hypot(*tangent.T) == pytest.approx(np.zeros(9), abs=1e-7)
 
 
-def test_mesh_stiffness_follows_the_standard() -> None:
+def test_mesh_stiffness_follows_the_standard():
     pair = GearPair(make_gear(teeth=23, helix_angle=0.3), make_gear(teeth=47, helix_angle=-0.3))
     stiffness = iso6336_stiffness(pair)
     expected = stiffness.single_stiffness * (0.75 * pair.transverse_contact_ratio + 0.25)

@@ -1,7 +1,5 @@
 """External and internal pairs: path of contact, backlash, forces, and what a refusal suggests."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 import re
@@ -52,7 +50,7 @@ def apart(pair: ParallelAxes, by: float) -> ParallelAxes:
 
 
 @MAKERS
-def test_path_of_contact_and_contact_ratio_are_those_of_the_textbook(make: Any) -> None:
+def test_path_of_contact_and_contact_ratio_are_those_of_the_textbook(make):
     pair = make()
     sign, (start, inner, pitch, outer, end) = pair.wheel.sign, pair.path_of_contact.points
     assert end == pair.pinion.tip_roll_length
@@ -73,7 +71,7 @@ def test_path_of_contact_and_contact_ratio_are_those_of_the_textbook(make: Any) 
 
 
 @MAKERS
-def test_position_zero_is_the_pitch_point_and_one_position_is_one_base_pitch(make: Any) -> None:
+def test_position_zero_is_the_pitch_point_and_one_position_is_one_base_pitch(make):
     pair = make()
     first, second = pair.roll_lengths(np.array([0.0, 0.25, 0.0]), np.array([0, 0, 1]))
     assert first[0] == pair.path_of_contact.pitch_point
@@ -88,7 +86,7 @@ def test_position_zero_is_the_pitch_point_and_one_position_is_one_base_pitch(mak
 
 
 @MAKERS
-def test_the_gears_roll_on_their_operating_pitch_circles(make: Any) -> None:
+def test_the_gears_roll_on_their_operating_pitch_circles(make):
     pair = make()
     first, second = pair.operating_pitch_radii
     assert pair.wheel.sign * first + second == pytest.approx(pair.center_distance, rel=1e-14)
@@ -97,14 +95,14 @@ def test_the_gears_roll_on_their_operating_pitch_circles(make: Any) -> None:
 
 
 @MAKERS
-def test_default_center_distance_has_no_backlash_but_the_allowances(make: Any) -> None:
+def test_default_center_distance_has_no_backlash_but_the_allowances(make):
     assert make((0.0, 0.0)).transverse_base_backlash == pytest.approx(0.0, abs=1e-16)
     allowances = (3e-5, 2e-5)  # in the normal plane at the reference circle
     assert make(allowances).normal_backlash == pytest.approx(5e-5 * math.cos(math.radians(20.0)), rel=1e-9)
 
 
 @pytest.mark.parametrize("kind", [GearPair, InternalGearPair])
-def test_opposite_shifts_leave_the_center_distance(kind: Any) -> None:
+def test_opposite_shifts_leave_the_center_distance(kind):
     wheel = (gear if kind is GearPair else ring)(53, profile_shift_coefficient=-0.2)
     pair = kind(gear(23, profile_shift_coefficient=0.2), wheel)
     assert pair.center_distance == pytest.approx(0.5 * (76 if kind is GearPair else 30) * MODULE, rel=1e-13)
@@ -113,7 +111,7 @@ def test_opposite_shifts_leave_the_center_distance(kind: Any) -> None:
 
 
 @MAKERS
-def test_backlash_is_the_pitch_less_both_teeth_on_the_operating_pitch_circles(make: Any) -> None:
+def test_backlash_is_the_pitch_less_both_teeth_on_the_operating_pitch_circles(make):
     pair = apart(make(), 1e-4)
     angle, thickness = pair.working_pressure_angle, 0.0
     for each, radius in zip((pair.pinion, pair.wheel), pair.operating_pitch_radii, strict=True):
@@ -126,14 +124,14 @@ def test_backlash_is_the_pitch_less_both_teeth_on_the_operating_pitch_circles(ma
 
 
 @MAKERS
-def test_backlash_grows_by_twice_the_sine_of_the_way(make: Any) -> None:
+def test_backlash_grows_by_twice_the_sine_of_the_way(make):
     near, middle, far = (apart(make(), 1e-4 + way) for way in (-1e-7, 0.0, 1e-7))
     rate = (far.transverse_base_backlash - near.transverse_base_backlash) / 2e-7
     assert rate == pytest.approx(2.0 * math.sin(middle.working_pressure_angle), rel=1e-6)
 
 
 @MAKERS
-def test_forces_close_the_triangle(make: Any) -> None:
+def test_forces_close_the_triangle(make):
     pair = make()
     normal = pair.normal_force(np.array([10.0, 100.0]))
     transverse, axial = pair.transverse_force(normal), pair.axial_force(normal)
@@ -143,7 +141,7 @@ def test_forces_close_the_triangle(make: Any) -> None:
     assert pair.wheel.base_helix_angle == -pair.wheel.sign * pair.base_helix_angle
 
 
-def test_swapped_pair_runs_the_same_path_backwards() -> None:
+def test_swapped_pair_runs_the_same_path_backwards():
     pair = external((0.0, 0.0))
     swapped = pair.swapped()
     assert swapped.swapped() == pair
@@ -154,7 +152,7 @@ def test_swapped_pair_runs_the_same_path_backwards() -> None:
     assert swapped.base_helix_angle == -pair.base_helix_angle
 
 
-def test_worked_example_of_the_handbooks() -> None:
+def test_worked_example_of_the_handbooks():
     # m 3 mm, 16 and 24 teeth, x_2 = +0.5 in the handbooks' sign (SDP/SI D785, KHK: table of internal gears)
     pinion = Gear(teeth=16, normal_module=3e-3, face_width=0.01, bore_diameter=2e-3)
     wheel = RingGear(
@@ -175,7 +173,7 @@ def test_worked_example_of_the_handbooks() -> None:
     assert 2.0 * wheel.base_radius / cosine == pytest.approx(79.010e-3, abs=6e-7)
 
 
-def test_internal_flanks_touch_on_the_line_of_action_by_their_curvatures() -> None:
+def test_internal_flanks_touch_on_the_line_of_action_by_their_curvatures():
     pair = internal()
     position = np.linspace(-0.6, 0.6, 7)
     first, second = pair.roll_lengths(position)
@@ -198,7 +196,7 @@ def test_internal_flanks_touch_on_the_line_of_action_by_their_curvatures() -> No
     assert pitch * math.sin(pair.working_pressure_angle) == pytest.approx(1.0 / r_1 - 1.0 / r_2, rel=1e-12)
 
 
-def test_ring_of_very_many_teeth_is_a_rack() -> None:
+def test_ring_of_very_many_teeth_is_a_rack():
     pinion, errors = gear(), []
     for teeth in (1000, 4000):
         pair = InternalGearPair(pinion, ring(teeth))
@@ -210,12 +208,12 @@ def test_ring_of_very_many_teeth_is_a_rack() -> None:
     assert abs(errors[1][0]) < 4e-3 * MODULE
 
 
-def test_tip_clearances_of_an_internal_pair() -> None:
+def test_tip_clearances_of_an_internal_pair():
     pair = InternalGearPair(gear(), ring())
     assert pair.tip_clearances == pytest.approx((0.25 * MODULE, 0.45 * MODULE), rel=1e-10)
 
 
-def test_refusal_of_jamming_teeth_tells_what_would_fit() -> None:
+def test_refusal_of_jamming_teeth_tells_what_would_fit():
     alike = make_gear(teeth=25, profile_shift_coefficient=0.2)
     with pytest.raises(InfeasibleGeometry) as caught:
         GearPair(alike, alike, 0.1008)
@@ -236,7 +234,7 @@ def test_refusal_of_jamming_teeth_tells_what_would_fit() -> None:
     assert fitting.transverse_base_backlash == pytest.approx(0.0, abs=4e-9)
 
 
-def test_refusal_of_a_tip_tells_the_tip_diameter_that_fits() -> None:
+def test_refusal_of_a_tip_tells_the_tip_diameter_that_fits():
     with pytest.raises(InfeasibleGeometry) as caught:
         InternalGearPair(gear(), ring(addendum_coefficient=1.0))
     smallest = float(str(caught.value.bound).split()[2])
@@ -257,7 +255,7 @@ def test_refusal_of_a_tip_tells_the_tip_diameter_that_fits() -> None:
     assert pair.path_of_contact.start == pytest.approx(pinion.form_roll_length, abs=1e-6)
 
 
-def test_tip_that_cuts_the_mating_fillet_off_the_line_of_action_is_refused() -> None:
+def test_tip_that_cuts_the_mating_fillet_off_the_line_of_action_is_refused():
     # a large shift sum on a low rack: both tips clear the form circles on the line of action
     rack = {"dedendum_coefficient": 1.13, "root_radius_coefficient": 0.27}
     pinion = make_gear(teeth=39, profile_shift_coefficient=0.51, **rack)

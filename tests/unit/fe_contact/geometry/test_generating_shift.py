@@ -1,7 +1,5 @@
 """Addendum modification for generating x_E: where the cutter stands that removes a thickness allowance."""
 
-from __future__ import annotations
-
 import json
 import math
 import random
@@ -26,7 +24,6 @@ both_cases = pytest.mark.parametrize("thinning", ["generating", "flank"])
 
 
 def drawn(kind: str, seed: int, **changes: Any) -> Toothing:
-    """Return a gear of random teeth, shift, helix and allowance."""
     draw = random.Random(seed)
     fields: dict[str, Any] = {
         "teeth": draw.randint(60, 120),
@@ -49,9 +46,7 @@ def outline(gear: Toothing) -> FloatArray:
 @kinds
 @both_cases
 @pytest.mark.parametrize("seed", range(4))
-def test_thickness_at_the_reference_circle_is_the_nominal_less_the_allowance(
-    kind: str, thinning: str, seed: int
-) -> None:
+def test_thickness_at_the_reference_circle_is_the_nominal_less_the_allowance(kind, thinning, seed):
     """s_n = m_n (pi / 2 + 2 x tan alpha_n) - A, whatever removes A; read off the outline."""
     gear = drawn(kind, seed, tooth_thinning=thinning)
     x, y = tooth_profile(gear).involute(np.array([gear.roll_length(gear.reference_radius)]))[0]
@@ -63,7 +58,7 @@ def test_thickness_at_the_reference_circle_is_the_nominal_less_the_allowance(
 
 @kinds
 @pytest.mark.parametrize("seed", range(4))
-def test_a_gear_is_the_one_of_its_generating_shift_with_its_tip_circle(kind: str, seed: int) -> None:
+def test_a_gear_is_the_one_of_its_generating_shift_with_its_tip_circle(kind, seed):
     """The cutter does not know the nominal shift: outline, shape and compliance are one."""
     gear = drawn(kind, seed)
     infeed = 0.5 * gear.thickness_allowance / math.tan(gear.normal_pressure_angle)
@@ -82,7 +77,7 @@ def test_a_gear_is_the_one_of_its_generating_shift_with_its_tip_circle(kind: str
 
 @kinds
 @pytest.mark.parametrize("seed", range(4))
-def test_the_root_moves_by_the_infeed_and_the_tip_stays(kind: str, seed: int) -> None:
+def test_the_root_moves_by_the_infeed_and_the_tip_stays(kind, seed):
     gear = drawn(kind, seed)
     ground, plain = replace(gear, tooth_thinning="flank"), replace(gear, thickness_allowance=0.0)
     infeed = 0.5 * gear.thickness_allowance / math.tan(gear.normal_pressure_angle)
@@ -96,7 +91,7 @@ def test_the_root_moves_by_the_infeed_and_the_tip_stays(kind: str, seed: int) ->
 
 @kinds
 @pytest.mark.parametrize("seed", range(4))
-def test_without_an_allowance_nothing_tells_the_two_cases_apart(kind: str, seed: int) -> None:
+def test_without_an_allowance_nothing_tells_the_two_cases_apart(kind, seed):
     gear = drawn(kind, seed, thickness_allowance=0.0)
     ground = replace(gear, tooth_thinning="flank")
     assert np.array_equal(outline(gear), outline(ground))
@@ -104,8 +99,8 @@ def test_without_an_allowance_nothing_tells_the_two_cases_apart(kind: str, seed:
     assert gear.macro_geometry()["profile_shift_coefficient"] == gear.profile_shift_coefficient
 
 
-def test_two_shapes_have_two_compliances_and_one_shape_has_one() -> None:
-    def key(gear: Toothing) -> str:
+def test_two_shapes_have_two_compliances_and_one_shape_has_one():
+    def key(gear):
         return compliance_key(gear, coarse_plane(gear), PlaneHypothesis.PLANE_STRAIN, 5)
 
     gear = make_gear(thickness_allowance=1e-4)
@@ -114,7 +109,7 @@ def test_two_shapes_have_two_compliances_and_one_shape_has_one() -> None:
 
 
 @both_cases
-def test_backlash_is_the_allowances_whatever_removes_them(thinning: str) -> None:
+def test_backlash_is_the_allowances_whatever_removes_them(thinning):
     pinion = make_gear(23, thickness_allowance=6e-5, tooth_thinning=thinning)
     wheel = make_gear(47, thickness_allowance=4e-5)
     pair = GearPair(pinion, wheel)
@@ -124,7 +119,7 @@ def test_backlash_is_the_allowances_whatever_removes_them(thinning: str) -> None
     assert pair.tip_clearances[1] == pytest.approx(clearance, rel=1e-9)
 
 
-def test_an_allowance_deepens_undercut() -> None:
+def test_an_allowance_deepens_undercut():
     """The onset of undercut is that of x_E: 14 teeth of a sharp rack of full depth at x = 0.1812."""
     sharp = {"root_radius_coefficient": 0.0, "dedendum_coefficient": 1.0, "teeth": 14}
     onset = 1.0 - 7.0 * math.sin(math.radians(20.0)) ** 2
@@ -134,6 +129,6 @@ def test_an_allowance_deepens_undercut() -> None:
 
 
 @kinds
-def test_another_way_of_thinning_is_refused(kind: str) -> None:
+def test_another_way_of_thinning_is_refused(kind):
     with pytest.raises(InputError, match=r"tooth_thinning.*hobbing.*generating"):
         KINDS[kind](tooth_thinning="hobbing")

@@ -1,7 +1,5 @@
 """Interference of internal pairs against brute force: exact outlines, turned and moved, point by point."""
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 from typing import Any
@@ -9,11 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fe_contact import Gear, InternalGearPair, RingGear
 from fe_contact.errors import InfeasibleGeometry
-from fe_contact.geometry import Gear, gear_pair
-from fe_contact.geometry.flank_profile import ToothProfile, tooth_profile
-from fe_contact.geometry.gear_pair import InternalGearPair
-from fe_contact.geometry.ring_gear import RingGear
+from fe_contact.geometry import ToothProfile, gear_pair, tooth_profile
 from fe_contact.geometry.tip_interference import (
     flank_angle,
     pinion_edge_path,
@@ -43,7 +39,7 @@ def make_pair(
 
 
 @pytest.fixture
-def unchecked(monkeypatch: pytest.MonkeyPatch) -> None:
+def unchecked(monkeypatch):
     """Let pairs be made that cannot run."""
     monkeypatch.setattr(gear_pair, "refuse_infeasible_pair", lambda pair: None)
 
@@ -120,16 +116,14 @@ RUNNING: list[tuple[tuple[int, int], dict[str, Any], dict[str, Any]]] = [
 
 
 @pytest.mark.parametrize(("teeth", "pinion", "wheel"), RUNNING)
-def test_feasible_pair_touches_and_never_overlaps(
-    teeth: tuple[int, int], pinion: dict[str, Any], wheel: dict[str, Any]
-) -> None:
+def test_feasible_pair_touches_and_never_overlaps(teeth, pinion, wheel):
     pair = make_pair(teeth, pinion, wheel)
     assert abs(worst(pair)) < SLACK
 
 
 @pytest.mark.usefixtures("unchecked")
 @pytest.mark.parametrize("difference", [7, 6, 5])
-def test_tip_interference_is_the_overlap_of_the_turning_outlines(difference: int) -> None:
+def test_tip_interference_is_the_overlap_of_the_turning_outlines(difference):
     pair = make_pair((80 - difference, 80), {}, {})
     depth = tip_interference(pair)
     assert depth > 1e-5
@@ -137,7 +131,7 @@ def test_tip_interference_is_the_overlap_of_the_turning_outlines(difference: int
 
 
 @pytest.mark.usefixtures("unchecked")
-def test_trochoidal_interference_is_the_overlap_of_the_turning_outlines() -> None:
+def test_trochoidal_interference_is_the_overlap_of_the_turning_outlines():
     # the ring's tip reaches the pinion's fillet, cut by a rack with a large rounding
     pair = make_pair((30, 80), {"dedendum_coefficient": 1.1}, {"addendum_coefficient": 1.02})
     depth = trochoidal_interference(pair)
@@ -182,9 +176,7 @@ OFF_THE_LINE: list[tuple[tuple[int, int], dict[str, Any], dict[str, Any]]] = [
 
 
 @pytest.mark.parametrize(("teeth", "pinion", "wheel"), OFF_THE_LINE)
-def test_a_tip_that_clears_the_form_circle_but_cuts_the_fillet_is_refused(
-    monkeypatch: pytest.MonkeyPatch, teeth: tuple[int, int], pinion: dict[str, Any], wheel: dict[str, Any]
-) -> None:
+def test_a_tip_that_clears_the_form_circle_but_cuts_the_fillet_is_refused(monkeypatch, teeth, pinion, wheel):
     with pytest.raises(InfeasibleGeometry) as caught:
         make_pair(teeth, pinion, wheel)
     assert caught.value.name == "trochoidal interference"
@@ -196,7 +188,7 @@ def test_a_tip_that_clears_the_form_circle_but_cuts_the_fillet_is_refused(
 
 @pytest.mark.usefixtures("unchecked")
 @pytest.mark.parametrize("teeth", [(60, 80), (72, 80), (74, 80)])
-def test_ends_of_the_edges_paths_are_the_handbooks_angle_criterion(teeth: tuple[int, int]) -> None:
+def test_ends_of_the_edges_paths_are_the_handbooks_angle_criterion(teeth):
     pair = make_pair(teeth, {}, {})
     a, r_1, r_2 = pair.center_distance, pair.pinion.tip_radius, pair.wheel.tip_radius
     working = involute_function(pair.working_pressure_angle)
@@ -214,7 +206,7 @@ def test_ends_of_the_edges_paths_are_the_handbooks_angle_criterion(teeth: tuple[
     assert mate.depth[-1] == pytest.approx(-r_1 * left_over * teeth[1] / teeth[0], rel=1e-6, abs=0.0)
 
 
-def test_edges_touch_the_mating_flank_at_the_ends_of_the_path_of_contact() -> None:
+def test_edges_touch_the_mating_flank_at_the_ends_of_the_path_of_contact():
     pair = make_pair((40, 80), {}, {})
     for path, mate, roll in (
         (pinion_edge_path(pair), pair.wheel, pair.common_tangent + pair.path_of_contact.end),
@@ -240,10 +232,8 @@ def radially_blocked(pair: InternalGearPair) -> bool:
 @pytest.mark.law
 @pytest.mark.parametrize(("shortening", "blocked"), [(0.05e-3, True), (-0.05e-3, False)])
 @pytest.mark.parametrize("allowance", [0.0, 1e-4])
-def test_trimming_interference_is_found_by_withdrawing_the_pinion(
-    shortening: float, blocked: bool, allowance: float
-) -> None:
-    def at_tip(diameter: float) -> InternalGearPair:
+def test_trimming_interference_is_found_by_withdrawing_the_pinion(shortening, blocked, allowance):
+    def at_tip(diameter):
         return make_pair((68, 80), {"thickness_allowance": allowance}, {"tip_diameter": diameter})
 
     low, high = 0.3130, 0.3180
@@ -256,7 +246,7 @@ def test_trimming_interference_is_found_by_withdrawing_the_pinion(
     assert radially_blocked(pair) == blocked
 
 
-def test_radial_clearance_at_its_limits() -> None:
+def test_radial_clearance_at_its_limits():
     alpha = math.radians(20.0)
     assert radial_clearance(0.5, (alpha, alpha), alpha) == math.inf
     assert radial_clearance(0.9, (math.radians(30.0), math.radians(15.0)), alpha) == -math.inf

@@ -1,7 +1,5 @@
 """Misalignment that a class allows: by hand from the formulas of the standards, and how sources add up."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -22,7 +20,7 @@ def pair(
     return GearPair(first, second, center_distance=112.5e-3 / math.cos(helix), shafts=shafts)
 
 
-def test_class_seven_of_a_spur_pair_is_that_of_the_formulas_by_hand() -> None:
+def test_class_seven_of_a_spur_pair_is_that_of_the_formulas_by_hand():
     """d 75 and 150 mm, b 20 mm, 20 degrees.
 
     f_Hbeta of class 5: 0.05 * 8.6603 + 0.35 * 4.4721 + 4 = 5.998 and 6.178 um; twice, rounded: 12 and 12.
@@ -43,7 +41,7 @@ def test_class_seven_of_a_spur_pair_is_that_of_the_formulas_by_hand() -> None:
     assert "to 20 µm" in made.text and "19.9 µm by squares, 38.6 µm at worst" in made.text
 
 
-def test_the_axis_ends_at_a_figure_of_the_standard() -> None:
+def test_the_axis_ends_at_a_figure_of_the_standard():
     for tolerance_class in (1, 3, 5, 9):
         made = misalignment_range(pair(), tolerance_class)
         assert 1e6 * made.axis[-1] == pytest.approx(rounded(1e6 * made.likely))
@@ -53,24 +51,24 @@ def test_the_axis_ends_at_a_figure_of_the_standard() -> None:
 
 
 @pytest.mark.parametrize(("tolerance_class", "helix_um"), [(5, 9.0), (6, 13.0), (7, 18.0), (9, 36.0)])
-def test_the_whole_helix_is_rounded_once(tolerance_class: int, helix_um: float) -> None:
+def test_the_whole_helix_is_rounded_once(tolerance_class, helix_um):
     """8.932 µm of class 5, times the root of two to the classes above, then rounded (5.2.2, 5.2.3)."""
     assert 1e6 * helix_tolerance(pair().pinion, tolerance_class) == pytest.approx(helix_um)
 
 
-def test_a_gear_wider_than_the_common_face_opens_it_by_its_part() -> None:
+def test_a_gear_wider_than_the_common_face_opens_it_by_its_part():
     """b 25 mm: f_Hbeta of 0.05 * 12.2474 + 0.35 * 5 + 4 = 6.362, twice and rounded 13 µm, 20/25 of it."""
     made = misalignment_range(pair(wheel_width=25e-3), 7)
     assert 1e6 * made.by_source["helix slope of the wheel"] == pytest.approx(10.4)
 
 
-def test_a_larger_pressure_angle_moves_weight_into_the_plane_of_the_axes() -> None:
+def test_a_larger_pressure_angle_moves_weight_into_the_plane_of_the_axes():
     made = misalignment_range(pair(helix_deg=30.0), 7)
     ratio = made.by_source["axes in their plane"] / made.by_source["axes out of their plane"]
     assert ratio == pytest.approx(2.0 * math.tan(math.radians(20.0)) / math.cos(math.radians(30.0)))
 
 
-def test_a_clearance_tilts_its_shaft_over_the_span_of_its_bearings() -> None:
+def test_a_clearance_tilts_its_shaft_over_the_span_of_its_bearings():
     made = misalignment_range(pair(span=0.1), 7, (25e-6, 0.0))
     assert 1e6 * made.by_source["bearing clearance of the pinion"] == pytest.approx(5.0)
     assert 1e6 * made.likely == pytest.approx(math.hypot(19.936, 5.0), abs=0.01)
@@ -78,7 +76,7 @@ def test_a_clearance_tilts_its_shaft_over_the_span_of_its_bearings() -> None:
         misalignment_range(pair(span=0.1), 7, (25e-6, 25e-6))
 
 
-def test_a_finer_class_never_allows_more_and_others_are_refused() -> None:
+def test_a_finer_class_never_allows_more_and_others_are_refused():
     likely = [misalignment_range(pair(), number).likely for number in range(1, 12)]
     assert likely == sorted(likely)
     for number in (0, 12):

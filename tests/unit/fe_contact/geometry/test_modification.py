@@ -1,35 +1,24 @@
 """Modified flanks, free-form flanks and pitch deviations: amounts, places, sums."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import asdict, fields, replace
-from typing import Any
 
 import numpy as np
 import pytest
 from spur_gears import GEAR, make_gear
 
 from bounds import DEPTHS, Direction, Kind
+from fe_contact import FlankGrid, FlankModification, Gear, GearPair, PitchDeviation, RingGear, ToothFlank
 from fe_contact.errors import InputError
 from fe_contact.flank.modification import FLANK_FIELDS, fields_of
-from fe_contact.geometry import (
-    FlankGrid,
-    FlankModification,
-    Gear,
-    GearPair,
-    PitchDeviation,
-    RingGear,
-    ToothFlank,
-)
 
 
 def over_profile(gear: Gear, count: int = 201) -> np.ndarray:
     return np.linspace(gear.form_roll_length, gear.tip_roll_length, count)
 
 
-def test_neutral_modification_is_exactly_zero() -> None:
+def test_neutral_modification_is_exactly_zero():
     gear = make_gear()
     assert FlankModification().neutral
     removed = FlankModification().material_removed(gear, over_profile(gear), 0.01)
@@ -41,7 +30,7 @@ def test_neutral_modification_is_exactly_zero() -> None:
 
 
 @pytest.mark.parametrize("shape", ["linear", "parabolic"])
-def test_reliefs_reach_their_amounts_at_tip_root_and_both_ends(shape: Any) -> None:
+def test_reliefs_reach_their_amounts_at_tip_root_and_both_ends(shape):
     gear = make_gear()
     relief = FlankModification(tip_relief=20e-6, tip_relief_length=1.5e-3, tip_relief_shape=shape)
     start, tip = gear.roll_length(gear.tip_radius - 1.5e-3), gear.tip_roll_length
@@ -60,7 +49,7 @@ def test_reliefs_reach_their_amounts_at_tip_root_and_both_ends(shape: Any) -> No
     assert removed == pytest.approx([12e-6, middle, 0.0, 0.0, 0.0, middle, 12e-6], rel=1e-9, abs=1e-18)
 
 
-def test_crownings_and_slopes_over_profile_and_face() -> None:
+def test_crownings_and_slopes_over_profile_and_face():
     gear = make_gear()
     removed = FlankModification(profile_crowning=6e-6).material_removed(gear, over_profile(gear, 5))
     assert removed == pytest.approx([6e-6, 1.5e-6, 0.0, 1.5e-6, 6e-6], abs=1e-18)
@@ -75,20 +64,20 @@ def test_crownings_and_slopes_over_profile_and_face() -> None:
 
 
 @pytest.mark.parametrize("form", ["profile_form", "helix_form"])
-def test_a_form_of_all_teeth_is_that_of_each(form: str) -> None:
+def test_a_form_of_all_teeth_is_that_of_each(form):
     """What a flank lacks is what a tooth of the same form has in excess; the mean line is zero."""
     gear = make_gear()
     roll, face = over_profile(gear, 201)[:, None], np.linspace(-12.5e-3, 12.5e-3, 201)
     hollow = FlankModification(**{form: -3e-6})
     removed = hollow.material_removed(gear, roll, face)
-    tooth = ToothFlank(1, **{form: -3e-6})  # type: ignore[arg-type]
+    tooth = ToothFlank(1, **{form: -3e-6})
     assert removed == pytest.approx(-tooth.excess(gear, roll, face), rel=1e-12, abs=1e-20)
     assert removed.max() == pytest.approx(1e-6) and removed.min() == pytest.approx(-2e-6)
     even = 0.5 * (removed[1:, 1:] + removed[:-1, :-1])
     assert abs(even.mean()) < 1e-10
 
 
-def test_twist_is_a_profile_slope_that_grows_along_the_face() -> None:
+def test_twist_is_a_profile_slope_that_grows_along_the_face():
     gear = make_gear()
     twisted = FlankModification(flank_twist=4e-6)
     roll, face = over_profile(gear, 5)[:, None], np.linspace(-12.5e-3, 12.5e-3, 3)
@@ -101,7 +90,7 @@ def test_twist_is_a_profile_slope_that_grows_along_the_face() -> None:
     assert beyond == pytest.approx([-4e-6, 4e-6], rel=1e-12, abs=0.0)
 
 
-def test_parts_over_profile_and_face_add_up_to_all() -> None:
+def test_parts_over_profile_and_face_add_up_to_all():
     gear = make_gear()
     whole = FlankModification(
         tip_relief=20e-6, tip_relief_length=1e-3, profile_slope=3e-6, helix_crowning=5e-6, flank_twist=4e-6
@@ -128,7 +117,7 @@ def test_parts_over_profile_and_face_add_up_to_all() -> None:
     assert not tip.varies_along_face
 
 
-def test_beyond_the_involute_the_end_value_holds() -> None:
+def test_beyond_the_involute_the_end_value_holds():
     gear = make_gear()
     relief = FlankModification(
         tip_relief=20e-6, tip_relief_length=1e-3, root_relief=5e-6, root_relief_length=1e-3
@@ -148,7 +137,7 @@ def alone(name: str) -> FlankModification:
 
 
 @pytest.mark.parametrize("name", fields_of(*DEPTHS, Kind.EDGE))
-def test_a_figure_acts_along_what_it_is_declared_to(name: str) -> None:
+def test_a_figure_acts_along_what_it_is_declared_to(name):
     gear, modification, along = make_gear(helix_angle=0.2), alone(name), FLANK_FIELDS[name].along
     roll, face = over_profile(gear)[:, None], np.linspace(-12.5e-3, 12.5e-3, 5)
     removed = modification.material_removed(gear, roll, face)
@@ -159,7 +148,7 @@ def test_a_figure_acts_along_what_it_is_declared_to(name: str) -> None:
     assert modification.along_profile.neutral == (Direction.FACE in along)
 
 
-def test_the_whole_is_the_sum_of_its_parts_and_begins_where_they_do() -> None:
+def test_the_whole_is_the_sum_of_its_parts_and_begins_where_they_do():
     gear = make_gear(helix_angle=0.2)
     parts = [alone(name) for name in (*fields_of(*DEPTHS), "tip_rounding")]
     plain = FlankModification()
@@ -190,7 +179,7 @@ def inside(count: int = 41) -> tuple[np.ndarray, np.ndarray]:
     return tuple(np.meshgrid(roll, face, indexing="ij"))
 
 
-def test_nodes_are_met_with_continuous_slopes_and_end_values_hold_beyond() -> None:
+def test_nodes_are_met_with_continuous_slopes_and_end_values_hold_beyond():
     roll, face = np.meshgrid(ROLL, FACE, indexing="ij")
     assert NODES.material_removed(roll, face) == pytest.approx(np.array(NODES.removed), rel=1e-12, abs=1e-20)
     beyond = NODES.material_removed(np.array([0.0, 1.0]), np.array([-1.0, 4e-3]))
@@ -218,15 +207,15 @@ def test_nodes_are_met_with_continuous_slopes_and_end_values_hold_beyond() -> No
     ],
     ids=["constant", "twist", "crowning", "biquadratic"],
 )
-def test_what_is_quadratic_in_either_direction_is_reproduced(shape: Any) -> None:
+def test_what_is_quadratic_in_either_direction_is_reproduced(shape):
     roll, face = inside()
     assert sampled(shape).material_removed(roll, face) == pytest.approx(
         shape(roll, face), rel=1e-9, abs=1e-18
     )
 
 
-def test_a_smooth_flank_is_met_at_third_order() -> None:
-    def worst(count: int) -> float:
+def test_a_smooth_flank_is_met_at_third_order():
+    def worst(count):
         roll, face = np.linspace(4e-3, 19e-3, count), np.linspace(-12.5e-3, 12.5e-3, count)
         nodes = FlankGrid(roll, face, 1e-5 * np.sin(300.0 * roll)[:, None] * np.cos(150.0 * face))
         x, y = inside(83)
@@ -240,7 +229,7 @@ def test_a_smooth_flank_is_met_at_third_order() -> None:
 @pytest.mark.parametrize("first", [1, 2, 4, 8])
 @pytest.mark.parametrize("along", [0, 1], ids=["roll", "face"])
 @pytest.mark.parametrize("uneven", [False, True], ids=["even", "uneven"])
-def test_nothing_is_invented_beside_a_step(first: int, along: int, uneven: bool) -> None:
+def test_nothing_is_invented_beside_a_step(first, along, uneven):
     nodes, other = np.linspace(4e-3, 19e-3, 9), (0.0, 1e-3, 3e-3)
     if uneven:  # a gap of 2 mm, then 0.29 mm to the relieved end
         nodes[first:] = nodes[first - 1] + 0.29e-3 + (nodes[first:] - nodes[first])
@@ -254,7 +243,7 @@ def test_nothing_is_invented_beside_a_step(first: int, along: int, uneven: bool)
     assert np.all(np.diff(removed) >= -1e-18)
 
 
-def test_a_flat_between_two_reliefs_stays_flat() -> None:
+def test_a_flat_between_two_reliefs_stays_flat():
     roll = (4e-3, 4.3e-3, 12e-3, 12.3e-3, 13e-3)
     removed = np.array([20e-6, 0.0, 0.0, 5e-6, 20e-6])
     at = np.linspace(roll[0], roll[-1], 4001)
@@ -263,7 +252,7 @@ def test_a_flat_between_two_reliefs_stays_flat() -> None:
         assert grid.material_removed(at, 0.0 * at).min() == pytest.approx(0.0, abs=1e-20)
 
 
-def test_measured_flanks_are_not_refused_and_leave_their_nodes_little() -> None:
+def test_measured_flanks_are_not_refused_and_leave_their_nodes_little():
     random = np.random.default_rng(3)
     for rows, columns in ((4, 9), (9, 11), (15, 5)):
         noise = 1e-6 * random.uniform(-1.0, 1.0, (rows, columns))
@@ -278,7 +267,7 @@ def test_measured_flanks_are_not_refused_and_leave_their_nodes_little() -> None:
         assert removed.max() < crowned.max() + 0.1e-6
 
 
-def test_a_surface_that_leaves_its_nodes_is_refused_with_the_place() -> None:
+def test_a_surface_that_leaves_its_nodes_is_refused_with_the_place():
     roll, face = (2e-3, 2.3e-3, 4.3e-3), (0.3e-3, 2.3e-3, 2.6e-3)
     removed = 20e-6 * np.array([[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 1.0]])
     expected = r"removed\[1\.\.2\]\[0\.\.1\] = '1\.09 µm beyond the nodes .* at most 0\.1 µm; add nodes"
@@ -287,7 +276,7 @@ def test_a_surface_that_leaves_its_nodes_is_refused_with_the_place() -> None:
     assert FlankGrid(roll, face, 0.09 * removed)
 
 
-def test_where_a_grid_belongs_depends_on_whether_it_differs_over_the_face() -> None:
+def test_where_a_grid_belongs_depends_on_whether_it_differs_over_the_face():
     even = FlankModification(flank_grid=sampled(lambda x, y: 1e-3 * (x - 4e-3)), helix_crowning=1e-6)
     assert even.along_profile.flank_grid is even.flank_grid
     assert even.along_face.flank_grid is None
@@ -299,7 +288,7 @@ def test_where_a_grid_belongs_depends_on_whether_it_differs_over_the_face() -> N
     assert FlankModification(flank_grid=sampled(lambda x, y: 0.0 * x * y)).neutral
 
 
-def test_a_grid_adds_to_the_other_amounts_and_tells_flanks_apart() -> None:
+def test_a_grid_adds_to_the_other_amounts_and_tells_flanks_apart():
     alone, slope = FlankModification(flank_grid=NODES), FlankModification(profile_slope=4e-6)
     gear = make_gear(modification=FlankModification(flank_grid=NODES, profile_slope=4e-6))
     roll, face = inside(9)
@@ -362,7 +351,7 @@ def test_deviations_are_one_for_each_tooth_of_the_same_gear():
 
 
 @pytest.mark.parametrize("hand", [1.0, -1.0])
-def test_ground_crowning_is_the_same_all_along_the_normal_that_the_worm_touches(hand: float) -> None:
+def test_ground_crowning_is_the_same_all_along_the_normal_that_the_worm_touches(hand):
     """So it is crowning, twist and profile crowning by closed form."""
     gear = Gear(25, 2e-3, 30e-3, 20e-3, helix_angle=hand * math.radians(22.0))
     ground = FlankModification(ground_helix_crowning=4e-6)
@@ -379,7 +368,7 @@ def test_ground_crowning_is_the_same_all_along_the_normal_that_the_worm_touches(
     )
 
 
-def test_a_ring_gear_is_not_ground_by_a_worm() -> None:
+def test_a_ring_gear_is_not_ground_by_a_worm():
     with pytest.raises(InputError) as caught:
         RingGear(
             60,
@@ -393,7 +382,7 @@ def test_a_ring_gear_is_not_ground_by_a_worm() -> None:
 
 
 @pytest.mark.parametrize("name", fields_of(Kind.AMOUNT, Kind.DEVIATION))
-def test_only_what_may_add_material_has_more_than_the_involute_anywhere(name: str) -> None:
+def test_only_what_may_add_material_has_more_than_the_involute_anywhere(name):
     """By it samples of the gap are left out where flanks touch."""
     length = {f"{name}_length": 0.5e-3} if f"{name}_length" in FLANK_FIELDS else {}
     modification = FlankModification(**{name: 6e-6}, **length)

@@ -1,7 +1,5 @@
 """The laws of reliefs and of rounded and chamfered tips: their ends, tangency, means, sides, corners."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any, get_args
@@ -26,7 +24,7 @@ MEAN = {  # of the depth over the length
 }
 
 
-def test_the_shapes_are_those_of_the_exchange_format() -> None:
+def test_the_shapes_are_those_of_the_exchange_format():
     assert tuple(SHAPES) == get_args(Shape)
     assert sorted(SHAPES) == ["circular", "exponential", "linear", "logarithmic", "parabolic"]
     u = np.linspace(0.0, 1.0, 21)
@@ -44,7 +42,7 @@ def test_the_shapes_are_those_of_the_exchange_format() -> None:
 
 @BY_SHAPE
 @pytest.mark.parametrize("ratio", [1e-6, 0.01, 0.5])
-def test_a_shape_rises_from_nothing_to_its_amount_as_its_derivatives_say(shape: Shape, ratio: float) -> None:
+def test_a_shape_rises_from_nothing_to_its_amount_as_its_derivatives_say(shape, ratio):
     law, u = SHAPES[shape], np.linspace(-0.5, 1.5, 401)
     depth = law(u, ratio)
     assert np.all(depth[u <= 0.0] == 0.0)
@@ -58,13 +56,13 @@ def test_a_shape_rises_from_nothing_to_its_amount_as_its_derivatives_say(shape: 
 
 
 @pytest.mark.parametrize(("shape", "mean"), MEAN.items())
-def test_the_mean_of_a_shape_is_its_integral(shape: Shape, mean: float) -> None:
+def test_the_mean_of_a_shape_is_its_integral(shape, mean):
     found, _ = quad(lambda u: float(SHAPES[shape](np.array(u), 0.01)), 0.0, 1.0, epsabs=1e-14)
     assert found == pytest.approx(mean, rel=1e-12)
 
 
 @pytest.mark.parametrize("ratio", [1e-3, 0.2, 1.0])
-def test_a_circular_relief_is_an_arc_that_touches_where_it_starts(ratio: float) -> None:
+def test_a_circular_relief_is_an_arc_that_touches_where_it_starts(ratio):
     u = np.linspace(0.0, 1.0, 11)
     radius = (1.0 + ratio**2) / (2.0 * ratio)  # lengths
     depth = ratio * SHAPES["circular"](u, ratio)
@@ -80,7 +78,7 @@ def removed(gear: Gear, roll: np.ndarray, face: np.ndarray) -> np.ndarray:
 
 
 @BY_SHAPE
-def test_a_relief_begins_with_the_slope_and_the_curvature_it_states(shape: Shape) -> None:
+def test_a_relief_begins_with_the_slope_and_the_curvature_it_states(shape):
     gear = helical(
 
         tip_relief=20e-6, tip_relief_length=1.5e-3, tip_relief_shape=shape,
@@ -99,7 +97,7 @@ def test_a_relief_begins_with_the_slope_and_the_curvature_it_states(shape: Shape
 
 
 @BY_SHAPE
-def test_end_reliefs_of_both_faces_are_the_symmetric_one(shape: Shape) -> None:
+def test_end_reliefs_of_both_faces_are_the_symmetric_one(shape):
     gear, face = make_gear(), np.linspace(-12.5e-3, 12.5e-3, 51)
     one = {"end_relief": 12e-6, "end_relief_length": 4e-3, "end_relief_shape": shape}
     datum = {key.replace("relief", "relief_datum_face"): value for key, value in one.items()}
@@ -112,7 +110,7 @@ def test_end_reliefs_of_both_faces_are_the_symmetric_one(shape: Shape) -> None:
     assert not np.any(first[face > 0.0]) and not np.any(second[face < 0.0])
 
 
-def test_crownings_of_sides_meet_in_one_highest_point() -> None:
+def test_crownings_of_sides_meet_in_one_highest_point():
     gear = make_gear()
     middle = 0.5 * (gear.form_roll_length + gear.tip_roll_length)
     radius = math.hypot(gear.base_radius, middle)
@@ -149,7 +147,7 @@ SIDES = {
 }  # fmt: skip
 
 
-def test_a_flank_seen_in_a_mirror_has_its_faces_and_its_hand_exchanged() -> None:
+def test_a_flank_seen_in_a_mirror_has_its_faces_and_its_hand_exchanged():
     """Mirrored at mid-face, datum and non-datum face change places, and right hand becomes left."""
     corners = {"triangular_tip_relief": 7e-6, "triangular_root_relief": 5e-6}
     corners |= {f"{name}_length": 1.2e-3 for name in corners}
@@ -168,7 +166,7 @@ def test_a_flank_seen_in_a_mirror_has_its_faces_and_its_hand_exchanged() -> None
 
 @BY_SHAPE
 @pytest.mark.parametrize("end", ["tip", "root"])
-def test_a_triangular_relief_is_a_relief_along_lines_of_contact(shape: Shape, end: str) -> None:
+def test_a_triangular_relief_is_a_relief_along_lines_of_contact(shape, end):
     """At its corner's end of the face it is the tip or root relief of the same figures."""
     facts = {"": 15e-6, "_length": 1.2e-3 if end == "tip" else 0.8e-3, "_shape": shape}
     gear = helical(**{f"triangular_{end}_relief{key}": value for key, value in facts.items()})
@@ -207,7 +205,7 @@ def pairs() -> list[GearPair | InternalGearPair]:
 
 
 @pytest.mark.parametrize("pair", pairs())
-def test_on_either_gear_a_line_of_contact_is_relieved_all_along(pair: GearPair | InternalGearPair) -> None:
+def test_on_either_gear_a_line_of_contact_is_relieved_all_along(pair):
     face = np.linspace(-10e-3, 10e-3, 41)
     for position in np.linspace(-1.6, 1.6, 33):
         first, _ = pair.roll_lengths(position)
@@ -236,7 +234,7 @@ def flank_and_inwards(gear: Toothing, s: float) -> tuple[np.ndarray, np.ndarray]
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_rounding_touches_the_involute_and_the_tip_circle(kind: str) -> None:
+def test_a_rounding_touches_the_involute_and_the_tip_circle(kind):
     """The circle about a center inside the tooth is tangent to both: its distances are the radius."""
     radius = 0.3e-3
     gear = gear_of(kind, tip_rounding=radius)
@@ -257,7 +255,7 @@ def test_a_rounding_touches_the_involute_and_the_tip_circle(kind: str) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_chamfer_begins_at_its_height_and_runs_straight(kind: str) -> None:
+def test_a_chamfer_begins_at_its_height_and_runs_straight(kind):
     height, angle = 0.3e-3, math.radians(20.0)
     gear = gear_of(kind, tip_chamfer=height, tip_chamfer_angle=angle)
     assert abs(gear.tip_form_radius - gear.tip_radius) == pytest.approx(height, rel=1e-10)
@@ -274,7 +272,7 @@ def test_a_chamfer_begins_at_its_height_and_runs_straight(kind: str) -> None:
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("edge", [{"tip_rounding": 0.2e-3}, {"tip_chamfer": 0.2e-3}])
-def test_what_is_removed_is_what_the_break_says(kind: str, edge: dict[str, float]) -> None:
+def test_what_is_removed_is_what_the_break_says(kind, edge):
     """To the last digits, so that nothing is left over beside it in the gap."""
     gear = gear_of(kind, **edge)
     (start,) = gear.modification.relief_starts(gear)
@@ -290,7 +288,7 @@ def test_what_is_removed_is_what_the_break_says(kind: str, edge: dict[str, float
     assert not np.any(gear.modification.material_removed(gear, below))
 
 
-def test_no_edge_is_a_sharp_tip_and_one_is_along_the_profile() -> None:
+def test_no_edge_is_a_sharp_tip_and_one_is_along_the_profile():
     none = FlankModification(tip_rounding=0.0, tip_chamfer=0.0, tip_chamfer_angle=1.0)
     gear = make_gear(modification=none)
     assert none.neutral
@@ -307,7 +305,7 @@ def test_no_edge_is_a_sharp_tip_and_one_is_along_the_profile() -> None:
     assert not FlankModification(tip_rounding=1e-4).varies_along_face
 
 
-def test_contact_ends_at_the_tip_form_circles() -> None:
+def test_contact_ends_at_the_tip_form_circles():
     """As with tips cut off there: d_Na = d_Fa."""
     height = 0.3e-3
     chamfered = make_gear(modification=FlankModification(tip_chamfer=height))
@@ -322,7 +320,7 @@ def test_contact_ends_at_the_tip_form_circles() -> None:
     assert found.active_contact_ratio == pytest.approx(wanted.transverse_contact_ratio, rel=1e-12)
 
 
-def test_flanks_that_end_too_early_make_no_pair() -> None:
+def test_flanks_that_end_too_early_make_no_pair():
     shape = FlankModification(tip_chamfer=1.8e-3, tip_chamfer_angle=math.radians(10.0))
     gear = make_gear(modification=shape)
     for pair, name in (((make_gear(), gear), "wheel"), ((gear, make_gear()), "pinion")):
@@ -336,7 +334,7 @@ def test_flanks_that_end_too_early_make_no_pair() -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_the_largest_edge_that_is_named_is_accepted(kind: str) -> None:
+def test_the_largest_edge_that_is_named_is_accepted(kind):
     for field in ("tip_rounding", "tip_chamfer"):
         with pytest.raises(InputError) as caught:
             gear_of(kind, **{field: 20e-3})
@@ -349,7 +347,7 @@ def test_the_largest_edge_that_is_named_is_accepted(kind: str) -> None:
 
 
 @pytest.mark.parametrize("kind", ["spur", "helical"])
-def test_a_chamfer_that_turns_back_from_the_tip_is_refused_by_its_angle(kind: str) -> None:
+def test_a_chamfer_that_turns_back_from_the_tip_is_refused_by_its_angle(kind):
     with pytest.raises(InputError) as caught:
         gear_of(kind, tip_chamfer=0.1e-3, tip_chamfer_angle=math.radians(80.0))
     assert caught.value.field == "modification.tip_chamfer_angle"

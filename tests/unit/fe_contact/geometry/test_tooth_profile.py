@@ -1,7 +1,5 @@
 """Outlines of teeth: their coordinate, normals and joints, and that the tool which cuts them touches all."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from typing import Any
@@ -14,7 +12,6 @@ from spur_gears import make_gear, make_ring
 from fe_contact.errors import InputError
 from fe_contact.geometry import Gear, tooth_profile
 from fe_contact.geometry.flank_profile import ToothProfile
-from fe_contact.geometry.toothing import Toothing
 from fe_contact.involute import involute_point
 from fe_contact.types import FloatArray
 
@@ -44,7 +41,7 @@ def parts(profile: ToothProfile) -> list[tuple[float, float]]:
 
 
 @every_gear
-def test_coordinate_is_the_arc_length_rising_to_the_tip(gear: Toothing) -> None:
+def test_coordinate_is_the_arc_length_rising_to_the_tip(gear):
     profile = tooth_profile(gear)
     for low, high in parts(profile):
         s = np.linspace(low + 1e-15, high, 4001)
@@ -54,7 +51,7 @@ def test_coordinate_is_the_arc_length_rising_to_the_tip(gear: Toothing) -> None:
 
 
 @every_gear
-def test_normals_are_unit_perpendicular_and_outward(gear: Toothing) -> None:
+def test_normals_are_unit_perpendicular_and_outward(gear):
     profile, step = tooth_profile(gear), 1e-8
     for low, high in parts(profile):
         s = np.linspace(low + 5 * step, high - 5 * step, 41)
@@ -68,7 +65,7 @@ def test_normals_are_unit_perpendicular_and_outward(gear: Toothing) -> None:
 
 
 @every_gear
-def test_involute_fillet_and_root_circle_join_on_their_circles(gear: Toothing) -> None:
+def test_involute_fillet_and_root_circle_join_on_their_circles(gear):
     profile, step = tooth_profile(gear), 1e-12
     for joint in (profile.s_form, profile.s_root):
         assert np.hypot(*(profile.flank(joint + step) - profile.flank(joint - step))) < 3.0 * step
@@ -83,7 +80,7 @@ def test_involute_fillet_and_root_circle_join_on_their_circles(gear: Toothing) -
 
 
 @every_gear
-def test_the_fillet_leaves_the_involute_with_its_tangent_or_an_undercut_with_a_kink(gear: Toothing) -> None:
+def test_the_fillet_leaves_the_involute_with_its_tangent_or_an_undercut_with_a_kink(gear):
     profile = tooth_profile(gear)
     kink = np.hypot(*(profile.normal(profile.s_form) - profile.normal(profile.s_form - 1e-13)))
     if isinstance(gear, Gear):
@@ -94,7 +91,7 @@ def test_the_fillet_leaves_the_involute_with_its_tangent_or_an_undercut_with_a_k
 
 
 @every_gear
-def test_thickness_at_the_reference_circle_is_the_closed_form(gear: Toothing) -> None:
+def test_thickness_at_the_reference_circle_is_the_closed_form(gear):
     x, y = tooth_profile(gear).involute(np.array([gear.roll_length(gear.reference_radius)]))[0]
     shift = 2.0 * gear.profile_shift_coefficient * math.tan(math.radians(20.0))
     normal = gear.normal_module * (math.pi / 2 + shift) - gear.thickness_allowance
@@ -104,7 +101,7 @@ def test_thickness_at_the_reference_circle_is_the_closed_form(gear: Toothing) ->
 
 
 @gear_and_ring
-def test_involute_coordinate_is_half_the_squared_roll_length_over_the_base_radius(gear: Toothing) -> None:
+def test_involute_coordinate_is_half_the_squared_roll_length_over_the_base_radius(gear):
     profile = tooth_profile(gear)
     roll = np.linspace(gear.form_roll_length, gear.tip_roll_length, 11)
     s = gear.sign * roll**2 / (2.0 * gear.base_radius)
@@ -114,7 +111,7 @@ def test_involute_coordinate_is_half_the_squared_roll_length_over_the_base_radiu
 
 
 @every_gear
-def test_tip_land_runs_from_right_edge_to_left_edge(gear: Toothing) -> None:
+def test_tip_land_runs_from_right_edge_to_left_edge(gear):
     profile = tooth_profile(gear)
     right, middle, left = profile.tip_land(np.array([0.0, 0.5, 1.0]))
     assert right == pytest.approx(profile.flank(profile.s_tip), rel=1e-12)
@@ -122,7 +119,7 @@ def test_tip_land_runs_from_right_edge_to_left_edge(gear: Toothing) -> None:
     assert left == pytest.approx(right * [-1.0, 1.0])
 
 
-def test_full_fillet_leaves_no_root_land() -> None:
+def test_full_fillet_leaves_no_root_land():
     full = make_gear().basic_rack.full_fillet_coefficient
     # (pi/4 - 1.25 tan 20) cos 20 / (1 - sin 20), by hand
     assert full == pytest.approx(0.4719109, abs=5e-7)
@@ -131,7 +128,7 @@ def test_full_fillet_leaves_no_root_land() -> None:
     assert profile.flank(profile.s_space) == pytest.approx(profile.fillet(profile.fillet_length), abs=1e-14)
 
 
-def test_arrays_scale_and_equal_gears_share_a_profile() -> None:
+def test_arrays_scale_and_equal_gears_share_a_profile():
     profile = tooth_profile(make_gear())
     s = np.linspace(profile.s_space, profile.s_tip, 12).reshape(3, 4)
     assert profile.flank(s).shape == profile.normal(s).shape == (3, 4, 2)
@@ -148,7 +145,7 @@ def test_arrays_scale_and_equal_gears_share_a_profile() -> None:
 
 @gear_and_ring
 @pytest.mark.parametrize("beyond", [-1e-6, 1e-6, math.nan])
-def test_coordinates_off_the_profile_are_refused(gear: Toothing, beyond: float) -> None:
+def test_coordinates_off_the_profile_are_refused(gear, beyond):
     profile = tooth_profile(gear)
     end = profile.s_space if beyond < 0.0 else profile.s_tip
     with pytest.raises(InputError, match="s_space"):
@@ -159,7 +156,6 @@ def test_coordinates_off_the_profile_are_refused(gear: Toothing, beyond: float) 
 
 
 def turned(points: FloatArray, angle: float) -> FloatArray:
-    """Points turned clockwise."""
     sine, cosine = math.sin(angle), math.cos(angle)
     x, y = points[..., 0], points[..., 1]
     return np.stack((x * cosine + y * sine, y * cosine - x * sine), axis=-1)
@@ -191,7 +187,7 @@ def swept(profile: ToothProfile) -> FloatArray:
 @pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize("ring", RINGS.values(), ids=RINGS)
-def test_rolling_cutter_touches_the_whole_flank_and_cuts_it_nowhere(ring: Toothing) -> None:
+def test_rolling_cutter_touches_the_whole_flank_and_cuts_it_nowhere(ring):
     profile = tooth_profile(ring)
     s = np.linspace(profile.s_root, profile.s_tip, 3001)[1:-1]
     points, normals, places = profile.flank(s), profile.normal(s), swept(profile)
@@ -252,7 +248,7 @@ def clearance_to_tool_rounding(gear: Gear, point: np.ndarray) -> float:
     half_tooth = 0.25 * math.pi * gear.normal_module + shift * math.tan(alpha) - 0.5 * ground
     center_x = half_tooth + (depth - rho) * math.tan(alpha) + rho / math.cos(alpha)
 
-    def distance(turn: Any) -> Any:
+    def distance(turn):
         across = point[0] * np.cos(turn) - point[1] * np.sin(turn) + reference * turn
         up = point[0] * np.sin(turn) + point[1] * np.cos(turn) - reference
         return np.hypot(across * math.cos(beta) - center_x, up + depth - rho)
@@ -266,7 +262,7 @@ def clearance_to_tool_rounding(gear: Gear, point: np.ndarray) -> float:
 
 
 @cases
-def test_tool_touches_every_fillet_point_and_cuts_no_involute(fields: dict[str, Any]) -> None:
+def test_tool_touches_every_fillet_point_and_cuts_no_involute(fields):
     gear = make_gear(**fields)
     profile = tooth_profile(gear)
     points = profile.fillet(np.linspace(0.0, profile.fillet_length, 9))
@@ -276,7 +272,7 @@ def test_tool_touches_every_fillet_point_and_cuts_no_involute(fields: dict[str, 
     assert min(clearance_to_tool_rounding(gear, point) for point in points) >= -1e-11
 
 
-def test_undercut_removes_the_involute_below_the_form_point() -> None:
+def test_undercut_removes_the_involute_below_the_form_point():
     gear = make_gear(teeth=9)
     below = tooth_profile(gear).involute(np.array([0.5 * gear.form_roll_length]))[0]
     assert clearance_to_tool_rounding(gear, below) < -1e-5
@@ -288,7 +284,7 @@ def test_undercut_removes_the_involute_below_the_form_point() -> None:
 
 
 @cases
-def test_radius_falls_along_an_arc_of_known_length(fields: dict[str, Any]) -> None:
+def test_radius_falls_along_an_arc_of_known_length(fields):
     gear = make_gear(**fields)
     radius = gear.trochoid.radius(np.linspace(gear.form_point.tool_angle, 0.5 * math.pi, 100))
     assert np.all(np.diff(radius) < 0.0)

@@ -1,7 +1,5 @@
 """Laws of line contact and of the contact at a tip edge: equilibrium, scaling, limits."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -55,11 +53,11 @@ def test_local_approach_is_the_difference_of_two_half_plane_solutions():
     p, a, b = 1e5, 3e-4, 1e-4
     k = 2.0 / (math.pi * STEEL.plane_strain_modulus)
 
-    def semi_ellipse(x: float, half: float) -> float:
+    def semi_ellipse(x, half):
         return 2.0 / (math.pi * half) * math.sqrt(max(1.0 - (x / half) ** 2, 0.0))
 
-    def mean_log(x: float, half: float) -> float:
-        def integrand(angle: float) -> float:
+    def mean_log(x, half):
+        def integrand(angle):
             return math.cos(angle) ** 2 * 2.0 / math.pi * math.log(abs(x - half * math.sin(angle)) + 1e-300)
 
         here = math.asin(max(-1.0, min(1.0, x / half)))

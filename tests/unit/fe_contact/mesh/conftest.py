@@ -1,13 +1,11 @@
 """Gears and meshes to test with."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest
 
-from fe_contact.geometry import Gear, RingGear, Toothing
-from fe_contact.mesh import GearMesh, MeshRecipe, mesh_gear
+from fe_contact.geometry import Gear, RingGear
+from fe_contact.mesh import MeshRecipe, mesh_gear
 
 SIZE = {"normal_module": 4e-3, "face_width": 25e-3}
 GEARS = {
@@ -21,7 +19,7 @@ GEARS = {
 
 
 @pytest.fixture(scope="session", params=GEARS, ids=list(GEARS))
-def gear_and_mesh(request: pytest.FixtureRequest) -> tuple[Toothing, GearMesh]:
+def gear_and_mesh(request):
     """Return a gear and its mesh, with each of the ways to close the ring, teeth outwards or inwards."""
     gear, real = GEARS[request.param]
     recipe = replace(MeshRecipe.standard(gear), flank_size=0.4e-3, real_teeth=real)

@@ -1,10 +1,7 @@
 """Laws of the mesh of a gear."""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 import pytest
@@ -13,7 +10,6 @@ from fe_contact.errors import MeshError
 from fe_contact.geometry import Gear, Toothing, ToothProfile, tooth_profile
 from fe_contact.mesh import GearMesh, MeshRecipe, gear_mesh, mesh_gear, mesh_quality, quadratic_mesh
 from fe_contact.mesh.quadratic_mesh import rotated
-from fe_contact.types import Json
 from host import ChildOutOfMemory
 
 GearAndMesh = tuple[Toothing, GearMesh]
@@ -46,7 +42,7 @@ def sides(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.unique(pairs, axis=0, return_counts=True)
 
 
-def test_area_is_that_of_the_exact_section(gear_and_mesh: GearAndMesh) -> None:
+def test_area_is_that_of_the_exact_section(gear_and_mesh):
     gear, mesh = gear_and_mesh
     plain = (gear.teeth - len(mesh.teeth)) * np.pi / gear.teeth * gear.root_radius**2
     toothed = len(mesh.teeth) * tooth_area(tooth_profile(gear)) + plain
@@ -55,7 +51,7 @@ def test_area_is_that_of_the_exact_section(gear_and_mesh: GearAndMesh) -> None:
     assert element_area(mesh.points, mesh.triangles).sum() == pytest.approx(exact, rel=4e-6)
 
 
-def test_the_mesh_is_one_ring_without_spare_nodes(gear_and_mesh: GearAndMesh) -> None:
+def test_the_mesh_is_one_ring_without_spare_nodes(gear_and_mesh):
     _, mesh = gear_and_mesh
     pairs, counts = sides(mesh.triangles)
     assert counts.max() == 2
@@ -70,7 +66,7 @@ def test_the_mesh_is_one_ring_without_spare_nodes(gear_and_mesh: GearAndMesh) ->
     assert len(np.unique(rounded, axis=0)) == len(mesh.points)
 
 
-def test_flank_nodes_lie_on_the_exact_profile_with_exact_middles(gear_and_mesh: GearAndMesh) -> None:
+def test_flank_nodes_lie_on_the_exact_profile_with_exact_middles(gear_and_mesh):
     gear, mesh = gear_and_mesh
     profile = tooth_profile(gear)
     for flank in mesh.flanks:
@@ -86,7 +82,7 @@ def test_flank_nodes_lie_on_the_exact_profile_with_exact_middles(gear_and_mesh: 
     assert s[0] <= profile.s_form - 0.25 * gear.normal_module
 
 
-def test_the_whole_surface_of_a_tooth_is_exact(gear_and_mesh: GearAndMesh) -> None:
+def test_the_whole_surface_of_a_tooth_is_exact(gear_and_mesh):
     gear, mesh = gear_and_mesh
     profile, sector = tooth_profile(gear), mesh.sector
     pairs, counts = sides(sector.triangles)
@@ -116,7 +112,7 @@ def boundary_middles(triangles: np.ndarray, free: np.ndarray) -> np.ndarray:
     return np.array(found)
 
 
-def test_bore_teeth_and_sizes_are_as_they_should(gear_and_mesh: GearAndMesh) -> None:
+def test_bore_teeth_and_sizes_are_as_they_should(gear_and_mesh):
     gear, mesh = gear_and_mesh
     radius = np.linalg.norm(mesh.points, axis=1)
     on_bore = np.flatnonzero(gear.sign * (radius - gear.seat_radius) < 1e-9)
@@ -138,13 +134,13 @@ def test_bore_teeth_and_sizes_are_as_they_should(gear_and_mesh: GearAndMesh) -> 
     assert lengths[-1] <= 1.5 * 0.02e-3
 
 
-def test_a_gear_with_fewer_teeth_than_wanted_has_all_of_them() -> None:
+def test_a_gear_with_fewer_teeth_than_wanted_has_all_of_them():
     gear = Gear(teeth=6, normal_module=4e-3, face_width=25e-3, bore_diameter=6e-3, tip_diameter=29e-3)
     mesh = mesh_gear(gear)
     assert mesh.teeth.tolist() == [-2, -1, 0, 1, 2, 3]
 
 
-def test_sectors_meshed_ahead_are_those_of_each_gear_to_the_last_bit(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_sectors_meshed_ahead_are_those_of_each_gear_to_the_last_bit(monkeypatch):
     """Four meshes of two gears from one process of gmsh; each is taken once."""
     gears = [Gear(teeth=z, normal_module=4e-3, face_width=25e-3, bore_diameter=2e-3 * z) for z in (20, 31)]
     levels = [(gear, MeshRecipe.standard(gear).refined(factor)) for gear in gears for factor in (1.0, 0.6)]
@@ -152,7 +148,7 @@ def test_sectors_meshed_ahead_are_those_of_each_gear_to_the_last_bit(monkeypatch
     processes: list[object] = []
     genuine = quadratic_mesh.ask_gmsh
 
-    def counted(request: Json, *rest: Any) -> Json:
+    def counted(request, *rest):
         processes.append(request)
         return genuine(request, *rest)
 
@@ -167,10 +163,8 @@ def test_sectors_meshed_ahead_are_those_of_each_gear_to_the_last_bit(monkeypatch
     assert len(processes) == 2
 
 
-def test_sections_that_no_mesh_is_made_of_ahead_are_left_to_gears(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    def refused(*_: object) -> Json:
+def test_sections_that_no_mesh_is_made_of_ahead_are_left_to_gears(monkeypatch):
+    def refused(*_):
         raise MeshError("no mesh")
 
     gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
@@ -183,10 +177,10 @@ def test_sections_that_no_mesh_is_made_of_ahead_are_left_to_gears(
     assert len(mesh_gear(gear, recipe).triangles)
 
 
-def test_a_mesher_without_memory_is_not_started_again(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_mesher_without_memory_is_not_started_again(monkeypatch):
     starts: list[object] = []
 
-    def devoured(*request: object) -> Json:
+    def devoured(*request):
         starts.append(request)
         raise MeshError("gmsh worker: ran out of memory") from ChildOutOfMemory("ran out of memory")
 

@@ -1,7 +1,5 @@
 """The gmsh child: triangles and blocks of quadrilaterals, and what its failures become."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from dataclasses import replace
@@ -46,7 +44,7 @@ def polygon_area(loop: np.ndarray) -> float:
     return float(0.5 * np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
 
 
-def test_fills_the_polygon_and_keeps_its_points_bit_for_bit() -> None:
+def test_fills_the_polygon_and_keeps_its_points_bit_for_bit():
     (mesh,) = triangulate([RING])
     areas = area(mesh.points, mesh.triangles)
     assert areas.min() > 0.0
@@ -59,7 +57,7 @@ def test_fills_the_polygon_and_keeps_its_points_bit_for_bit() -> None:
 
 
 @pytest.mark.law
-def test_is_deterministic_and_free_of_scale() -> None:
+def test_is_deterministic_and_free_of_scale():
     first, again = triangulate([RING, SQUARE])[0], triangulate([SQUARE, RING])[1]
     assert np.array_equal(first.points, again.points)
     assert np.array_equal(first.triangles, again.triangles)
@@ -69,7 +67,7 @@ def test_is_deterministic_and_free_of_scale() -> None:
     assert scaled.points == pytest.approx(1024.0 * first.points, rel=1e-14)
 
 
-def test_growth_thins_the_interior_out_and_clockwise_triangles_are_turned() -> None:
+def test_growth_thins_the_interior_out_and_clockwise_triangles_are_turned():
     square = np.concatenate([np.linspace(a, b, 40, endpoint=False) for a, b in SQUARE_SIDES])
     slow, fast = (len(triangulate([Region((square,), growth=g)])[0].triangles) for g in (0.05, 0.5))
     assert fast < 0.6 * slow
@@ -93,12 +91,12 @@ def test_growth_thins_the_interior_out_and_clockwise_triangles_are_turned() -> N
         ("import sys; sys.exit('std::bad_alloc')", "ran out of memory"),
     ],
 )
-def test_a_failing_child_becomes_a_mesh_error_with_the_reason(code: str, complaint: str) -> None:
+def test_a_failing_child_becomes_a_mesh_error_with_the_reason(code, complaint):
     with pytest.raises(MeshError, match=complaint):
         triangulate([SQUARE], command=(sys.executable, "-c", code))
 
 
-def test_a_child_that_hangs_is_missing_or_refuses_is_a_mesh_error(tmp_path: Path) -> None:
+def test_a_child_that_hangs_is_missing_or_refuses_is_a_mesh_error(tmp_path):
     with pytest.raises(MeshError, match=r"no answer within 0\.2 s"):
         triangulate([SQUARE], seconds=0.2, command=(sys.executable, "-c", "import time; time.sleep(60)"))
     with pytest.raises(MeshError, match="cannot be started"):
@@ -108,7 +106,7 @@ def test_a_child_that_hangs_is_missing_or_refuses_is_a_mesh_error(tmp_path: Path
         triangulate([crossed])
 
 
-def test_the_worker_leaves_signal_handlers_as_they_were() -> None:
+def test_the_worker_leaves_signal_handlers_as_they_were():
     code = (
         "import runpy, signal, sys\n"
         "def mine(number, frame): pass\n"
@@ -127,14 +125,14 @@ def test_the_worker_leaves_signal_handlers_as_they_were() -> None:
     assert run.returncode == 0, run.stderr
 
 
-def test_the_worker_finds_its_modules_where_a_hook_alone_finds_them(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_worker_finds_its_modules_where_a_hook_alone_finds_them(monkeypatch):
     paths = [path for path in sys.path if path and Path(path).resolve() != WORKER.parents[2]]
     monkeypatch.setattr(sys, "path", paths)
     (mesh,) = triangulate([SQUARE])
     assert len(mesh.triangles)
 
 
-def test_the_worker_looks_for_a_library_of_the_system_as_python_does() -> None:
+def test_the_worker_looks_for_a_library_of_the_system_as_python_does():
     code = (
         "import runpy, sys\n"
         f"worker = runpy.run_path({str(WORKER)!r})\n"
@@ -170,7 +168,7 @@ def arc_share(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     return np.concatenate([[0.0], lengths / lengths[-1]])
 
 
-def test_is_the_transfinite_interpolation_of_the_sides_bit_for_bit() -> None:
+def test_is_the_transfinite_interpolation_of_the_sides_bit_for_bit():
     (found,) = fill_blocks([BENT], 1.0)
     u = arc_share(BENT.bottom, BENT.top)[None, :, None]
     v = arc_share(BENT.left, BENT.right)[:, None, None]
@@ -204,6 +202,6 @@ def test_is_the_transfinite_interpolation_of_the_sides_bit_for_bit() -> None:
         ('{"error": "no surface"}', "no surface"),
     ],
 )
-def test_a_useless_answer_is_a_mesh_error(answer: str, cause: str) -> None:
+def test_a_useless_answer_is_a_mesh_error(answer, cause):
     with pytest.raises(MeshError, match=cause):
         fill_blocks([SQUARE_BLOCK], 1.0, command=(sys.executable, "-c", f"print('{answer}')"))

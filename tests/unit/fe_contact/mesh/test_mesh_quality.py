@@ -1,7 +1,5 @@
 """Element quality, recipes, division of curves, and meshes in files."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from dataclasses import fields, replace
@@ -10,6 +8,7 @@ from pathlib import Path
 import meshlane
 import numpy as np
 import pytest
+from repository import ROOT
 from spur_gears import GEAR
 
 from fe_contact.compliance.cache import content_hash
@@ -25,7 +24,7 @@ STRAIGHT = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5],
 ELEMENT = np.arange(6)[None, :]
 
 
-def test_a_straight_triangle_has_constant_jacobian_and_an_inverted_one_a_negative() -> None:
+def test_a_straight_triangle_has_constant_jacobian_and_an_inverted_one_a_negative():
     quality = mesh_quality(STRAIGHT * [3.0, 1.0], ELEMENT)
     assert quality.scaled_jacobian[0] == pytest.approx(1.0, abs=1e-14)
     assert quality.angle[0] == pytest.approx(np.arctan(1.0 / 3.0), rel=1e-14)
@@ -33,7 +32,7 @@ def test_a_straight_triangle_has_constant_jacobian_and_an_inverted_one_a_negativ
 
 
 @pytest.mark.parametrize("shift", [0.05, 0.2, -0.2, 0.3])
-def test_the_bound_of_a_curved_element_is_below_its_sampled_jacobian(shift: float) -> None:
+def test_the_bound_of_a_curved_element_is_below_its_sampled_jacobian(shift):
     nodes = STRAIGHT.copy()
     nodes[3, 1] += shift
     xi, eta = np.meshgrid(np.linspace(0.0, 1.0, 101), np.linspace(0.0, 1.0, 101))
@@ -47,7 +46,7 @@ def test_the_bound_of_a_curved_element_is_below_its_sampled_jacobian(shift: floa
     assert (found < 0.0) == (shift > 0.25)
 
 
-def test_the_bound_holds_for_any_element() -> None:
+def test_the_bound_holds_for_any_element():
     generator = np.random.default_rng(7)
     xi, eta = np.meshgrid(np.linspace(0.0, 1.0, 41), np.linspace(0.0, 1.0, 41))
     inside = xi + eta <= 1.0 + 1e-12
@@ -69,7 +68,7 @@ def test_the_bound_holds_for_any_element() -> None:
     assert below_every_node > 10  # values at the nodes alone would be no bound
 
 
-def test_what_cannot_be_meshed_well_is_refused_by_element_and_limit() -> None:
+def test_what_cannot_be_meshed_well_is_refused_by_element_and_limit():
     gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
     with pytest.raises(
         MeshError, match=r"tooth sector: element \d+ at .* mm: least angle .* deg is below 59 deg"
@@ -88,11 +87,10 @@ def test_what_cannot_be_meshed_well_is_refused_by_element_and_limit() -> None:
         with_mid_side_nodes([Outline((Piece("all", nodes),))], straight)
 
 
-ROOT = Path(__file__).parents[4]
 STANDARD = MeshRecipe.standard(GEAR)
 
 
-def test_refinement_divides_sizes_and_keeps_teeth_and_margin() -> None:
+def test_refinement_divides_sizes_and_keeps_teeth_and_margin():
     fine = replace(STANDARD, real_teeth=5).refined(2.0)
     for name in ("flank_size", "tip_size", "fillet_size", "body_size", "growth"):
         assert getattr(fine, name) == pytest.approx(0.5 * getattr(STANDARD, name), rel=1e-15)
@@ -101,7 +99,7 @@ def test_refinement_divides_sizes_and_keeps_teeth_and_margin() -> None:
     assert twice.flank_size == pytest.approx(STANDARD.refined(4.0).flank_size, rel=1e-15)
 
 
-def test_every_field_changes_the_hash_in_every_process() -> None:
+def test_every_field_changes_the_hash_in_every_process():
     changed = {
         field.name: replace(STANDARD, **{field.name: 7 if field.name == "real_teeth" else 0.9 * value})
         for field in fields(STANDARD)
@@ -119,7 +117,7 @@ def test_every_field_changes_the_hash_in_every_process() -> None:
 
 
 @pytest.mark.parametrize(("start", "end"), [(0.0, 1.0), (2.0, -1.0)])
-def test_ends_are_exact_and_parts_follow_the_size(start: float, end: float) -> None:
+def test_ends_are_exact_and_parts_follow_the_size(start, end):
     ends = divide(start, end, lambda t: 0.01 + 0.1 * np.abs(t - end))
     assert (ends[0], ends[-1]) == (start, end)
     lengths = np.abs(np.diff(ends))
@@ -129,7 +127,7 @@ def test_ends_are_exact_and_parts_follow_the_size(start: float, end: float) -> N
     assert np.all(lengths <= 1.001 * wanted)
 
 
-def test_parts_are_whole_and_spread_from_their_sources() -> None:
+def test_parts_are_whole_and_spread_from_their_sources():
     assert divide(0.0, 1.0, lambda t: np.full_like(t, 5.0)).tolist() == [0.0, 1.0]
     assert len(divide(0.0, 1.0, lambda t: np.full_like(t, 0.1))) == 11
     size = spread(np.array([[0.0, 0.0], [10.0, 0.0]]), np.array([0.1, 1.0]), growth=0.2, largest=1.5)
@@ -145,7 +143,7 @@ def export(mesh: GearMesh, path: Path) -> None:
     write_cells(path, points, mesh.triangles, of_points, {"tooth": cell_teeth(mesh).astype(float)})
 
 
-def test_round_trip_but_of_no_other_suffix(tmp_path: Path, gear_and_mesh: tuple[Gear, GearMesh]) -> None:
+def test_round_trip_but_of_no_other_suffix(tmp_path, gear_and_mesh):
     _, mesh = gear_and_mesh
     export(mesh, tmp_path / "gear.vtu")
     back = meshlane.read(tmp_path / "gear.vtu")

@@ -1,7 +1,5 @@
 """The transverse section of a tooth sector: exact profile, matching cuts, good elements on odd gears."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -51,7 +49,7 @@ ODD: dict[str, Toothing] = {
 
 @pytest.mark.drawn
 @pytest.mark.parametrize("name", ODD)
-def test_elements_of_odd_gears_are_good(name: str) -> None:
+def test_elements_of_odd_gears_are_good(name):
     for recipe in (SectorRecipe.draft(ODD[name]), SectorRecipe.fine(ODD[name])):
         section = quad_sector(ODD[name], recipe)
         quality = quad_quality(section.points, section.grid.quads)
@@ -61,7 +59,7 @@ def test_elements_of_odd_gears_are_good(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["20 teeth", "undercut", "helix 45", "ring"])
-def test_nodes_are_on_the_exact_outline(name: str) -> None:
+def test_nodes_are_on_the_exact_outline(name):
     profile, recipe = tooth_profile(ODD[name]), SectorRecipe.standard(ODD[name])
     section = quad_sector(ODD[name], recipe)
     grid, points, s = section.grid, section.points, section.s
@@ -81,7 +79,7 @@ def test_nodes_are_on_the_exact_outline(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["20 teeth", "ring"])
-def test_the_left_cut_turned_by_a_pitch_is_the_right_one(name: str) -> None:
+def test_the_left_cut_turned_by_a_pitch_is_the_right_one(name):
     section = quad_sector(ODD[name], SectorRecipe.draft(ODD[name]))
     left, right = section.points[section.grid.left], section.points[section.grid.right]
     angle = 2.0 * np.pi / ODD[name].teeth
@@ -90,7 +88,7 @@ def test_the_left_cut_turned_by_a_pitch_is_the_right_one(name: str) -> None:
 
 
 @pytest.mark.parametrize("subject", [gear(17, bore=30e-3), ring(50, rim=230e-3)], ids=["gear", "ring"])
-def test_the_section_has_the_area_of_the_gear(subject: Toothing) -> None:
+def test_the_section_has_the_area_of_the_gear(subject):
     """By Green's theorem along the exact outline of one pitch; elements counter-clockwise."""
     section = quad_sector(subject, SectorRecipe.fine(subject))
     profile, half = tooth_profile(subject), np.pi / subject.teeth
@@ -102,7 +100,7 @@ def test_the_section_has_the_area_of_the_gear(subject: Toothing) -> None:
     ring = quads[:, [0, 4, 1, 5, 2, 6, 3, 7]]
     a, m, b = (section.points[ring[:, (np.arange(4) * 2 + i) % 8]] for i in range(3))
 
-    def cross(p: np.ndarray, q: np.ndarray) -> float:
+    def cross(p, q):
         return float(np.sum(p[..., 0] * q[..., 1] - p[..., 1] * q[..., 0]))
 
     assert (4 * cross(a, m) + 4 * cross(m, b) - cross(a, b)) / 6.0 == pytest.approx(
@@ -110,7 +108,7 @@ def test_the_section_has_the_area_of_the_gear(subject: Toothing) -> None:
     )  # sides are parabolas
 
 
-def test_quality_of_known_quadrilaterals_and_a_poor_element_is_named() -> None:
+def test_quality_of_known_quadrilaterals_and_a_poor_element_is_named():
     with pytest.raises(MeshError, match=r"sector section: element \d+ at .* mm: corner angle"):
         quad_sector(gear(), SectorRecipe.draft(gear()), QualityLimits(angle=math.radians(80.0)))
     corners = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]])
@@ -130,7 +128,7 @@ def test_quality_of_known_quadrilaterals_and_a_poor_element_is_named() -> None:
     assert quality.scaled_jacobian[2] < 0.0
 
 
-def test_grid_is_a_t_of_conforming_quadrilaterals() -> None:
+def test_grid_is_a_t_of_conforming_quadrilaterals():
     grid = SectorGrid(body_rows=3, tooth_rows=4, land=2, across=5)
     assert len(grid.quads) == 3 * 9 + 4 * 5
     assert grid.nodes == grid.corner.sum() + len(

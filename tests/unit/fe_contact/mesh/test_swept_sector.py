@@ -1,7 +1,5 @@
 """Layers and numbering of a swept tooth sector, and meshes of gears with rim, web and hub."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from itertools import pairwise
@@ -32,7 +30,7 @@ DRAFT = SectorRecipe.draft(SPUR)
 @pytest.mark.parametrize(
     ("count", "group", "growth"), [(1, 1, 1.5), (2, 2, 1.5), (8, 2, 1.5), (18, 2, 1.5), (12, 4, 2.0)]
 )
-def test_layers_fill_the_face_symmetrically(count: int, group: int, growth: float) -> None:
+def test_layers_fill_the_face_symmetrically(count, group, growth):
     layers = layers_across(25e-3, count, group, growth)
     assert (layers.ends[0], layers.ends[-1]) == (-12.5e-3, 12.5e-3)
     assert np.array_equal(layers.ends, -layers.ends[::-1])
@@ -44,7 +42,7 @@ def test_layers_fill_the_face_symmetrically(count: int, group: int, growth: floa
         assert np.diff(layers.ends).max() / np.diff(layers.ends)[0] == pytest.approx(growth)
 
 
-def test_half_a_face_slides_on_mid_face_and_is_finest_at_its_end() -> None:
+def test_half_a_face_slides_on_mid_face_and_is_finest_at_its_end():
     layers = layers_to_mid_face(25e-3, 3, 8.0)
     assert (layers.ends[0], layers.ends[-1]) == (0.0, 12.5e-3)
     thickness = np.diff(layers.ends)
@@ -60,7 +58,7 @@ def test_half_a_face_slides_on_mid_face_and_is_finest_at_its_end() -> None:
     assert np.array_equal(half.freedoms[above] >= 0, whole.freedoms[above] >= 0)
 
 
-def test_nodes_are_where_serendipity_elements_have_them() -> None:
+def test_nodes_are_where_serendipity_elements_have_them():
     sector = swept_sector(GRID, 25e-3, replace(DRAFT, layers=2, merge_rows=()))
     corners = GRID.corner.sum()
     assert sector.nodes.max() + 1 == 3 * GRID.nodes + 2 * corners
@@ -74,7 +72,7 @@ def test_nodes_are_where_serendipity_elements_have_them() -> None:
 
 
 @pytest.mark.parametrize("rows", [(-1,), (-2,), (-1, -3)])
-def test_merged_layers_leave_no_node_of_their_own(rows: tuple[int, ...]) -> None:
+def test_merged_layers_leave_no_node_of_their_own(rows):
     whole = swept_sector(GRID, 25e-3, replace(DRAFT, layers=8, merge_rows=()))
     merged = swept_sector(GRID, 25e-3, replace(DRAFT, layers=8, merge_rows=rows))
     assert merged.elements.min() >= 0
@@ -90,7 +88,7 @@ def test_merged_layers_leave_no_node_of_their_own(rows: tuple[int, ...]) -> None
     assert halves.count(-1) == halves.count(1) == sum(4 >> i for i in range(len(rows)))
 
 
-def test_cuts_and_flank_name_matching_freedoms() -> None:
+def test_cuts_and_flank_name_matching_freedoms():
     sector = swept_sector(GRID, 25e-3, replace(DRAFT, layers=4))
     node_of = np.full(sector.size, -1)
     free = sector.freedoms >= 0
@@ -107,7 +105,7 @@ def test_cuts_and_flank_name_matching_freedoms() -> None:
     assert sector.flank[5] == sector.freedoms[sector.nodes[p, GRID.flank[c]], 0]
 
 
-def test_supports_hold_what_they_say_and_recipes_follow_the_gear() -> None:
+def test_supports_hold_what_they_say_and_recipes_follow_the_gear():
     recipe = replace(DRAFT, layers=1, merge_rows=())
     clamped = swept_sector(GRID, 1e-3, recipe, ClampedBore())
     strain = swept_sector(GRID, 1e-3, recipe, PlaneStrain())
@@ -139,7 +137,7 @@ WEB_DRAFT = SectorRecipe.draft(SOLID)
 
 @pytest.mark.parametrize("breaks", [(-3e-3,), (-10e-3, 10e-3), (3e-3, 4e-3), (-19.9e-3, 1e-3)])
 @pytest.mark.parametrize("group", [1, 2])
-def test_groups_of_layers_end_at_the_breaks(breaks: tuple[float, ...], group: int) -> None:
+def test_groups_of_layers_end_at_the_breaks(breaks, group):
     layers = layers_across(40e-3, 8, group, 1.5, breaks)
     assert (layers.ends[0], layers.ends[-1]) == (-20e-3, 20e-3)
     assert np.diff(layers.ends) == pytest.approx(layers.thickness[layers.kind], rel=1e-9)
@@ -152,7 +150,7 @@ def test_groups_of_layers_end_at_the_breaks(breaks: tuple[float, ...], group: in
     assert np.diff(layers.ends).max() < 1.3 * np.diff(layers_across(40e-3, 8, group, 1.5).ends).max()
 
 
-def test_half_a_face_is_half_of_the_web() -> None:
+def test_half_a_face_is_half_of_the_web():
     middle = replace(WEBBED, blank=replace(BLANK, web_offset=0.0))
     recipe = replace(WEB_DRAFT, merge_rows=(), half_face=True)
     grid = quad_sector(middle, recipe).grid
@@ -188,12 +186,12 @@ def volume(sector: SweptSector, areas: np.ndarray) -> float:
 
 
 @pytest.mark.parametrize("rows", [(), (-1,), (-2,), (-3, -6)])
-def test_the_web_takes_away_what_the_drawing_takes_away(rows: tuple[int, ...]) -> None:
+def test_the_web_takes_away_what_the_drawing_takes_away(rows):
     recipe = replace(WEB_DRAFT, merge_rows=rows)
     section = quad_sector(WEBBED, recipe)
     areas = section_areas(section.points, section.grid.quads)
     solid, webbed = (swept_sector(section.grid, 40e-3, recipe, web=web) for web in (None, WEBBED.web))
-    ring = math.pi * (WEBBED.web.outer_radius**2 - 25e-3**2) / 30  # type: ignore[union-attr]
+    ring = math.pi * (WEBBED.web.outer_radius**2 - 25e-3**2) / 30
     missing = volume(solid, areas) - volume(webbed, areas)
     assert missing == pytest.approx(ring * (40e-3 - 9e-3), rel=1e-5)
     assert webbed.elements.min() >= 0
@@ -203,16 +201,16 @@ def test_the_web_takes_away_what_the_drawing_takes_away(rows: tuple[int, ...]) -
     assert len(webbed.left) == len(webbed.right) < len(solid.left) * 1.3
 
 
-def test_rows_of_elements_end_at_rim_and_hub_of_a_web_of_any_width() -> None:
+def test_rows_of_elements_end_at_rim_and_hub_of_a_web_of_any_width():
     grid = (section := quad_sector(WEBBED, WEB_DRAFT)).grid
     low, high = grid.web_rows
     radii = np.linalg.norm(section.points[grid.number[:, 0][: 2 * grid.body_rows + 1]], axis=1)
-    assert radii[2 * (grid.body_rows + high)] == pytest.approx(WEBBED.web.outer_radius, rel=1e-12)  # type: ignore[union-attr]
+    assert radii[2 * (grid.body_rows + high)] == pytest.approx(WEBBED.web.outer_radius, rel=1e-12)
     assert radii[2 * (grid.body_rows + low)] == pytest.approx(25e-3, rel=1e-12)
     assert radii[0] == pytest.approx(15e-3, rel=1e-12)
     assert quad_sector(SOLID, WEB_DRAFT).grid.web_rows == (0, 0)
     grid = quad_sector(WEBBED, WEB_DRAFT).grid
-    full = replace(WEBBED.web, low=-20e-3, high=20e-3)  # type: ignore[type-var]
+    full = replace(WEBBED.web, low=-20e-3, high=20e-3)
     solid, webbed = (swept_sector(grid, 40e-3, WEB_DRAFT, web=web) for web in (None, full))
     assert webbed.size == solid.size
     assert len(webbed.elements) == len(solid.elements)
@@ -223,15 +221,13 @@ def test_rows_of_elements_end_at_rim_and_hub_of_a_web_of_any_width() -> None:
 
 @pytest.mark.parametrize("hub", [None, 50e-3])
 @pytest.mark.parametrize("real", [None, 5])
-def test_plane_elements_are_as_thick_as_their_ring(hub: float | None, real: int | None) -> None:
+def test_plane_elements_are_as_thick_as_their_ring(hub, real):
     gear = replace(SOLID, blank=replace(BLANK, hub_diameter=hub, web_offset=0.0))
     recipe = replace(MeshRecipe.standard(gear), flank_size=0.4e-3, real_teeth=real)
     mesh = mesh_gear(gear, recipe)
-    assert mesh.hub is not None
     points = mesh.hub.points[mesh.hub.triangles]
     radius = np.linalg.norm(points[:, :3].mean(axis=1), axis=1)
     web = gear.web
-    assert web is not None
     inside = (radius < web.outer_radius) & (radius > web.inner_radius)
     assert mesh.hub.thickness[inside] == pytest.approx(9.0 / 40.0, rel=1e-12)
     assert (mesh.hub.thickness[~inside] == 1.0).all()

@@ -1,7 +1,5 @@
 """Errors of largest pressure, K_Hbeta and root stress of a design cover finer discretizations of it."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -9,13 +7,11 @@ import numpy as np
 import pytest
 from spur_gears import LONG_RELIEFS
 
-from fe_contact import Gear, GearPair
+from fe_contact import AnalysisOptions, Gear, GearPair, Limits, Run, Scatter
 from fe_contact.microgeometry.confirmed_figures import REMAINING, confirmed_figures
 from fe_contact.microgeometry.design_study import DesignSpace, design_study
 from fe_contact.microgeometry.evaluator import Evaluator
-from fe_contact.microgeometry.objective import Limits
-from fe_contact.microgeometry.scatter import NO_SCATTER, Scatter
-from fe_contact.options import AnalysisOptions, Run
+from fe_contact.microgeometry.scatter import NO_SCATTER
 from model_studies.stage_clock import StageClock
 
 ON_FLANKS = "pressure", "face_load_factor"
@@ -39,7 +35,7 @@ def spur(level: str, positions: int) -> Evaluator:
 
 @pytest.mark.law
 @pytest.mark.usefixtures("coarse_sectors")
-def test_errors_cover_more_slices_and_positions() -> None:
+def test_errors_cover_more_slices_and_positions():
     rough = helical()
     contact = rough.contact
     fewer = replace(rough, contact=contact.in_slices(contact.plan.discretization.slices // 2))
@@ -54,7 +50,7 @@ def test_errors_cover_more_slices_and_positions() -> None:
 
 
 @pytest.mark.law
-def test_errors_of_a_draft_in_the_plane_cover_finer_meshes() -> None:
+def test_errors_of_a_draft_in_the_plane_cover_finer_meshes():
     stated = confirmed_figures(spur("draft", 64), {}, None)
     finer = spur("fine", 256).evaluate({})
     for name in REMAINING:
@@ -65,6 +61,6 @@ def test_errors_of_a_draft_in_the_plane_cover_finer_meshes() -> None:
     assert stated.face_load_factor_error.max() < 1e-12  # a plane has no face
 
 
-def test_without_confirmation_no_error_is_told() -> None:
+def test_without_confirmation_no_error_is_told():
     figures = spur("draft", 16).evaluate({})
     assert all(np.all(np.isnan(getattr(figures, f"{name}_error"))) for name in REMAINING)

@@ -1,7 +1,5 @@
 """Designs kept on disk: a search that was stopped finds the same, and pays only for the rest."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -10,15 +8,10 @@ import pytest
 from analysis_requests import design_request
 from spur_gears import PAIR
 
-from fe_contact import GearPair
+from fe_contact import DesignVariable, GearPair, Limits, Optimization, Run, Search, optimize
 from fe_contact.microgeometry.evaluator import Evaluator
-from fe_contact.microgeometry.objective import Limits, WeightedMean, Worst
-from fe_contact.microgeometry.optimization import Optimization
-from fe_contact.microgeometry.optimize import optimize
-from fe_contact.microgeometry.search import Search
+from fe_contact.microgeometry.objective import WeightedMean, Worst
 from fe_contact.microgeometry.search_methods import Cancel, DifferentialEvolution, never
-from fe_contact.microgeometry.variables import DesignVariable
-from fe_contact.options import Run
 
 FREE = (
     DesignVariable("pinion.profile_crowning", 0.0, 2e-5),
@@ -28,11 +21,11 @@ SEARCH = Search(DifferentialEvolution(), evaluations=60, positions=24, explorati
 
 
 @pytest.fixture
-def solved(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+def solved(monkeypatch):
     """Contact solves of designs, counted."""
     count, evaluate = [0], Evaluator.evaluate
 
-    def counted(self: Evaluator, values: Any) -> Any:
+    def counted(self, values):
         count[0] += 1
         return evaluate(self, values)
 
@@ -47,12 +40,12 @@ def run(pair: GearPair, memory: Path | None, cancel: Cancel = never, **further: 
 
 
 @pytest.mark.law
-def test_a_stopped_search_goes_on_where_it_was(tmp_path: Path, solved: list[int]) -> None:
+def test_a_stopped_search_goes_on_where_it_was(tmp_path, solved):
     plain = run(PAIR, None)
     whole, solved[0] = solved[0], 0
     asked = [0]
 
-    def cancel() -> bool:
+    def cancel():
         asked[0] += 1
         return asked[0] > 40
 
@@ -66,7 +59,7 @@ def test_a_stopped_search_goes_on_where_it_was(tmp_path: Path, solved: list[int]
     assert whole - 44 <= solved[0] <= whole - 39  # those before the stop, and its best in full, were known
 
 
-def test_more_evaluations_go_on_from_fewer(tmp_path: Path, solved: list[int]) -> None:
+def test_more_evaluations_go_on_from_fewer(tmp_path, solved):
     run(PAIR, tmp_path)
     solved[0] = 0
     run(PAIR, tmp_path)
@@ -76,7 +69,7 @@ def test_more_evaluations_go_on_from_fewer(tmp_path: Path, solved: list[int]) ->
     assert confirming < solved[0] < confirming + 60
 
 
-def test_what_is_assessed_otherwise_is_not_taken(tmp_path: Path, solved: list[int]) -> None:
+def test_what_is_assessed_otherwise_is_not_taken(tmp_path, solved):
     few = replace(SEARCH, evaluations=30)
     run(PAIR, tmp_path, search=few)
     for further in (
@@ -88,7 +81,7 @@ def test_what_is_assessed_otherwise_is_not_taken(tmp_path: Path, solved: list[in
         assert solved[0] >= 30, further
 
 
-def test_half_a_record_and_a_spoiled_one_are_left_out(tmp_path: Path, solved: list[int]) -> None:
+def test_half_a_record_and_a_spoiled_one_are_left_out(tmp_path, solved):
     whole = run(PAIR, tmp_path)
     (file,) = tmp_path.glob("designs-*.bin")
     text = file.read_bytes()
@@ -112,7 +105,7 @@ def test_half_a_record_and_a_spoiled_one_are_left_out(tmp_path: Path, solved: li
     assert again.optimum.values == whole.optimum.values
 
 
-def test_a_directory_that_cannot_be_written_costs_nothing(tmp_path: Path) -> None:
+def test_a_directory_that_cannot_be_written_costs_nothing(tmp_path):
     (tmp_path / "file").write_text("in the way", encoding="utf-8")
     found = run(PAIR, tmp_path / "file" / "searches", search=replace(SEARCH, evaluations=5))
     assert found.evaluations == 5

@@ -1,7 +1,5 @@
 """Pairs within a class on bodies in memory: no tolerance, no band; the band of a tolerance Monte Carlo."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 
@@ -28,13 +26,13 @@ CORNERS = {"corner_contact": "on"}
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 
 def bodies_of(pair: GearPair, cache: Path) -> CondensedPair:
     choice = {"level": "draft", "model": "plane_strain", "receipt": "minimal", "positions": 64}
-    table = analyze(pair, torques=[TORQUE], cache=cache, effects=CORNERS, **choice)  # type: ignore[arg-type]
+    table = analyze(pair, torques=[TORQUE], cache=cache, effects=CORNERS, **choice)
     found = condensed_pair(pair, table, CORNERS, cache)
     assert found is not None
     return found
@@ -48,7 +46,7 @@ def band_of(bodies: CondensedPair, tolerances: Tolerances) -> RippleBand:
 
 
 @pytest.mark.law
-def test_without_a_tolerance_the_band_has_no_width_and_is_the_curve(cache: Path) -> None:
+def test_without_a_tolerance_the_band_has_no_width_and_is_the_curve(cache):
     bodies = bodies_of(PAIR, cache)
     band = band_of(
         bodies, Tolerances(modification={"pinion.profile_slope": 1e-15, "wheel.tip_relief": 1e-15})
@@ -65,7 +63,7 @@ def test_without_a_tolerance_the_band_has_no_width_and_is_the_curve(cache: Path)
 
 @pytest.mark.law
 @pytest.mark.parametrize("tolerance_class", [5, 7])
-def test_the_band_is_that_of_a_tolerance_study_within_its_error(cache: Path, tolerance_class: int) -> None:
+def test_the_band_is_that_of_a_tolerance_study_within_its_error(cache, tolerance_class):
     tolerances = iso1328_tolerances(PAIR, tolerance_class, across_face=False)
     spread = band_of(bodies_of(PAIR, cache), tolerances).peak_to_peak
     options = AnalysisOptions(level="draft", model="plane_strain", effects=CORNERS)
@@ -78,7 +76,7 @@ def test_the_band_is_that_of_a_tolerance_study_within_its_error(cache: Path, tol
         assert abs(end - whole) < np.hypot(spread.error, bounds)
 
 
-def test_teeth_that_differ_and_effects_that_are_off_are_refused(cache: Path) -> None:
+def test_teeth_that_differ_and_effects_that_are_off_are_refused(cache):
     tolerances = iso1328_tolerances(PAIR, 6, across_face=True)
     with pytest.raises(InputError, match="effects of the flanks are off"):
         DrawnRipple.of(bodies_of(PAIR, cache), PAIR, TORQUE, tolerances)

@@ -1,7 +1,5 @@
 """The amplitude of one harmonic as an objective, and designs on the grid of a drawing."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -9,16 +7,13 @@ import pytest
 from analysis_requests import design_request
 from spur_gears import LONG_RELIEFS
 
-from fe_contact import analyze
+from fe_contact import DesignVariable, Estimate, Search, analyze, optimize
 from fe_contact.errors import InputError
 from fe_contact.microgeometry.conclusion import level_change
 from fe_contact.microgeometry.objective import HarmonicAmplitude, Worst
 from fe_contact.microgeometry.optimization import Outcome
-from fe_contact.microgeometry.optimize import optimize
-from fe_contact.microgeometry.search import Search
 from fe_contact.microgeometry.search_methods import NelderMead
-from fe_contact.microgeometry.variables import DesignVariable, modified
-from fe_contact.types import Estimate
+from fe_contact.microgeometry.variables import modified
 
 TORQUE, HARMONIC = 200.0, 2
 DRAFT: dict[str, Any] = {"level": "draft", "model": "plane_strain"}
@@ -30,7 +25,7 @@ GRID = {variable.name: np.arange(0.0, 60.1e-6, STEP) for variable in FREE}
 @pytest.mark.law
 @pytest.mark.parametrize("period", [1, 3])
 @pytest.mark.parametrize("even", [True, False])
-def test_the_curve_of_a_harmonic_spans_its_amplitude(period: int, *, even: bool) -> None:
+def test_the_curve_of_a_harmonic_spans_its_amplitude(period, *, even):
     position = np.arange(64) / 64
     if not even:
         position = np.sort(np.concatenate([position, np.linspace(0.303, 0.397, 40)]))
@@ -52,17 +47,17 @@ def test_the_curve_of_a_harmonic_spans_its_amplitude(period: int, *, even: bool)
         (Estimate(99e-9, 1e-9, "m"), ""),
     ],
 )
-def test_the_change_of_a_level_has_the_errors_of_both_amplitudes(after: Estimate, said: str) -> None:
+def test_the_change_of_a_level_has_the_errors_of_both_amplitudes(after, said):
     assert level_change(Estimate(100e-9, 1e-9, "m"), after) == said
 
 
-def test_a_harmonic_that_no_curve_has_is_refused() -> None:
+def test_a_harmonic_that_no_curve_has_is_refused():
     with pytest.raises(InputError, match=r"objective\.harmonic"):
         HarmonicAmplitude(0, Worst()).check(1)
 
 
 @pytest.mark.law
-def test_the_search_lowers_the_harmonic_and_ends_on_the_grid_of_the_drawing() -> None:
+def test_the_search_lowers_the_harmonic_and_ends_on_the_grid_of_the_drawing():
     search = Search(NelderMead(), evaluations=80, positions=32)
     request = design_request(
         LONG_RELIEFS,

@@ -1,7 +1,5 @@
 """Designs in three dimensions of a misaligned pair: symmetries, loads of unlike misalignment."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace
@@ -63,7 +61,7 @@ def searched(
     return problem.values(run.coordinates), run
 
 
-def test_every_node_is_a_whole_table_of_the_pair_made_so() -> None:
+def test_every_node_is_a_whole_table_of_the_pair_made_so():
     scatter = Scatter(4e-6, {"wheel.helix_slope": 5e-6, RELIEF: 2e-6}, GaussHermite(2))
     assessed = evaluator(HELICAL, SKEW, scatter)
     found = assessed.evaluate(DESIGN)
@@ -82,7 +80,7 @@ def test_every_node_is_a_whole_table_of_the_pair_made_so() -> None:
         assert found.pressure[node, 0] == pytest.approx(largest, rel=1e-12, abs=0.0)
 
 
-def test_mirrored_in_everything_a_design_is_as_good() -> None:
+def test_mirrored_in_everything_a_design_is_as_good():
     one = evaluator(HELICAL, SKEW).evaluate(DESIGN)
     mirrored = evaluator(helical(-1), -SKEW)
     two = mirrored.evaluate(DESIGN | {SLOPE: -DESIGN[SLOPE]})
@@ -93,7 +91,7 @@ def test_mirrored_in_everything_a_design_is_as_good() -> None:
 
 
 @pytest.mark.nightly
-def test_mirrored_hand_and_misalignment_give_the_mirrored_design() -> None:
+def test_mirrored_hand_and_misalignment_give_the_mirrored_design():
     crowning, scatter = DesignVariable(CROWNING, 0.0, 20e-6), Scatter(5e-6, rule=GaussHermite(3))
     right, left = (
         searched(
@@ -113,7 +111,7 @@ def test_mirrored_hand_and_misalignment_give_the_mirrored_design() -> None:
 
 
 @pytest.mark.law
-def test_the_helix_slope_takes_up_a_fixed_misalignment_of_straight_teeth() -> None:
+def test_the_helix_slope_takes_up_a_fixed_misalignment_of_straight_teeth():
     """Both open the flanks linearly over the face, so the best slope moves by the misalignment."""
     straight, misaligned = (
         searched(
@@ -129,7 +127,7 @@ def test_the_helix_slope_takes_up_a_fixed_misalignment_of_straight_teeth() -> No
     )
 
 
-def test_crowning_that_evens_the_load_grows_with_the_scatter() -> None:
+def test_crowning_that_evens_the_load_grows_with_the_scatter():
     """It costs ripple: the least that keeps the face load factor at every node is taken."""
     found = [
         searched(
@@ -146,7 +144,7 @@ def test_crowning_that_evens_the_load_grows_with_the_scatter() -> None:
     assert found[0][1].assessed.objective < found[1][1].assessed.objective
 
 
-def test_a_misaligned_pair_is_assessed_by_whole_tables() -> None:
+def test_a_misaligned_pair_is_assessed_by_whole_tables():
     free = [DesignVariable(SLOPE, -30e-6, 30e-6), DesignVariable("wheel.profile_crowning", 0.0, 20e-6)]
     best = optimize(
         design_request(
@@ -189,7 +187,7 @@ def evaluator_of_loads(
 
 
 @pytest.mark.law
-def test_every_load_is_assessed_as_it_is_alone() -> None:
+def test_every_load_is_assessed_as_it_is_alone():
     scatter = Scatter(4e-6, rule=GaussHermite(2))
     together = evaluator_of_loads(HELICAL, TORQUES, SKEWS, scatter)
     whole = linearized(together, OF_LEAD, (SLOPE, CROWNING), LIMITS)
@@ -204,7 +202,7 @@ def test_every_load_is_assessed_as_it_is_alone() -> None:
         np.testing.assert_allclose(whole.curves[:, :, [k]], alone.curves, rtol=1e-6, atol=1e-8)
 
 
-def test_the_order_of_the_loads_is_that_of_the_figures() -> None:
+def test_the_order_of_the_loads_is_that_of_the_figures():
     """Loads, weights and misalignments in another order: the same figures in that order, one objective."""
     one = evaluator_of_loads(HELICAL, TORQUES, SKEWS)
     order = np.array([2, 0, 3, 1])
@@ -219,7 +217,7 @@ def test_the_order_of_the_loads_is_that_of_the_figures() -> None:
 
 
 @pytest.mark.law
-def test_helix_slope_and_misalignment_of_straight_teeth_add_up_at_every_load() -> None:
+def test_helix_slope_and_misalignment_of_straight_teeth_add_up_at_every_load():
     """Both open the flanks linearly over the face: a slope of minus the misalignment levels that load."""
     tilted = evaluator_of_loads(SPUR, TORQUES, SKEWS).evaluate(OF_LEAD)
     straight = evaluator_of_loads(SPUR, [100.0, 200.0, 300.0], [0.0])
@@ -234,7 +232,6 @@ def test_helix_slope_and_misalignment_of_straight_teeth_add_up_at_every_load() -
 def optimized(
     pair: GearPair, torques: list[float], misalignment: float | list[float], **further: Any
 ) -> Optimization:
-    """Search the helix slope, at draft."""
     search = Search(NelderMead(), evaluations=further.pop("evaluations", 12), positions=POSITIONS)
     free = [DesignVariable(SLOPE, -30e-6, 30e-6)]
     request = design_request(
@@ -244,7 +241,7 @@ def optimized(
 
 
 @pytest.mark.nightly
-def test_equal_misalignments_give_the_bits_of_one_for_all() -> None:
+def test_equal_misalignments_give_the_bits_of_one_for_all():
     torques, further = [150.0, 300.0], {"map_torques": [200.0], "evaluations": 2}
     one, listed = (RUN.figures(optimized(HELICAL, torques, skew, **further)) for skew in (8e-6, [8e-6, 8e-6]))
     for result in (one, listed):
@@ -255,13 +252,13 @@ def test_equal_misalignments_give_the_bits_of_one_for_all() -> None:
 
 
 @pytest.fixture(scope="module")
-def found() -> Optimization:
+def found():
     torques, skews, weights = [150.0, 300.0, 300.0], [4e-6, -6e-6, 12e-6], WeightedMean((1.0, 2.0, 3.0))
     return optimized(HELICAL, torques, skews, objective=weights, map_torques=[200.0])
 
 
 @pytest.mark.nightly
-def test_every_load_is_confirmed_by_an_analysis_at_its_misalignment(found: Optimization) -> None:
+def test_every_load_is_confirmed_by_an_analysis_at_its_misalignment(found):
     harris = found.optimum.harris_map
     assert harris.torque.tolist() == [150.0, 200.0, 300.0, 300.0]
     skews = [4e-6, 4e-6 - 10e-6 / 3.0, -6e-6, 12e-6]  # between its neighbors, that which only the map shows
@@ -278,7 +275,7 @@ def test_every_load_is_confirmed_by_an_analysis_at_its_misalignment(found: Optim
 
 
 @pytest.mark.parametrize("weights", [(1.0, 0.0), (3.0, 1.0), (1.0, 1.0), (1.0, 3.0)])
-def test_the_best_slope_is_the_compromise_of_the_loads_by_their_weights(weights: tuple[float, float]) -> None:
+def test_the_best_slope_is_the_compromise_of_the_loads_by_their_weights(weights):
     """About minus the misalignment of a load alone, less by what the tilt does along the line of action.
 
     Of two loads it is between theirs and on the side of the heavier one. No slope of a scan is better.

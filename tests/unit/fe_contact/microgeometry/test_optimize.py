@@ -1,7 +1,5 @@
 """Optimized micro-geometry against scans, known trends, and the analysis that assesses it in the end."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterable
 from dataclasses import replace
@@ -22,7 +20,6 @@ from fe_contact.microgeometry.search import Search
 from fe_contact.microgeometry.search_methods import NelderMead
 from fe_contact.microgeometry.variables import DesignVariable, modified
 from fe_contact.options import AnalysisOptions, Run
-from fe_contact.types import FloatArray
 from model_studies.stage_clock import StageClock
 
 TORQUE = 200.0
@@ -47,12 +44,12 @@ def searched(
 
 
 @pytest.fixture(scope="module")
-def found() -> Optimization:
+def found():
     return searched(search=FEW)
 
 
 @pytest.mark.law
-def test_no_design_of_a_fine_scan_is_better(found: Optimization) -> None:
+def test_no_design_of_a_fine_scan_is_better(found):
     names = [one.name for one in AMOUNTS]
     varied = dict.fromkeys(names, 30e-6), Scatter(), 0.0, FEW.positions
     space = DesignSpace(LONG_RELIEFS, *varied, AnalysisOptions(**DRAFT))
@@ -65,7 +62,7 @@ def test_no_design_of_a_fine_scan_is_better(found: Optimization) -> None:
     assert found.runs[0].assessed.objective > 0.5 * min(scan)  # the scan is fine
 
 
-def test_it_is_assessed_by_what_analyze_finds(found: Optimization) -> None:
+def test_it_is_assessed_by_what_analyze_finds(found):
     for design in (found.start, found.optimum):
         made = modified(LONG_RELIEFS, design.values)
         assessed = analyze(made, torques=[TORQUE], **DRAFT).peak_to_peak(torque=TORQUE)
@@ -74,7 +71,7 @@ def test_it_is_assessed_by_what_analyze_finds(found: Optimization) -> None:
         assert design.objective.error == pytest.approx(assessed.error, rel=1e-2, abs=0.0)
 
 
-def test_a_relieved_spur_pair_loses_most_of_its_ripple_alike_on_both_gears(found: Optimization) -> None:
+def test_a_relieved_spur_pair_loses_most_of_its_ripple_alike_on_both_gears(found):
     assert found.outcome is Outcome.IMPROVED
     assert found.gain.error < 0.15 * found.gain.value  # the finite width counts at both ends
     assert found.start.objective.value > 4.0 * found.optimum.objective.value
@@ -93,7 +90,7 @@ def test_a_relieved_spur_pair_loses_most_of_its_ripple_alike_on_both_gears(found
 
 
 @pytest.mark.law
-def test_optimum_relief_is_the_deflection_at_the_load_and_grows_with_it(found: Optimization) -> None:
+def test_optimum_relief_is_the_deflection_at_the_load_and_grows_with_it(found):
     """Harris's rule: long linear reliefs about as deep as the teeth give way at the design load."""
     half = TORQUE / 2.0
     light = searched(torque=half, search=FEW)
@@ -107,7 +104,7 @@ def test_optimum_relief_is_the_deflection_at_the_load_and_grows_with_it(found: O
     assert reliefs[1] > 1.8 * reliefs[0]
 
 
-def test_wider_bounds_never_end_worse(found: Optimization) -> None:
+def test_wider_bounds_never_end_worse(found):
     narrow = [replace(one, low=5e-6, high=9e-6) for one in AMOUNTS]
     held = searched(narrow)
     assert all(v.low <= held.optimum.values[v.name] <= v.high for v in held.variables)
@@ -121,7 +118,7 @@ def test_wider_bounds_never_end_worse(found: Optimization) -> None:
     )
 
 
-def test_edges_count_where_a_design_of_the_bounds_reaches_them() -> None:
+def test_edges_count_where_a_design_of_the_bounds_reaches_them():
     """Reliefs at the middle of the bounds keep edges apart, those at the lower bounds do not."""
     low, high = (
         design_request(LONG_RELIEFS, [TORQUE], [replace(one, low=low) for one in AMOUNTS], **DRAFT).space
@@ -132,7 +129,7 @@ def test_edges_count_where_a_design_of_the_bounds_reaches_them() -> None:
 
 
 @pytest.mark.law
-def test_equal_seeds_give_equal_results(found: Optimization) -> None:
+def test_equal_seeds_give_equal_results(found):
     again, other = (searched(search=replace(FEW, seed=seed)) for seed in (FEW.seed, 7))
     assert again.optimum.values == found.optimum.values
     assert again.optimum.objective == found.optimum.objective
@@ -140,7 +137,7 @@ def test_equal_seeds_give_equal_results(found: Optimization) -> None:
     assert other.optimum.objective.value == pytest.approx(found.optimum.objective.value, rel=0.02)
 
 
-def test_the_best_of_all_starts_is_taken() -> None:
+def test_the_best_of_all_starts_is_taken():
     search = Search(NelderMead(), starts=3, evaluations=60, positions=32)
     best = searched(FREE, PAIR, search=search)
     reached = [run.assessed.objective for run in best.runs]
@@ -150,7 +147,7 @@ def test_the_best_of_all_starts_is_taken() -> None:
     assert ("all its evaluations" in best.reason) is not best.runs[best.best_run].converged
 
 
-def test_tip_edges_can_be_kept_from_contact_and_pressures_low(found: Optimization) -> None:
+def test_tip_edges_can_be_kept_from_contact_and_pressures_low(found):
     assert found.start.figures.edge_load_share.max() > 0.05  # before A and after E
     limits = Limits(edge_load_share=0.0)
     small = [replace(one, high=12e-6) for one in AMOUNTS]
@@ -167,7 +164,7 @@ def test_tip_edges_can_be_kept_from_contact_and_pressures_low(found: Optimizatio
     assert (held.outcome is Outcome.LIMITS_EXCEEDED) == (held.optimum.violation > 0.005)
 
 
-def test_a_root_stress_that_no_relief_reaches_is_told(found: Optimization) -> None:
+def test_a_root_stress_that_no_relief_reaches_is_told(found):
     """One tooth carries all at the outer point of single contact, whatever the reliefs are."""
     assert np.all(np.isnan(found.start.figures.root_stress))
     limits = Limits(root_stress=130e6)
@@ -182,7 +179,7 @@ def test_a_root_stress_that_no_relief_reaches_is_told(found: Optimization) -> No
 
 
 @pytest.mark.law
-def test_a_gain_smaller_than_the_errors_is_not_claimed() -> None:
+def test_a_gain_smaller_than_the_errors_is_not_claimed():
     tiny = [DesignVariable("pinion.profile_slope", -1e-10, 1e-10)]
     best = searched(tiny, PAIR)
     assert best.outcome in (Outcome.WITHIN_ERROR, Outcome.NOT_IMPROVED)
@@ -190,7 +187,7 @@ def test_a_gain_smaller_than_the_errors_is_not_claimed() -> None:
     assert "the variables have no influence" in best.reason
 
 
-def test_bounds_that_leave_the_start_out_are_told() -> None:
+def test_bounds_that_leave_the_start_out_are_told():
     """The start is the pair as it is, though no design of the search may be like it."""
     good = {one.name: 8e-6 for one in AMOUNTS}
     poor = [replace(one, low=30e-6, high=31e-6) for one in AMOUNTS]
@@ -203,10 +200,10 @@ def test_bounds_that_leave_the_start_out_are_told() -> None:
     )
 
 
-def test_an_interrupted_search_gives_the_best_so_far_in_full(found: Optimization) -> None:
+def test_an_interrupted_search_gives_the_best_so_far_in_full(found):
     asked = [0]
 
-    def cancel() -> bool:
+    def cancel():
         asked[0] += 1
         return asked[0] > 61  # once before the start
 
@@ -219,17 +216,17 @@ def test_an_interrupted_search_gives_the_best_so_far_in_full(found: Optimization
     assert abs(best.optimum.objective.value - assessed.value) <= assessed.error
 
 
-def test_few_positions_explore_as_well_as_many(found: Optimization) -> None:
+def test_few_positions_explore_as_well_as_many(found):
     assert found.runs[0].explored > 0
     full = searched(search=replace(FEW, exploration=FEW.positions))
     reached = found.runs[0].assessed.objective
     assert reached == pytest.approx(full.runs[0].assessed.objective, rel=0.01, abs=0.0)
 
 
-def test_objectives_differ_over_loads() -> None:
+def test_objectives_differ_over_loads():
     torques = [80.0, 240.0]
 
-    def best(objective: Any) -> FloatArray:
+    def best(objective):
         both: dict[str, Any] = {"objective": objective, "map_torques": torques}
         result = optimize(design_request(LONG_RELIEFS, torques, AMOUNTS, search=QUICK, **both, **DRAFT))
         return result.optimum.harris_map.expected
@@ -239,7 +236,7 @@ def test_objectives_differ_over_loads() -> None:
     assert worst.max() < min(light.max(), heavy.max())
 
 
-def test_the_map_runs_over_all_torques() -> None:
+def test_the_map_runs_over_all_torques():
     once = Search(NelderMead(), evaluations=2, positions=16)
     best = optimize(design_request(PAIR, [100.0, 200.0], FREE, search=once, **DRAFT))
     harris = best.optimum.harris_map

@@ -1,7 +1,5 @@
 """Scatter, tolerances of ISO 1328-1:2013 (formulas 7 and 10, by hand) and loads with a misalignment each."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from itertools import pairwise
@@ -10,16 +8,15 @@ import numpy as np
 import pytest
 from spur_gears import PAIR
 
-from fe_contact import Gear, GearPair, analyze
+from fe_contact import AnalysisOptions, Gear, GearPair, Run, Scatter, analyze
 from fe_contact.errors import InputError
 from fe_contact.geometry.flank_tolerances import helix_slope_tolerance, profile_slope_tolerance, rounded
 from fe_contact.microgeometry.design_loads import DesignLoads, misalignment_axis, snapped_to_axis
 from fe_contact.microgeometry.design_study import DesignSpace, design_study
 from fe_contact.microgeometry.evaluator import Evaluator
-from fe_contact.microgeometry.scatter import GaussHermite, Scatter, SobolSample
+from fe_contact.microgeometry.scatter import GaussHermite, SobolSample
 from fe_contact.microgeometry.tolerances import iso1328_tolerances
 from fe_contact.microgeometry.variables import modified
-from fe_contact.options import AnalysisOptions, Run
 from model_studies.stage_clock import StageClock
 
 SLOPE, CROWNING = "pinion.profile_slope", "wheel.profile_crowning"
@@ -32,7 +29,7 @@ def evaluator(pair: GearPair, scatter: Scatter, model: str, varied: tuple[str, .
 
 
 @pytest.mark.parametrize("points", [1, 2, 5])
-def test_gauss_hermite_is_exact_to_its_degree(points: int) -> None:
+def test_gauss_hermite_is_exact_to_its_degree(points):
     place, weight = GaussHermite(points).nodes(1)
     for degree in range(0, 2 * points, 2):
         exact = math.prod(range(degree - 1, 0, -2))
@@ -40,7 +37,7 @@ def test_gauss_hermite_is_exact_to_its_degree(points: int) -> None:
         assert abs(weight @ place[:, 0] ** (degree + 1)) < 1e-12 * max(exact, 1)
 
 
-def test_nodes_and_samples_have_the_moments_of_the_scatter() -> None:
+def test_nodes_and_samples_have_the_moments_of_the_scatter():
     nodes = Scatter(1e-5, {CROWNING: 2e-6, SLOPE: 4e-6}, GaussHermite(3)).nodes()
     assert nodes.names == ("misalignment", SLOPE, CROWNING)
     assert nodes.weight.sum() == pytest.approx(1.0, rel=1e-14)
@@ -60,14 +57,14 @@ def test_nodes_and_samples_have_the_moments_of_the_scatter() -> None:
 
 
 @pytest.mark.parametrize(("points", "dimensions"), [(5, 1), (5, 3), (5, 4), (4, 5), (1, 11)])
-def test_every_rule_has_one_to_tell_its_error_by(points: int, dimensions: int) -> None:
+def test_every_rule_has_one_to_tell_its_error_by(points, dimensions):
     rule = GaussHermite(points)
     place, weight = rule.finer(dimensions).nodes(dimensions)
     assert place.shape == (weight.size, dimensions) and weight.size <= 1024
     assert weight.size != rule.nodes(dimensions)[1].size
 
 
-def test_every_node_is_the_pair_as_it_comes_out() -> None:
+def test_every_node_is_the_pair_as_it_comes_out():
     """Two deviations at once, against whole tables of pairs made so; crowning does not become negative."""
     assessed = evaluator(PAIR, Scatter(0.0, {SLOPE: 5e-6, CROWNING: 3e-6}, GaussHermite(2)), "plane_strain")
     found = assessed.evaluate({CROWNING: 2e-6})
@@ -81,7 +78,7 @@ def test_every_node_is_the_pair_as_it_comes_out() -> None:
     assert assessed.expected(found)[0] == pytest.approx(found.peak_to_peak.mean(), rel=1e-12, abs=0.0)
 
 
-def test_a_symmetric_pair_is_as_loud_misaligned_either_way() -> None:
+def test_a_symmetric_pair_is_as_loud_misaligned_either_way():
     assessed = evaluator(PAIR, Scatter(20e-6, rule=GaussHermite(3)), "3d", ("pinion.helix_crowning",))
     plain = assessed.evaluate({})
     left, aligned, right = plain.peak_to_peak[:, 0]
@@ -120,9 +117,7 @@ def gear_of(module_mm: float, teeth: int, width_mm: float, helix_deg: float = 0.
         (gear_of(3, 39, 25, 26), 6, 7.5, 9.0),
     ],
 )
-def test_tolerances_are_those_of_the_formulas(
-    gear: Gear, tolerance_class: int, profile_um: float, helix_um: float
-) -> None:
+def test_tolerances_are_those_of_the_formulas(gear, tolerance_class, profile_um, helix_um):
     assert 1e6 * profile_slope_tolerance(gear, tolerance_class) == pytest.approx(profile_um, rel=1e-12)
     assert 1e6 * helix_slope_tolerance(gear, tolerance_class) == pytest.approx(helix_um, rel=1e-12)
 
@@ -140,11 +135,11 @@ def test_tolerances_are_those_of_the_formulas(
         (10.5, 11.0),
     ],
 )
-def test_rounding_is_to_tenths_halves_and_whole_micrometers(exact: float, told: float) -> None:
+def test_rounding_is_to_tenths_halves_and_whole_micrometers(exact, told):
     assert rounded(exact) == told
 
 
-def test_a_tolerance_grows_with_every_class_and_what_it_is_of() -> None:
+def test_a_tolerance_grows_with_every_class_and_what_it_is_of():
     gear = gear_of(4, 20, 25)
     for tolerance in (profile_slope_tolerance, helix_slope_tolerance):
         widths = [tolerance(gear, grade) for grade in range(1, 12)]
@@ -171,7 +166,7 @@ def test_a_tolerance_grows_with_every_class_and_what_it_is_of() -> None:
         (gear_of(4, 20, 25, 46), "pinion.helix_angle"),
     ],
 )
-def test_beyond_its_range_the_standard_has_no_tolerance(gear: Gear, field: str) -> None:
+def test_beyond_its_range_the_standard_has_no_tolerance(gear, field):
     mate = replace(gear, helix_angle=-gear.helix_angle)
     pair = GearPair(gear, mate, 2.0 * gear.reference_radius)
     with pytest.raises(InputError, match="give your own figures") as caught:
@@ -185,7 +180,7 @@ LOADS = [100.0, 200.0, 200.0, 400.0]
 SKEWS = [4e-6, 8e-6, -2e-6, 20e-6]
 
 
-def test_misalignments_are_of_every_load_and_between_those_of_neighbors() -> None:
+def test_misalignments_are_of_every_load_and_between_those_of_neighbors():
     for one in (8e-6, [8e-6], np.array(8e-6)):
         assert DesignLoads.of([100.0, 300.0], one).misalignment.tolist() == [8e-6, 8e-6]
     loads, own = DesignLoads.of(LOADS, SKEWS).with_torques([50.0, 150.0, 200.0, 300.0, 500.0])
@@ -197,7 +192,7 @@ def test_misalignments_are_of_every_load_and_between_those_of_neighbors() -> Non
     np.testing.assert_array_equal(again.misalignment, loads.misalignment)
 
 
-def test_a_table_has_every_misalignment_once() -> None:
+def test_a_table_has_every_misalignment_once():
     """A sum and the number it should be differ in the last bit: an axis through both would have no slope."""
     skews, away = np.array([4.1e-6, 12.3e-6]), np.array([8.2e-6, -8.2e-6])
     assert skews[0] + away[0] != skews[1]

@@ -12,16 +12,17 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
+from fe_contact import DesignVariable, Estimate, Limits, Run, Search
 from fe_contact.microgeometry import best_design as choice
 from fe_contact.microgeometry.conclusion import outcome_and_reason
 from fe_contact.microgeometry.confirmation import HarrisMap, rising
 from fe_contact.microgeometry.counted_merit import Budget
 from fe_contact.microgeometry.design_problem import Assessed, DesignProblem
 from fe_contact.microgeometry.linear_program import LinearMerit
-from fe_contact.microgeometry.objective import Limits, Objective, WeightedMean, Worst
+from fe_contact.microgeometry.objective import Objective, WeightedMean, Worst
 from fe_contact.microgeometry.optimization import Outcome
 from fe_contact.microgeometry.optimize import _search_one, search_all
-from fe_contact.microgeometry.search import Ended, Search, SearchRun, search_from
+from fe_contact.microgeometry.search import Ended, SearchRun, search_from
 from fe_contact.microgeometry.search_methods import (
     EXPLORED,
     DifferentialEvolution,
@@ -29,9 +30,7 @@ from fe_contact.microgeometry.search_methods import (
     SequentialLinearProgramming,
     StagedLinearProgramming,
 )
-from fe_contact.microgeometry.variables import DesignVariable
-from fe_contact.options import Run
-from fe_contact.types import Estimate, FloatArray
+from fe_contact.types import FloatArray
 from model_studies.stage_clock import StageClock
 from model_studies.workers import ByExecutor, InProcess, RunCost, WorkersLost, dispatch
 
@@ -86,17 +85,16 @@ def searched(bowl: Bowl, search: Search, cancel: Callable[[], bool] | None = Non
     return search_from(cast(DesignProblem, bowl), search, START, 0, cancel=cancel)
 
 
-def test_evolution_explores_roughly_and_a_simplex_settles_it() -> None:
+def test_evolution_explores_roughly_and_a_simplex_settles_it():
     bowl = Bowl()
     run = searched(bowl, Search(EVOLUTION, seed=1, evaluations=3000))
     assert run.ended is Ended.CONVERGED and run.converged
     np.testing.assert_allclose(run.coordinates, BOTTOM, atol=2e-3)  # not the bottom of the rough one
-    assert bowl.roughened is not None
     assert run.explored == len(bowl.roughened.seen) > 0.5 * run.evaluations
     assert run.evaluations == len(bowl.seen) + len(bowl.roughened.seen)
 
 
-def test_the_simplex_keeps_its_part_of_the_designs() -> None:
+def test_the_simplex_keeps_its_part_of_the_designs():
     run = searched(Bowl(), Search(EVOLUTION, seed=1, evaluations=200))
     assert run.explored + 1 == int(EXPLORED * 200)  # the start is assessed in full
     assert run.evaluations == 200 and run.ended is Ended.SPENT
@@ -107,12 +105,11 @@ def test_the_simplex_keeps_its_part_of_the_designs() -> None:
 STAGED = StagedLinearProgramming(sample=16, trials=3)
 
 
-def test_stages_follow_every_start_roughly_and_settle_the_best_in_full() -> None:
+def test_stages_follow_every_start_roughly_and_settle_the_best_in_full():
     bowl = Bowl()
     run = searched(bowl, Search(STAGED, seed=1))
     assert run.ended is Ended.CONVERGED and len(run.ends) == 1 + STAGED.trials
     np.testing.assert_allclose(run.coordinates, BOTTOM, atol=0.02)  # a bowl is flat at its bottom
-    assert bowl.roughened is not None
     assert run.explored == len(bowl.roughened.seen) > 3 * len(bowl.seen)
 
 
@@ -137,19 +134,19 @@ class Valleys(Bowl):
         return Valleys(self.bottom)
 
 
-def test_stages_leave_the_valley_of_the_start_for_a_deeper_one_and_say_that_starts_differ() -> None:
+def test_stages_leave_the_valley_of_the_start_for_a_deeper_one_and_say_that_starts_differ():
     run = searched(Valleys(), Search(STAGED, seed=1))
     np.testing.assert_allclose(run.coordinates, BOTTOM, atol=0.02)
     assert max(run.ends) == pytest.approx(1.1, abs=1e-3) and min(run.ends) < 1.01
 
 
-def test_stages_end_with_what_the_designs_reach() -> None:
+def test_stages_end_with_what_the_designs_reach():
     for evaluations in (1, 2, 5, 20, 40):
         run = searched(Bowl(), Search(STAGED, seed=1, evaluations=evaluations))
         assert run.evaluations <= evaluations and np.isfinite(run.assessed.objective)
 
 
-def test_programmes_follow_the_best_of_a_sample() -> None:
+def test_programmes_follow_the_best_of_a_sample():
     bowl = Bowl()
     run = searched(bowl, Search(SequentialLinearProgramming(sample=32, trials=2), seed=1))
     assert run.ended is Ended.CONVERGED and run.explored == 32
@@ -165,7 +162,7 @@ def test_programmes_follow_the_best_of_a_sample() -> None:
 
 @pytest.mark.parametrize("method", [DifferentialEvolution(), NelderMead(), SequentialLinearProgramming()])
 @pytest.mark.parametrize("evaluations", [1, 2, 3])
-def test_a_search_of_hardly_any_design_keeps_the_best(method: Any, evaluations: int) -> None:
+def test_a_search_of_hardly_any_design_keeps_the_best(method, evaluations):
     bowl = Bowl()
     run = searched(bowl, Search(method, evaluations=evaluations))
     assert run.ended is Ended.SPENT and run.evaluations == evaluations
@@ -173,10 +170,10 @@ def test_a_search_of_hardly_any_design_keeps_the_best(method: Any, evaluations: 
 
 
 @pytest.mark.parametrize("after", [1, 20, 150])
-def test_a_cancelled_search_keeps_the_best_so_far(after: int) -> None:
+def test_a_cancelled_search_keeps_the_best_so_far(after):
     bowl, asked = Bowl(), [0]
 
-    def cancel() -> bool:
+    def cancel():
         asked[0] += 1
         return asked[0] > after
 
@@ -188,7 +185,7 @@ def test_a_cancelled_search_keeps_the_best_so_far(after: int) -> None:
         assert told.objective < Bowl().assess(START).objective
 
 
-def test_interrupted_in_a_worker_it_gives_what_it_has() -> None:
+def test_interrupted_in_a_worker_it_gives_what_it_has():
     """A Ctrl-C reaches the processes of a pool too."""
     search = Search(NelderMead(), evaluations=500)
     bowl = Bowl(interrupt_at=30)
@@ -212,7 +209,7 @@ class Failing:
             yield function(shared, item)
 
 
-def test_starts_that_have_ended_survive_an_interruption() -> None:
+def test_starts_that_have_ended_survive_an_interruption():
     search = Search(NelderMead(), starts=4, evaluations=60)
     every = search_all(
         cast(DesignProblem, Bowl()), search, tuple(START), Run(workers=InProcess()), lambda: False
@@ -220,7 +217,7 @@ def test_starts_that_have_ended_survive_an_interruption() -> None:
     assert len(every) == 4
     asked = [0]
 
-    def once_one_ended() -> bool:
+    def once_one_ended():
         asked[0] += 1
         return asked[0] > 1
 
@@ -237,7 +234,7 @@ def test_starts_that_have_ended_survive_an_interruption() -> None:
 
 
 @pytest.mark.parametrize("workers", [InProcess(), Failing(0)])
-def test_cancelled_before_the_first_design_the_start_is_left(workers: Any) -> None:
+def test_cancelled_before_the_first_design_the_start_is_left(workers):
     (run,) = search_all(
         cast(DesignProblem, Bowl()), Search(), tuple(START), Run(workers=workers), lambda: True
     )
@@ -251,7 +248,7 @@ def test_cancelled_before_the_first_design_the_start_is_left(workers: Any) -> No
     [SequentialLinearProgramming(sample=4, trials=2), StagedLinearProgramming(sample=4, trials=2)],
     ids=["each", "staged"],
 )
-def test_walks_by_others_end_for_the_same_reason(method: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_walks_by_others_end_for_the_same_reason(method, monkeypatch):
     """Whatever the number of designs: also where a walk by itself ends with the last of them."""
     monkeypatch.setattr(dispatch, "START_SECONDS", -1.0)
     with ThreadPoolExecutor(1) as one, ThreadPoolExecutor(2) as two:
@@ -287,9 +284,7 @@ class Interrupted:
 
 
 @pytest.mark.parametrize("after", [1, 3, 6])
-def test_a_start_whose_workers_are_interrupted_keeps_the_best_so_far(
-    after: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_start_whose_workers_are_interrupted_keeps_the_best_so_far(after, monkeypatch):
     monkeypatch.setattr(dispatch, "START_SECONDS", -1.0)
     bowl, workers = cast(DesignProblem, Bowl()), Interrupted(after)
     search = Search(SequentialLinearProgramming(sample=4, trials=2))
@@ -317,17 +312,15 @@ VARIABLE = DesignVariable("pinion.profile_slope", -1e-6, 1e-6)
 @pytest.mark.parametrize(
     ("exceeded", "rounds"), [([0.0], 0), ([0.02, 0.0], 1), ([0.02, 0.01, 0.001], 2), ([0.02] * 9, 3)]
 )
-def test_positions_of_every_analysis_join_until_the_limits_are_kept(
-    exceeded: list[float], rounds: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_positions_of_every_analysis_join_until_the_limits_are_kept(exceeded, rounds, monkeypatch):
     searched: list[list[float]] = []
     confirmed = iter([(0.0, 0.9), *((violation, 0.1 * k) for k, violation in enumerate(exceeded, 1))])
 
-    def confirm(*_: Any) -> Any:
+    def confirm(*_):
         violation, place = next(confirmed)
         return SimpleNamespace(violation=violation, harris_map=SimpleNamespace(position=np.array([place])))
 
-    def search_from(problem: DesignProblem, *_: Any, **__: Any) -> SearchRun:
+    def search_from(problem, *_, **__):
         searched.append(problem.evaluator.position.tolist())
         return CONVERGED
 
@@ -360,7 +353,7 @@ def harris(*ripples: float) -> HarrisMap:
 def concluded(after: HarrisMap, objective: float = 0.2, violation: float = 0.0) -> tuple[Outcome, str]:
     """Return the conclusion of a search from 0.042, 0.2 and 0.3 µm."""
 
-    def design(table: HarrisMap, value: float, over: float = 0.0) -> Any:
+    def design(table, value, over=0.0):
         return SimpleNamespace(
             harris_map=table, objective=Estimate(value * UM, 0.01 * UM, "m"), violation=over
         )
@@ -379,13 +372,11 @@ BEFORE = harris(0.042, 0.2, 0.3)
     ("after", "worse"),
     [((0.042, 0.1, 0.2), []), ((0.0619, 0.1, 0.2), []), ((0.0621, 0.1, 0.2), [0]), ((0.1, 0.3, 0.2), [0, 1])],
 )
-def test_a_ripple_rises_if_it_does_by_more_than_both_errors(
-    after: tuple[float, ...], worse: list[int]
-) -> None:
+def test_a_ripple_rises_if_it_does_by_more_than_both_errors(after, worse):
     assert rising(BEFORE, harris(*after)).tolist() == worse
 
 
-def test_the_reason_names_the_torques_that_get_worse() -> None:
+def test_the_reason_names_the_torques_that_get_worse():
     outcome, reason = concluded(harris(0.123, 0.25, 0.2))
     assert outcome is Outcome.IMPROVED
     assert "falls by 0.1 µm" in reason
@@ -394,7 +385,7 @@ def test_the_reason_names_the_torques_that_get_worse() -> None:
 
 
 @pytest.mark.parametrize(("objective", "violation"), [(0.3, 0.0), (0.2, 0.5)])
-def test_it_does_so_whatever_the_outcome(objective: float, violation: float) -> None:
+def test_it_does_so_whatever_the_outcome(objective, violation):
     _, reason = concluded(harris(0.123, 0.1, 0.2), objective, violation)
     assert "it rises at 20 N m" in reason
 
@@ -444,7 +435,7 @@ def test_objectives_are_the_largest_of_their_rows():
 
 
 @pytest.mark.law
-def test_the_part_done_is_that_of_a_usual_search_not_that_of_all_designs_allowed() -> None:
+def test_the_part_done_is_that_of_a_usual_search_not_that_of_all_designs_allowed():
     told: list[float] = []
     budget = Budget(1000, lambda: False, told.append, 50.0)
     for _ in range(80):

@@ -1,7 +1,5 @@
 """Orders beside the mesh of pairs as made: what one tooth does, and which pairs are above a limit."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -28,7 +26,7 @@ from fe_contact.microgeometry.drawn_teeth import (
     iso1328_tooth_tolerances,
 )
 from fe_contact.microgeometry.evaluator import Evaluator
-from fe_contact.microgeometry.order_limit import OrderLimit, PairsAbove
+from fe_contact.microgeometry.order_limit import OrderLimit
 from fe_contact.microgeometry.scatter import ONE_NODE
 from fe_contact.microgeometry.sidebands_above import MadePairs, ToothPassing, lines_of_pairs
 from fe_contact.microgeometry.tolerance_study import (
@@ -38,7 +36,7 @@ from fe_contact.microgeometry.tolerance_study import (
     sampled,
     scatter,
 )
-from fe_contact.microgeometry.tolerances import Distribution, Tolerances, iso1328_tolerances
+from fe_contact.microgeometry.tolerances import Tolerances, iso1328_tolerances
 from fe_contact.options import AnalysisOptions, Run
 from lineofaction.gearbox.studies.scatter.run import order_limit
 from model_studies.stage_clock import StageClock
@@ -54,7 +52,7 @@ KINDS = [name for name in TEETH.widths if name != RUN_OUT]
 
 
 @pytest.fixture(scope="module")
-def designed() -> Evaluator:
+def designed():
     request = ToleranceRequest(PAIR, TORQUES, ALIKE, Sampling(positions=POSITIONS), OPTIONS, 0.0)
     study = design_study(request.space, TORQUES, [], StageClock(), Run(), request.checked)
     return replace(study.evaluator, nodes=ONE_NODE)
@@ -73,9 +71,7 @@ def only(drawn: DrawnTeeth, names: Sequence[str], scale: float) -> DrawnTeeth:
 
 @pytest.mark.parametrize("gear", ["pinion", "wheel"])
 @pytest.mark.parametrize("name", [*KINDS, RUN_OUT])
-def test_small_deviations_make_orders_as_told_to_first_order(
-    designed: Evaluator, gear: str, name: str
-) -> None:
+def test_small_deviations_make_orders_as_told_to_first_order(designed, gear, name):
     """Amplitude and phase of shaft order and sidebands, by each deviation alone, against all pitches solved.
 
     A slope also moves the point at which teeth touch along the flank, which is left out.
@@ -92,7 +88,7 @@ def test_small_deviations_make_orders_as_told_to_first_order(
 
 
 @pytest.mark.parametrize("gear", ["pinion", "wheel"])
-def test_wobble_makes_orders_where_the_load_is_off_mid_face(gear: str) -> None:
+def test_wobble_makes_orders_where_the_load_is_off_mid_face(gear):
     """Against all pitches solved, 1e-2; none of an even spur pair, whose load stays at mid-face.
 
     Two turns beside a mesh order it makes none.
@@ -118,7 +114,7 @@ def test_wobble_makes_orders_where_the_load_is_off_mid_face(gear: str) -> None:
     assert scale[0.0] < 1e-6 and scale[3e-5] > 0.01
 
 
-def test_the_mate_changes_an_order_by_squares_alone(designed: Evaluator) -> None:
+def test_the_mate_changes_an_order_by_squares_alone(designed):
     """A sideband of the pinion is that of its own teeth: small deviations of the wheel leave it."""
     drawn = only(TEETH.drawn(1, seed=2), [PITCH], 1e-3)
     mate = iso1328_tooth_tolerances(PAIR, "wheel", 6, across_face=False).drawn(1, seed=4)
@@ -133,9 +129,7 @@ def test_the_mate_changes_an_order_by_squares_alone(designed: Evaluator) -> None
 @pytest.mark.law
 @pytest.mark.parametrize("teeth", [12, 23, 67])
 @pytest.mark.parametrize("distribution", ["normal", "uniform"])
-def test_pitches_of_teeth_that_are_out_of_center_are_within_the_class(
-    teeth: int, distribution: Distribution
-) -> None:
+def test_pitches_of_teeth_that_are_out_of_center_are_within_the_class(teeth, distribution):
     gear = replace(PINION, teeth=teeth, profile_shift_coefficient=0.3, bore_diameter=5e-3)
     tolerances = iso1328_tooth_tolerances(
         replace(PAIR, pinion=gear, center_distance=None), "pinion", 6, distribution=distribution
@@ -153,7 +147,7 @@ def test_pitches_of_teeth_that_are_out_of_center_are_within_the_class(
 
 @pytest.mark.law
 @pytest.mark.parametrize("teeth", [18, 23])
-def test_pitches_that_accumulate_keep_their_single_ones(teeth: int) -> None:
+def test_pitches_that_accumulate_keep_their_single_ones(teeth):
     """The mean square of a single pitch is that of teeth each out of place by itself, less 1/z of the part.
 
     Where all of a pitch accumulates, neighboring pitches are as independent as a closed circle lets them be;
@@ -175,7 +169,7 @@ def test_pitches_that_accumulate_keep_their_single_ones(teeth: int) -> None:
             assert np.mean(np.ptp(place, axis=1)) > 2.0 * np.mean(np.ptp(own, axis=1)) / np.sqrt(teeth)
 
 
-def test_two_drawings_of_one_sequence_are_independent() -> None:
+def test_two_drawings_of_one_sequence_are_independent():
     """Teeth that follow others' dimensions have nothing to do with them, nor with the flanks in common."""
     first, second = TEETH.drawn(512, 1), TEETH.drawn(512, 1, after=TEETH.dimensions)
     slope = ALIKE.sample(512, 1)[:, 0]
@@ -191,7 +185,7 @@ def test_two_drawings_of_one_sequence_are_independent() -> None:
     assert abs(axis) < 0.02, "a sequence fills a plane more evenly than chance does"
 
 
-def test_teeth_are_within_their_class() -> None:
+def test_teeth_are_within_their_class():
     for distribution in ("normal", "uniform"):
         drawn = replace(TEETH, distribution=distribution).drawn(200, seed=1)
         pitches = drawn.by_tooth[PITCH]
@@ -207,7 +201,7 @@ def test_teeth_are_within_their_class() -> None:
     np.testing.assert_array_equal(first.by_tooth[PITCH], more.by_tooth[PITCH][:3])
 
 
-def test_what_all_teeth_have_in_common_is_not_drawn_twice() -> None:
+def test_what_all_teeth_have_in_common_is_not_drawn_twice():
     """Squares of the part in common and of the rest add up to the tolerance; all of it in common: no rest."""
     every = iso1328_tooth_tolerances(PAIR, "wheel", 6, across_face=True)
     assert set(every.widths) == {RUN_OUT, PITCH}
@@ -226,13 +220,13 @@ def study_of(limit: OrderLimit, teeth: ToothTolerances = TEETH) -> ToleranceStud
 
 
 @pytest.fixture(scope="module")
-def above() -> PairsAbove:
+def above():
     found = study_of(SIDEBAND).above
     assert found is not None
     return found
 
 
-def test_a_limit_beside_the_mesh_counts_pairs_solved_over_a_revolution(above: PairsAbove) -> None:
+def test_a_limit_beside_the_mesh_counts_pairs_solved_over_a_revolution(above):
     np.testing.assert_array_equal(above.share, (above.amplitude > SIDEBAND.amplitude).mean(axis=0))
     assert above.amplitude.shape == (500, 2) and 0.0 < above.share.max() < 1.0
     assert np.all((above.low <= above.share) & (above.share <= above.high))
@@ -250,7 +244,7 @@ def test_a_limit_beside_the_mesh_counts_pairs_solved_over_a_revolution(above: Pa
     np.testing.assert_allclose(above.amplitude[0], line, rtol=1e-9)
 
 
-def test_what_decides_of_an_order_is_what_makes_it(above: PairsAbove) -> None:
+def test_what_decides_of_an_order_is_what_makes_it(above):
     """Run-out makes the first order of a shaft, by its amount; pitches and flanks a sideband."""
     assert above.names == TEETH.names and above.total[0] == above.first_order[0] == 0.0
     # a smaller run-out leaves pitches more room in their class
@@ -259,7 +253,6 @@ def test_what_decides_of_an_order_is_what_makes_it(above: PairsAbove) -> None:
         and above.cured[0] > above.cured.min()
     )
     turning = study_of(OrderLimit(0, 4e-6, "pinion", 1)).above
-    assert turning is not None
     assert turning.decides == turning.cure == 0 and turning.total[0] > 0.9
     eccentric = np.abs(TEETH.drawn(500, 3, after=1).by_axis[RUN_OUT])
     # pitches that accumulate have a part in it
@@ -281,16 +274,14 @@ def test_what_decides_of_an_order_is_what_makes_it(above: PairsAbove) -> None:
         ({"run_out": RunOut(1e-6)}, SIDEBAND, "limit.gear"),
     ],
 )
-def test_orders_that_drawn_teeth_cannot_make_are_refused(
-    changes: dict[str, Any], limit: OrderLimit, field: str
-) -> None:
+def test_orders_that_drawn_teeth_cannot_make_are_refused(changes, limit, field):
     pair = replace(PAIR, wheel=replace(WHEEL, **changes))
     with pytest.raises(InputError) as refused:
         limit.check(pair, POSITIONS)
     assert refused.value.field == field
 
 
-def test_teeth_that_are_alike_make_no_sideband() -> None:
+def test_teeth_that_are_alike_make_no_sideband():
     with pytest.raises(InputError, match="teeth are alike"):
         scatter(PAIR, TORQUES, ALIKE, Sampling(positions=POSITIONS), OPTIONS, limit=SIDEBAND)
 
@@ -304,7 +295,7 @@ def test_teeth_that_are_alike_make_no_sideband() -> None:
         ("pinion 11=0.2um", OrderLimit(0, 2e-7, "pinion", 11), "pinion 11"),
     ],
 )
-def test_limits_are_written_as_orders_are_named(text: str, limit: OrderLimit, name: str) -> None:
+def test_limits_are_written_as_orders_are_named(text, limit, name):
     found = order_limit(text)
     assert (found.order, found.gear, found.turns) == (limit.order, limit.gear, limit.turns)
     assert found.amplitude == pytest.approx(limit.amplitude) and found.name == name

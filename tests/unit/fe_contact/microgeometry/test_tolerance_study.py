@@ -1,10 +1,7 @@
 """Tolerance Monte Carlo and sweeps: every sample and point is the pair analyzed alone."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,13 +14,7 @@ from fe_contact.errors import InputError
 from fe_contact.microgeometry.order_limit import Causes, ModeledPairs, OrderLimit, as_spread
 from fe_contact.microgeometry.sweep import Sweep, sweep
 from fe_contact.microgeometry.sweep_request import SweepAxis, SweepRequest
-from fe_contact.microgeometry.tolerance_study import (
-    Sampling,
-    ToleranceRequest,
-    ToleranceStudy,
-    estimated_quantile,
-    scatter,
-)
+from fe_contact.microgeometry.tolerance_study import Sampling, ToleranceRequest, estimated_quantile, scatter
 from fe_contact.microgeometry.tolerances import Tolerances
 from fe_contact.microgeometry.variables import modified
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run
@@ -38,13 +29,13 @@ SLOPES = Tolerances(0.0, {"pinion.profile_slope": 10e-6, "wheel.profile_slope": 
 
 
 @pytest.fixture(scope="module")
-def found() -> ToleranceStudy:
+def found():
     return scatter(
         PAIR, TORQUES, SLOPES, Sampling(samples=120, seed=3, positions=16), AnalysisOptions(**DRAFT)
     )
 
 
-def test_every_sample_is_the_pair_as_it_is_made(found: ToleranceStudy) -> None:
+def test_every_sample_is_the_pair_as_it_is_made(found):
     for k in (0, 60, 119):  # of different tasks
         made = modified(PAIR, dict(zip(found.names, found.deviation[k], strict=True)))
         table = analyze(made, torques=TORQUES, positions=16, receipt="minimal", **DRAFT)
@@ -52,7 +43,7 @@ def test_every_sample_is_the_pair_as_it_is_made(found: ToleranceStudy) -> None:
         np.testing.assert_array_equal(found.peak_to_peak[k], ripple)
 
 
-def test_the_error_is_that_of_the_pair_as_designed() -> None:
+def test_the_error_is_that_of_the_pair_as_designed():
     forms = Tolerances(0.0, {"pinion.profile_form": 8e-6, "wheel.profile_form": 8e-6})
     options = AnalysisOptions(**DRAFT)
     study = scatter(PAIR, TORQUES, forms, Sampling(samples=2, positions=16), options)
@@ -61,7 +52,7 @@ def test_the_error_is_that_of_the_pair_as_designed() -> None:
     np.testing.assert_allclose(study.error, [ripple.error for ripple in alone], rtol=0.02)
 
 
-def test_pairs_that_cannot_be_held_over_a_long_period_are_refused_before_they_are_solved() -> None:
+def test_pairs_that_cannot_be_held_over_a_long_period_are_refused_before_they_are_solved():
     sampling, options = Sampling(samples=1_000_000, exact=1_000_000), AnalysisOptions(**DRAFT)
     assert ToleranceRequest(PAIR, TORQUES, SLOPES, sampling, options, 0.0).checked.model.period == 1
     deviates = PitchDeviation(np.linspace(0.0, 5e-6, PAIR.pinion.teeth))
@@ -71,7 +62,7 @@ def test_pairs_that_cannot_be_held_over_a_long_period_are_refused_before_they_ar
         _ = request.checked
 
 
-def test_a_larger_sample_begins_with_the_smaller_one(found: ToleranceStudy) -> None:
+def test_a_larger_sample_begins_with_the_smaller_one(found):
     more = scatter(
         PAIR, TORQUES, SLOPES, Sampling(samples=130, seed=3, positions=16), AnalysisOptions(**DRAFT)
     )
@@ -82,7 +73,7 @@ def test_a_larger_sample_begins_with_the_smaller_one(found: ToleranceStudy) -> N
     assert not np.any(other.deviation == found.deviation[:30])
 
 
-def test_the_least_of_tangents_stands_for_pairs_it_does_not_know(found: ToleranceStudy) -> None:
+def test_the_least_of_tangents_stands_for_pairs_it_does_not_know(found):
     """Of 120 pairs, 60 solved: the others by the model are off by as much as the 45 held against it say.
 
     Of 20 pairs one, where the contact at an extreme changes, is 20 times as far off as the median: fewer
@@ -98,7 +89,7 @@ def test_the_least_of_tangents_stands_for_pairs_it_does_not_know(found: Toleranc
     assert np.all(model.missed < 0.2 * np.abs(model.first_order - found.peak_to_peak).mean(axis=0))
 
 
-def test_quantiles_of_the_model_are_within_the_sampling_band_of_solved_pairs(found: ToleranceStudy) -> None:
+def test_quantiles_of_the_model_are_within_the_sampling_band_of_solved_pairs(found):
     sampling = Sampling(samples=10_000, seed=3, positions=16, exact=40)
     model = scatter(PAIR, TORQUES, SLOPES, sampling, AnalysisOptions(**DRAFT))
     for many, few in zip(model.quantiles, found.quantiles, strict=True):
@@ -106,7 +97,7 @@ def test_quantiles_of_the_model_are_within_the_sampling_band_of_solved_pairs(fou
         assert np.all(many.high - many.low < 0.2 * (few.high - few.low))
 
 
-def test_what_a_model_tells_too_high_and_too_wide_has_mean_and_spread_of_what_is_known() -> None:
+def test_what_a_model_tells_too_high_and_too_wide_has_mean_and_spread_of_what_is_known():
     """The law by which pairs by tangents, which lie above, are distributed as pairs that are solved."""
     draw = np.random.default_rng(7)
     known = draw.gamma(4.0, 0.1, (400, 2))
@@ -124,7 +115,7 @@ def test_what_a_model_tells_too_high_and_too_wide_has_mean_and_spread_of_what_is
 
 
 @pytest.mark.parametrize(("solved", "noise"), [(12, 0.5), (60, 0.5), (250, 0.2)])
-def test_bounds_of_a_share_hold_what_a_model_misses(solved: int, noise: float) -> None:
+def test_bounds_of_a_share_hold_what_a_model_misses(solved, noise):
     """Of 10 000 pairs of which few are solved, by a model that misses each: the true share is within."""
     draw, limit = np.random.default_rng(11), OrderLimit(1, 1.2e-6)
     none = Causes(np.zeros(1), np.zeros(1), 0.0, np.zeros(1))
@@ -138,12 +129,11 @@ def test_bounds_of_a_share_hold_what_a_model_misses(solved: int, noise: float) -
     assert np.mean(within) > 0.93
 
 
-def test_a_limit_counts_pairs_and_finds_what_decides() -> None:
+def test_a_limit_counts_pairs_and_finds_what_decides():
     limit = OrderLimit(1, 3.1e-6)
     sampling = Sampling(samples=2000, seed=3, positions=16, exact=60)
     options = AnalysisOptions(**DRAFT)
     above = scatter(PAIR, TORQUES, SLOPES, sampling, options, limit=limit).above
-    assert above is not None
     np.testing.assert_array_equal(above.share, (above.amplitude > limit.amplitude).mean(axis=0))
     assert np.all((above.low <= above.share) & (above.share <= above.high))
     assert 0.0 < above.share[above.load] == above.share.max() < 1.0
@@ -159,16 +149,15 @@ def test_a_limit_counts_pairs_and_finds_what_decides() -> None:
     # with the tolerance of a class finer, drawn anew
     finer = Tolerances(0.0, dict(SLOPES.modification) | {"pinion.profile_slope": 10e-6 / np.sqrt(2.0)})
     other = scatter(PAIR, TORQUES, finer, sampling, options, limit=limit).above
-    assert other is not None
     assert other.share[above.load] == pytest.approx(above.cured[0], abs=0.02)
 
 
-def test_an_order_that_positions_do_not_resolve_is_refused() -> None:
+def test_an_order_that_positions_do_not_resolve_is_refused():
     with pytest.raises(InputError, match="1 to 7"):
         scatter(PAIR, TORQUES, SLOPES, Sampling(positions=16), limit=OrderLimit(8, 1e-6))
 
 
-def test_bounds_enclose_their_quantiles_and_influence_follows_deviation(found: ToleranceStudy) -> None:
+def test_bounds_enclose_their_quantiles_and_influence_follows_deviation(found):
     pinion, wheel = np.abs(found.influence[:, -1])
     assert pinion > 0.8 > wheel
     values = [one.value for one in found.quantiles]
@@ -178,7 +167,7 @@ def test_bounds_enclose_their_quantiles_and_influence_follows_deviation(found: T
     assert np.all(found.mean_error < 0.1 * found.mean)
 
 
-def test_the_first_order_answer_is_off_by_the_square_of_the_tolerances(found: ToleranceStudy) -> None:
+def test_the_first_order_answer_is_off_by_the_square_of_the_tolerances(found):
     narrow = Tolerances(0.0, {name: 0.1 * width for name, width in SLOPES.modification.items()})
     sampling = Sampling(samples=120, seed=3, positions=16)
     tenth = scatter(PAIR, TORQUES, narrow, sampling, AnalysisOptions(**DRAFT))
@@ -187,7 +176,7 @@ def test_the_first_order_answer_is_off_by_the_square_of_the_tolerances(found: To
     assert np.all(one < 0.5 * found.peak_to_peak.std(axis=0))  # slopes of 10 um are not small
 
 
-def test_bounds_cover_the_true_quantile_as_often_as_they_say() -> None:
+def test_bounds_cover_the_true_quantile_as_often_as_they_say():
     samples = np.random.default_rng(5).exponential(size=(80, 4000))
     true = -np.log(1.0 - 0.9)
     bounds = estimated_quantile(samples, 0.9, 0.95)
@@ -199,16 +188,14 @@ def test_bounds_cover_the_true_quantile_as_often_as_they_say() -> None:
     ("samples", "first", "last"),
     [(5, None, None), (6, 1, 6), (8, 1, 8), (9, 2, 8), (10, 2, 9), (15, 4, 12), (20, 6, 15)],
 )
-def test_bounds_of_a_median_are_those_of_the_sign_test(
-    samples: int, first: int | None, last: int | None
-) -> None:
+def test_bounds_of_a_median_are_those_of_the_sign_test(samples, first, last):
     """Published tables: which samples in order enclose the median with 95 %; of five none do."""
     _, low, high = quantile_bounds(np.arange(samples, 0.0, -1.0)[:, None], 0.5, 0.95)
     assert low == (-np.inf if first is None else first)
     assert high == (np.inf if last is None else last)
 
 
-def test_influence_sees_both_signs_and_small_samples_have_no_bound() -> None:
+def test_influence_sees_both_signs_and_small_samples_have_no_bound():
     small = estimated_quantile(np.arange(1.0, 6.0)[:, None], 0.95, 0.95)
     assert np.isinf(small.high).all() and figures_of(ScatterFigures.QuantileFigures, small)["high_um"] is None
     deviation = np.random.default_rng(1).normal(size=(400, 3))
@@ -221,7 +208,7 @@ def test_influence_sees_both_signs_and_small_samples_have_no_bound() -> None:
 
 
 @pytest.mark.parametrize("distribution", ["normal", "uniform"])
-def test_parts_lie_within_their_tolerances(distribution: Any) -> None:
+def test_parts_lie_within_their_tolerances(distribution):
     drawn = Tolerances(5e-6, {"wheel.helix_slope": 1e-6}, distribution).sample(20_000, seed=1)
     assert np.all(np.abs(drawn) <= [5e-6, 1e-6])
     # normal: three standard deviations to the limit, less what is cut off beyond
@@ -241,7 +228,7 @@ def request(pair: GearPair, axes: tuple[SweepAxis, ...] = AXES, **options: Any) 
 
 
 @pytest.fixture(scope="module")
-def swept() -> Sweep:
+def swept():
     return sweep(request(LONG_RELIEFS))
 
 
@@ -250,7 +237,7 @@ def by_name(result: Sweep, name: str) -> Any:
 
 
 @pytest.mark.law
-def test_every_point_is_the_pair_analyzed_alone(swept: Sweep) -> None:
+def test_every_point_is_the_pair_analyzed_alone(swept):
     ripple = by_name(swept, "peak_to_peak")
     for k in (1, 5, 6):
         torque, relief = swept.point[k]
@@ -271,7 +258,7 @@ def test_every_point_is_the_pair_analyzed_alone(swept: Sweep) -> None:
         assert by_name(swept, "max_pressure").value[k] == pytest.approx(largest, rel=0.02)
 
 
-def test_the_errors_cover_a_finer_mesh(swept: Sweep) -> None:
+def test_the_errors_cover_a_finer_mesh(swept):
     fine = sweep(request(LONG_RELIEFS, level="standard"))
     for name in ("peak_to_peak", "harmonic_1", "max_pressure"):
         here, there = by_name(swept, name), by_name(fine, name)
@@ -280,7 +267,7 @@ def test_the_errors_cover_a_finer_mesh(swept: Sweep) -> None:
         assert np.all(here.error < 0.5 * here.value.max()), "an error that says something"
 
 
-def test_the_order_of_the_axes_does_not_matter(swept: Sweep) -> None:
+def test_the_order_of_the_axes_does_not_matter(swept):
     other = sweep(request(LONG_RELIEFS, AXES[::-1]))
     np.testing.assert_array_equal(
         other.point[:, ::-1].reshape(3, 3, 2).swapaxes(0, 1), swept.point.reshape(3, 3, 2)
@@ -291,14 +278,14 @@ def test_the_order_of_the_axes_does_not_matter(swept: Sweep) -> None:
     assert "face_load_factor" not in {quantity.name for quantity in swept.quantities}
 
 
-def test_a_gear_alone_is_not_both(swept: Sweep) -> None:
+def test_a_gear_alone_is_not_both(swept):
     alone = sweep(request(LONG_RELIEFS, (AXES[0], SweepAxis("pinion.tip_relief", RELIEFS))))
     both, one = (by_name(each, "peak_to_peak").value.reshape(3, 3) for each in (swept, alone))
     np.testing.assert_array_equal(both[:, 0], one[:, 0])  # without relief they are alike
     assert np.all(np.abs(both[:, 1:] - one[:, 1:]) > 1e-9)
 
 
-def test_a_misaligned_pair_is_computed_over_the_face() -> None:
+def test_a_misaligned_pair_is_computed_over_the_face():
     narrow = replace(
         PAIR, pinion=replace(PAIR.pinion, face_width=8e-3), wheel=replace(PAIR.wheel, face_width=8e-3)
     )
@@ -310,7 +297,7 @@ def test_a_misaligned_pair_is_computed_over_the_face() -> None:
     assert found.held == {"torque": 200.0, "center_distance_change": 0.0}
 
 
-def test_pairs_are_sampled_with_their_misalignment_on_either_side() -> None:
+def test_pairs_are_sampled_with_their_misalignment_on_either_side():
     narrow = replace(
         PAIR, pinion=replace(PAIR.pinion, face_width=8e-3), wheel=replace(PAIR.wheel, face_width=8e-3)
     )
@@ -332,12 +319,12 @@ def test_pairs_are_sampled_with_their_misalignment_on_either_side() -> None:
         ((SweepAxis("torque", tuple(np.linspace(10.0, 20.0, 5000))),), "4096"),
     ],
 )
-def test_what_makes_no_map_is_refused(axes: tuple[SweepAxis, ...], name: str) -> None:
+def test_what_makes_no_map_is_refused(axes, name):
     with pytest.raises(InputError, match=name):
         _ = request(PAIR, axes).checked
 
 
-def test_a_relief_without_a_length_is_refused() -> None:
+def test_a_relief_without_a_length_is_refused():
     with pytest.raises(InputError, match="tip_relief_length"):
         _ = request(PAIR).checked
 
@@ -361,7 +348,7 @@ class Breaking:
             yield function(shared, item)
 
 
-def test_an_interrupted_sweep_goes_on_where_it_was(swept: Sweep, tmp_path: Path) -> None:
+def test_an_interrupted_sweep_goes_on_where_it_was(swept, tmp_path):
     first, second = Breaking(2), Breaking(9)
     with pytest.raises(KeyboardInterrupt):
         sweep(request(LONG_RELIEFS), Run(Remembering(first, tmp_path, "1")))

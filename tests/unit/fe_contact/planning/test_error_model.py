@@ -1,7 +1,5 @@
 """A tolerance, its floor, and the errors that a plan predicts beside it, in parts and in um."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 
@@ -103,7 +101,7 @@ def test_what_slices_cannot_tell_has_no_size():
 
 
 def test_positions_follow_a_tolerance_that_is_smaller_than_usual():
-    def search(tolerance: float, helix: float):
+    def search(tolerance, helix):
         bound = {} if helix else {"effects": {"finite_width": "on"}}
         return decide(
             check_request(pair(helix), *table_request(torques=[40.0], tolerance=tolerance, **bound))
@@ -152,9 +150,7 @@ def usual_effort(decision: Decision) -> float:
 @pytest.mark.parametrize("width", [2e-3, 12e-3])
 @pytest.mark.parametrize("helix_deg", [0.0, 9.0, 25.0])
 @pytest.mark.parametrize("relief", [0.0, 12e-6])
-def test_a_looser_tolerance_is_never_expected_to_cost_more(
-    width: float, helix_deg: float, relief: float
-) -> None:
+def test_a_looser_tolerance_is_never_expected_to_cost_more(width, helix_deg, relief):
     """All passes together; what is expected to miss the tolerance takes a tenth of the next at most."""
     helix, modification = (
         math.radians(helix_deg),

@@ -1,7 +1,5 @@
 """A helix of next to no overlap has the errors and the meshes of a spur pair."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 
@@ -34,7 +32,7 @@ def table(helix_deg: float, modification: FlankModification, cache: Path) -> Ste
 @pytest.mark.law
 @pytest.mark.filterwarnings("ignore:implausible")
 @pytest.mark.parametrize("modification", [FlankModification(), RELIEVED], ids=["plain", "relieved"])
-def test_stated_errors_differ_by_a_tenth_at_most(modification: FlankModification, tmp_path: Path) -> None:
+def test_stated_errors_differ_by_a_tenth_at_most(modification, tmp_path):
     spur, helical = (table(helix, modification, tmp_path) for helix in (0.0, HELIX_DEG))
     for load in range(spur.force.size):
         for name in ("mean", "peak_to_peak"):

@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 from spur_gears import PAIR
 
-from fe_contact import AllowedError
+from fe_contact import AllowedError, AnalysisOptions
 from fe_contact.contact import ContactModel
 from fe_contact.errors import InputError
 from fe_contact.hertz import half_width, relative_radius
-from fe_contact.options import AnalysisOptions
 from fe_contact.planning.discretization import FaceDiscretization
 from fe_contact.planning.plan import Plan, make_plan
 from model_studies.stage_clock import StageClock

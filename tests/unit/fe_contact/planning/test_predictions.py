@@ -11,10 +11,12 @@ from analysis_requests import table_request
 from bounds import engineering
 from fe_contact import (
     AllowedError,
+    AnalysisOptions,
     FlankModification,
     Gear,
     GearPair,
     RunOut,
+    TableAxes,
     ToothFlank,
     analyze,
 )
@@ -23,14 +25,8 @@ from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.run_plan import plan_run
 from fe_contact.compliance.cache import cached_size
 from fe_contact.errors import InputError
-from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning import cost_model
-from fe_contact.planning.cost_model import (
-    contact_seconds,
-    expected_positions,
-    memory_of_contact,
-    predict_run,
-)
+from fe_contact.planning.cost_model import contact_seconds, expected_positions, memory_of_contact, predict_run
 from fe_contact.planning.cost_of_derivatives import solved_pitches
 from fe_contact.planning.expected_error import ExpectedError
 from fe_contact.planning.planned import MeshOption, mesh_for_time, mesh_for_tolerance
@@ -40,7 +36,7 @@ LEVELS = ("draft", "standard", "fine")
 
 
 @pytest.fixture(scope="module", autouse=True)
-def condensed_once() -> None:
+def condensed_once():
     """Condense each time: what that costs is what is predicted and logged."""
 
 

@@ -5,9 +5,6 @@ and e the gap (corner contact beyond the path of contact, linear tip relief befo
 add up. The deflection at a given load follows by bisection, the tangent in closed form.
 """
 
-from __future__ import annotations
-
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -110,27 +107,27 @@ def written_out(database: SteDatabase, period: int, **changes) -> SteDatabase:
 
 
 @pytest.fixture(scope="session")
-def make() -> Callable[..., SteDatabase]:
+def make():
     return synthetic
 
 
 @pytest.fixture(scope="session")
-def repeat() -> Callable[..., SteDatabase]:
+def repeat():
     return written_out
 
 
 @pytest.fixture(scope="session")
-def spur() -> SteDatabase:
+def spur():
     return synthetic()
 
 
 @pytest.fixture(scope="session")
-def helical() -> SteDatabase:
+def helical():
     return synthetic(geometry=HELICAL, relief=5e-6)
 
 
 @pytest.fixture(scope="session")
-def four_axes() -> SteDatabase:
+def four_axes():
     return synthetic(
         position=np.arange(24) / 24 + 0.01,
         misalignment=(-30e-6, 0.0, 20e-6, 60e-6),
@@ -140,5 +137,5 @@ def four_axes() -> SteDatabase:
 
 
 @pytest.fixture(scope="session")
-def helical_facts() -> PairGeometry:
+def helical_facts():
     return HELICAL

@@ -1,7 +1,5 @@
 """What a Python prompt shows of a database and of a number with its error."""
 
-from __future__ import annotations
-
 import copy
 import math
 import pickle
@@ -13,7 +11,6 @@ import numpy as np
 import pytest
 
 from bounds.brief import MAX_LINES, WIDTH
-from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate
 from host.extras import MissingExtra
 
@@ -31,28 +28,28 @@ from host.extras import MissingExtra
         (Estimate(-3.0e-6, 2.0e-6, "m"), "um", "-3.0 ± 2.0 µm"),
     ],
 )
-def test_a_number_has_the_digits_that_its_error_leaves(estimate: Estimate, unit: str, text: str) -> None:
+def test_a_number_has_the_digits_that_its_error_leaves(estimate, unit, text):
     assert format(estimate, unit) == text
 
 
-def test_a_unit_of_another_quantity_is_refused() -> None:
+def test_a_unit_of_another_quantity_is_refused():
     with pytest.raises(ValueError, match="a number in m is not written in MPa; units: m, mm"):
         format(Estimate(1.0, 0.1, "m"), "MPa")
 
 
-def test_half_a_band_is_the_standard_deviation_of_uncertainties(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_half_a_band_is_the_standard_deviation_of_uncertainties(monkeypatch):
     package = SimpleNamespace(ufloat=lambda value, deviation: (value, deviation))  # an extra that CI lacks
     monkeypatch.setitem(sys.modules, "uncertainties", package)
     assert Estimate(2.0e-7, 1.0e-8, "m").ufloat() == (2.0e-7, 5.0e-9)
 
 
-def test_without_the_extra_its_name_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_the_extra_its_name_is_said(monkeypatch):
     monkeypatch.setitem(sys.modules, "uncertainties", None)
     with pytest.raises(MissingExtra, match=r"pip install 'lineofaction\[uncertainties\]'"):
         Estimate(1.0, 0.1, "m").ufloat()
 
 
-def test_a_database_equals_its_copies_which_stay_read_only(spur: SteDatabase) -> None:
+def test_a_database_equals_its_copies_which_stay_read_only(spur):
     for other in (pickle.loads(pickle.dumps(spur)), copy.copy(spur), copy.deepcopy(spur)):
         assert other is not spur and other == spur and hash(other) == hash(spur)
         assert not other.static_transmission_error.flags.writeable
@@ -60,7 +57,7 @@ def test_a_database_equals_its_copies_which_stay_read_only(spur: SteDatabase) ->
     assert spur != replace(spur, metadata=replace(spur.metadata, warnings=({"message": "no"},)))
 
 
-def test_the_text_of_a_database_says_its_figures_in_a_dozen_lines(spur: SteDatabase) -> None:
+def test_the_text_of_a_database_says_its_figures_in_a_dozen_lines(spur):
     lines = repr(spur).split("\n")
     assert lines[0] == "SteDatabase 20/20, center distance 80 mm"
     assert len(lines) <= MAX_LINES and max(map(len, lines)) <= WIDTH
@@ -71,7 +68,7 @@ def test_the_text_of_a_database_says_its_figures_in_a_dozen_lines(spur: SteDatab
     assert "<table>" in spur._repr_html_()
 
 
-def test_failed_points_are_counted(spur: SteDatabase) -> None:
+def test_failed_points_are_counted(spur):
     status, ste = spur.status.copy(), spur.static_transmission_error.copy()
     status[0, 0], ste[0, 0] = 2, np.nan
     failed = replace(spur, status=status, static_transmission_error=ste)

@@ -1,7 +1,5 @@
 """Errors at nodes are linear between them; those of an interval are nothing on its nodes."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import product
 
@@ -27,7 +25,7 @@ def drawn(table, count=50):
     return [draw.uniform(getattr(table, axis)[0], getattr(table, axis)[-1], count) for axis in AXES]
 
 
-def test_errors_that_are_linear_along_every_axis_are_reproduced(table) -> None:
+def test_errors_that_are_linear_along_every_axis_are_reproduced(table):
     nodes = np.meshgrid(*(getattr(table, axis) / getattr(table, axis)[-1] for axis in AXES), indexing="ij")
     at = drawn(table)
     parts = [x / getattr(table, axis)[-1] for x, axis in zip(at, AXES, strict=True)]
@@ -38,7 +36,7 @@ def test_errors_that_are_linear_along_every_axis_are_reproduced(table) -> None:
     assert NodePlaces.of(table, *at).at_nodes(linear(*nodes)) == pytest.approx(linear(*parts), rel=1e-12)
 
 
-def test_a_node_has_its_own_error_beside_unknown_ones(table) -> None:
+def test_a_node_has_its_own_error_beside_unknown_ones(table):
     values = np.full(table.interval_error.shape[1:], np.nan)
     nodes = list(product(*(range(size) for size in values.shape)))
     for node in nodes[:: len(nodes) // 7]:
@@ -48,9 +46,7 @@ def test_a_node_has_its_own_error_beside_unknown_ones(table) -> None:
         values[node] = np.nan
 
 
-def test_interpolation_has_no_error_on_the_nodes_of_its_axis_and_that_of_its_interval_elsewhere(
-    table,
-) -> None:
+def test_interpolation_has_no_error_on_the_nodes_of_its_axis_and_that_of_its_interval_elsewhere(table):
     force, skew, _ = drawn(table)
     lower = np.searchsorted(table.misalignment, skew) - 1
     places = NodePlaces.of(
@@ -67,7 +63,7 @@ def test_interpolation_has_no_error_on_the_nodes_of_its_axis_and_that_of_its_int
     assert beyond.of_interval(table.interval_error[1], 1).tolist() == [0.0]
 
 
-def test_many_points_have_the_bands_of_each_alone(table) -> None:
+def test_many_points_have_the_bands_of_each_alone(table):
     at, position = drawn(table), np.random.default_rng(2).uniform(-1.0, 2.0, 50)
     together = error_band(table, position, NodePlaces.of(table, *at))
     alone = [

@@ -1,7 +1,5 @@
 """Tables over all axes: joined, compiled to the same bits, and where the load slides."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -19,12 +17,12 @@ from fe_contact.ste.load_levels import SMOOTHING
 M = (-20e-6, 0.0, 15e-6)
 
 
-def test_joined_tables_are_the_table_over_all_misalignments() -> None:
+def test_joined_tables_are_the_table_over_all_misalignments():
     single = [sliced_database((m,), positions=8) for m in M]
     assert joined_over_misalignment(single).identical(sliced_database(M, positions=8))
 
 
-def test_misalignments_that_do_not_increase_are_refused() -> None:
+def test_misalignments_that_do_not_increase_are_refused():
     single = [sliced_database((m,), positions=8) for m in reversed(M)]
     with pytest.raises(DatabaseError):
         joined_over_misalignment(single)
@@ -87,7 +85,7 @@ def points(database):
 
 
 @pytest.mark.law
-def test_forces_stiffnesses_and_flags_are_those_of_the_database(database) -> None:
+def test_forces_stiffnesses_and_flags_are_those_of_the_database(database):
     x, m, c, d = at = points(database)
     found, wanted = CompiledForce.of(database).force_at(at), database.force_at(x, d, m, c)
     assert np.array_equal(found.force, wanted.force)
@@ -95,14 +93,14 @@ def test_forces_stiffnesses_and_flags_are_those_of_the_database(database) -> Non
     assert np.array_equal(found.validity, wanted.validity)
 
 
-def test_every_answer_is_asked_for(database) -> None:
+def test_every_answer_is_asked_for(database):
     flags = CompiledForce.of(database).force_at(points(database)).validity
     assert {0, 1, 2} <= {int(flag) & 3 for flag in flags}
     outside = 4 * (database.misalignment.size > 1) + 8 * (database.center_distance_change.size > 1)
     assert outside == 0 or {int(flag) & outside for flag in flags} >= {0, outside}
 
 
-def test_a_table_with_failed_points_is_refused() -> None:
+def test_a_table_with_failed_points_is_refused():
     table = small_table()
     fields = {name: np.array(getattr(table, name)) for name in ("status", "static_transmission_error")}
     fields["status"][3, 1], fields["static_transmission_error"][3, 1] = 1, np.nan

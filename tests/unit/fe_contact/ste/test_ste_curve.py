@@ -1,7 +1,5 @@
 """Curves: mean, peak-to-peak, harmonics, load shares, error bands, and errors by source."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -9,6 +7,7 @@ import h5netcdf
 import numpy as np
 import pytest
 
+from fe_contact import Status, SteDatabase
 from fe_contact.errors import DatabaseError, InputError, SolveError
 from fe_contact.ste.curve_errors import AT_NODES, METHOD, SOURCES
 from fe_contact.ste.curve_quantities import (
@@ -20,8 +19,6 @@ from fe_contact.ste.curve_quantities import (
     peak_excess,
     quantity_changes,
 )
-from fe_contact.ste.database import SteDatabase
-from fe_contact.types import Status
 
 AMPLITUDES = np.array([2e-6, 5e-7, 3e-7])
 PHASES = np.array([0.4, 2.0, 5.0])
@@ -184,7 +181,7 @@ X = np.arange(64) / 64
 TWO_WAVES = (8e-6 + 2e-6 * np.cos(2.0 * np.pi * X) + 0.5e-6 * np.cos(6.0 * np.pi * X))[:, None]
 
 
-def test_changes_are_measured_by_quantity() -> None:
+def test_changes_are_measured_by_quantity():
     assert not quantity_changes(X, TWO_WAVES, TWO_WAVES, 1).any()
     change = quantity_changes(X, TWO_WAVES, TWO_WAVES + 1e-7, 1)[:, 0]
     assert change[MEAN] == pytest.approx(1e-7, rel=1e-9)
@@ -204,7 +201,7 @@ def test_changes_are_measured_by_quantity() -> None:
     assert change == pytest.approx(1e-8, rel=1e-2)
 
 
-def test_rows_that_failed_are_left_out_and_too_few_are_unknown() -> None:
+def test_rows_that_failed_are_left_out_and_too_few_are_unknown():
     holed = np.tile(TWO_WAVES, 2)
     holed[5, 0] = np.nan
     holed[4:, 1] = np.nan
@@ -214,7 +211,7 @@ def test_rows_that_failed_are_left_out_and_too_few_are_unknown() -> None:
 
 
 @pytest.mark.parametrize("apex", [0.3 / 64, 0.5 / 64, 0.5 + 0.8 / 64])
-def test_the_peak_of_a_tent_between_two_knots_is_found(apex: float) -> None:
+def test_the_peak_of_a_tent_between_two_knots_is_found(apex):
     tent = np.abs((X - apex + 0.5) % 1.0 - 0.5)[:, None]
     missed = 0.5 - np.ptp(tent)
     assert missed > 1e-3
@@ -222,12 +219,12 @@ def test_the_peak_of_a_tent_between_two_knots_is_found(apex: float) -> None:
     assert peak_excess(X, -tent, 1)[0] == pytest.approx(missed, rel=1e-9)
 
 
-def test_a_step_between_flat_parts_misses_nothing() -> None:
+def test_a_step_between_flat_parts_misses_nothing():
     step = np.where((X > 0.2) & (X < 0.7), 1.0, 0.0)[:, None]
     assert peak_excess(X, step, 1)[0] == 0.0
 
 
-def test_harmonics_of_a_longer_period_are_those_of_the_mesh() -> None:
+def test_harmonics_of_a_longer_period_are_those_of_the_mesh():
     position = np.arange(192) / 64
     other = np.tile(TWO_WAVES, (3, 1)) + 1e-8 * np.cos(2.0 * np.pi * position)[:, None]
     change = quantity_changes(position, np.tile(TWO_WAVES, (3, 1)), other, 3)[:, 0]
@@ -236,7 +233,7 @@ def test_harmonics_of_a_longer_period_are_those_of_the_mesh() -> None:
     assert change[OFF_MESH] < 1e-18
 
 
-def test_what_differs_from_pitch_to_pitch_is_beside_the_mesh_orders() -> None:
+def test_what_differs_from_pitch_to_pitch_is_beside_the_mesh_orders():
     position = np.arange(192) / 64
     curve = np.tile(TWO_WAVES, (3, 1))
     other = curve + 1e-8 * np.cos(2.0 * np.pi / 3.0 * position)[:, None]
@@ -246,7 +243,7 @@ def test_what_differs_from_pitch_to_pitch_is_beside_the_mesh_orders() -> None:
 
 
 @pytest.fixture
-def assessed(spur: SteDatabase) -> SteDatabase:
+def assessed(spur):
     """The fake table with errors of every source: source number in nm, times the load's number."""
     shape = spur.static_transmission_error.shape[1:]
     errors = np.zeros((len(SOURCES), QUANTITIES, *shape))
@@ -256,7 +253,7 @@ def assessed(spur: SteDatabase) -> SteDatabase:
     return replace(spur, curve_error=errors)
 
 
-def test_stated_errors_join_their_sources(assessed: SteDatabase) -> None:
+def test_stated_errors_join_their_sources(assessed):
     for k, force in enumerate(assessed.force):
         curve = assessed.curve(force=float(force))
         for found in (curve.mean, curve.peak_to_peak, *curve.harmonics):
@@ -275,7 +272,7 @@ def test_stated_errors_join_their_sources(assessed: SteDatabase) -> None:
         replace(assessed, curve_error=assessed.curve_error[:, :, :1])
 
 
-def test_files_keep_the_errors_of_every_schema(assessed: SteDatabase, spur, tmp_path) -> None:
+def test_files_keep_the_errors_of_every_schema(assessed, spur, tmp_path):
     assessed.to_netcdf(tmp_path / "new.nc")
     spur.to_netcdf(tmp_path / "old.nc")
     assert SteDatabase.from_netcdf(tmp_path / "new.nc").identical(assessed)

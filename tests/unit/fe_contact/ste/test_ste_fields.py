@@ -29,8 +29,6 @@ def test_arrays_and_fields_cannot_be_changed(spur, make):
 
 
 def changed(name, place, value):
-    """One array with one number changed."""
-
     def change(database):
         array = getattr(database, name).astype(float)
         array[place] = value

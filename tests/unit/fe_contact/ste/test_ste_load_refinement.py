@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from held_out import held_out_error
 
-from fe_contact.ste.load_levels import LoadLevels, gradual_contact, refined_levels
+from fe_contact.ste.load_levels import LoadLevels, refined_levels, smooth_share
 
 COARSE = (266.0, 1330.0, 2660.0, 5320.0, 10640.0)
 BETWEEN = (900.0, 2000.0, 4000.0, 8000.0)
@@ -48,9 +48,9 @@ def test_a_helical_pair_comes_into_contact_gradually(make):
     geometry = make().geometry
     straight, steep = (replace(geometry, base_helix_angle=angle) for angle in (0.0, 0.35))
     slight = replace(geometry, base_helix_angle=0.001)
-    assert gradual_contact(straight) == 0.0
-    assert gradual_contact(steep) == 1.0
-    assert gradual_contact(slight) < 0.05
+    assert smooth_share(straight) == 0.0
+    assert smooth_share(steep) == 1.0
+    assert smooth_share(slight) < 0.05
     force, lag, _ = smooth_law(0.9)
     assert force.size == 4 + 2 * 3
     assert lag == pytest.approx(1e-8 * force**0.9, rel=8e-4)

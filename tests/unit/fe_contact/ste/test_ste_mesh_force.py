@@ -58,22 +58,6 @@ def parallel(make):
     return make(force=2660.0 * (1.0 + 1e-4 * np.arange(6)))
 
 
-def test_stored_points_come_back_and_the_force_is_the_inverse(table):
-    asked = table.ste(table.position[:, None], table.force)
-    assert np.array_equal(asked, table.static_transmission_error[:, :, 0, 0])
-    deflection = table.ste(X, F)
-    sample = table.force_at(X, deflection)
-    to_transverse = np.cos(table.geometry.base_helix_angle)
-    # a deflection is a float: its rounding times the stiffness is beyond any inverse
-    rounding = 4.0 * np.spacing(np.abs(deflection)) * sample.stiffness
-    assert np.all(np.abs(sample.force - F * to_transverse) <= 1e-10 * F + rounding)
-    deflection = table.ste(X, F + 1.0)
-    step = 1e-5 * (table.ste(X, table.force[-1]) - table.ste(X, 0.0))
-    sample = table.force_at(X, deflection)
-    rise = table.force_at(X, deflection + step).force - table.force_at(X, deflection - step).force
-    assert np.all(np.abs(rise / (2 * step) - sample.stiffness) <= 2e-3 * np.abs(sample.stiffness).max())
-
-
 def test_a_curve_at_a_stored_load_is_that_of_the_cubic_to_the_last_bit(table):
     for load in table.force:
         beside = table.ste(np.append(X, 0.5), np.append(np.full(X.size, load), 0.3 * load))
@@ -81,18 +65,6 @@ def test_a_curve_at_a_stored_load_is_that_of_the_cubic_to_the_last_bit(table):
     fresh = MeshForce(table.force_table())
     fresh.deflection_at(X, fresh.table.level[-1], table.misalignment[0], table.center_distance_change[0])
     assert "stiffnesses" not in vars(fresh)
-
-
-def test_force_rises_with_deflection(table):
-    for x in (0.0, 0.1234, 0.22, 0.7501):
-        top = float(table.ste(x, table.force[-1]))
-        low = float(table.ste(x, 0.0))
-        deflection = np.linspace(low - 1e-7, top + 0.5 * (top - low), 5000)
-        sample = table.force_at(x, deflection)
-        pressed = deflection > low + 1e-6 * (top - low)
-        assert np.all(np.diff(sample.force) >= -1e-10)
-        assert np.all(np.diff(sample.force[pressed]) > 0.0)
-        assert np.all(sample.stiffness >= 0.0)
 
 
 def one_sided(table, x, d, dx):

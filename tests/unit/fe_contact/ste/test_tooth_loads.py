@@ -1,10 +1,7 @@
 """Laws of the loads of each tooth: they sum to the load, follow the deviations, and are alike without."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -38,12 +35,12 @@ def table_of(pair: GearPair) -> SteDatabase:
 
 
 @pytest.fixture(scope="module")
-def early() -> SteDatabase:
+def early():
     return table_of(helical({EARLY: 3e-6}, {}))
 
 
 @pytest.mark.law
-def test_the_loads_of_the_teeth_sum_to_the_load_at_each_position(early: SteDatabase) -> None:
+def test_the_loads_of_the_teeth_sum_to_the_load_at_each_position(early):
     """Each tooth of the pinion meets once in a period, so its row is its way through mesh."""
     (pinion,) = early.tooth_loads(torque=TORQUE)
     node = np.arange(early.position.size) % 8
@@ -57,7 +54,7 @@ def test_the_loads_of_the_teeth_sum_to_the_load_at_each_position(early: SteDatab
 
 @pytest.mark.law
 @pytest.mark.parametrize("tooth", [1, EARLY, 17])
-def test_the_tooth_that_is_early_carries_most(early: SteDatabase, tooth: int) -> None:
+def test_the_tooth_that_is_early_carries_most(early, tooth):
     """Its neighbors carry less, and those that never share with it as in the nominal pair."""
     table = early if tooth == EARLY else table_of(helical({tooth: 3e-6}, {}))
     (pinion,) = table.tooth_loads(torque=TORQUE)
@@ -72,7 +69,7 @@ def test_the_tooth_that_is_early_carries_most(early: SteDatabase, tooth: int) ->
 
 
 @pytest.mark.law
-def test_over_a_hunting_cycle_a_tooth_is_largest_over_all_its_mates() -> None:
+def test_over_a_hunting_cycle_a_tooth_is_largest_over_all_its_mates():
     """Of both gears a tooth is early: each is the worst of its gear, most where the two meet."""
     table = table_of(helical({3: 3e-6}, {20: 2e-6}))
     assert table.period == TEETH[0] * TEETH[1]
@@ -83,14 +80,14 @@ def test_over_a_hunting_cycle_a_tooth_is_largest_over_all_its_mates() -> None:
     assert (pinion.force.size, wheel.force.size) == TEETH
 
 
-def test_teeth_that_are_alike_are_not_told_apart(early: SteDatabase) -> None:
+def test_teeth_that_are_alike_are_not_told_apart(early):
     assert table_of(helical({}, {})).tooth_loads(torque=TORQUE) == ()
     assert [own.gear for own in early.tooth_loads(torque=TORQUE)] == [0]
     (wheel,) = table_of(helical({}, {5: 3e-6})).tooth_loads(torque=TORQUE)
     assert (wheel.gear, wheel.most_loaded) == (1, (5,))
 
 
-def test_a_table_with_failed_points_answers_from_complete_rows(early: SteDatabase) -> None:
+def test_a_table_with_failed_points_answers_from_complete_rows(early):
     status, ste = early.status.copy(), early.static_transmission_error.copy()
     status[3, 1], ste[3, 1] = 1, np.nan
     share = early.load_share.copy()
@@ -103,7 +100,7 @@ def test_a_table_with_failed_points_answers_from_complete_rows(early: SteDatabas
 
 
 @pytest.mark.law
-def test_the_pressure_of_the_pairs_is_that_of_the_table(early: SteDatabase) -> None:
+def test_the_pressure_of_the_pairs_is_that_of_the_table(early):
     """Of all pairs the largest is the largest pressure, and pairs that carry nothing have none."""
     assert np.array_equal(early.pair_pressure.max(axis=-1), early.max_pressure)
     assert np.all((early.pair_pressure > 0.0) <= (early.load_share > 0.0))
@@ -116,9 +113,7 @@ def test_the_pressure_of_the_pairs_is_that_of_the_table(early: SteDatabase) -> N
     assert far == pytest.approx(np.full(7, nominal.max_pressure[:, 1].max()), rel=1e-9)
 
 
-def test_tables_without_the_pressure_of_pairs_have_the_forces_alone(
-    early: SteDatabase, tmp_path: Path
-) -> None:
+def test_tables_without_the_pressure_of_pairs_have_the_forces_alone(early, tmp_path):
     """As files of earlier versions; with it files are read as they were written."""
     older = replace(early, pair_pressure=np.empty((0,) * 5))
     for name, table in (("older", older), ("own", early)):
@@ -131,7 +126,7 @@ def test_tables_without_the_pressure_of_pairs_have_the_forces_alone(
 
 
 @pytest.mark.law
-def test_pitches_by_derivatives_have_the_loads_of_all_pitches() -> None:
+def test_pitches_by_derivatives_have_the_loads_of_all_pitches():
     """Within what the receipt states, on every tooth of both gears; the worst is solved."""
     draw = np.random.default_rng(3)
     pair = helical(*({k: draw.normal(0.0, 2e-6) for k in range(1, teeth + 1)} for teeth in TEETH))
@@ -149,7 +144,7 @@ def test_pitches_by_derivatives_have_the_loads_of_all_pitches() -> None:
         assert own.pressure.max() == pytest.approx(exact.pressure.max(), rel=1e-9)
 
 
-def test_one_tooth_that_carries_a_little_less_tells_none_apart() -> None:
+def test_one_tooth_that_carries_a_little_less_tells_none_apart():
     forces = np.where(np.arange(29) == 24, 1927.0, 1928.2)[:, None]
     alike = ToothLoads(0, np.zeros(1), forces, forces)
     assert alike.most_loaded == alike.most_pressed == ()

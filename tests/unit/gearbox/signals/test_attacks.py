@@ -1,7 +1,5 @@
 """Recordings that lie, point elsewhere, or swell: each is refused in a sentence that names the file."""
 
-from __future__ import annotations
-
 import struct
 import zlib
 from collections.abc import Callable
@@ -25,7 +23,7 @@ Attack = Callable[[Path], Path]
 
 
 def _text(name: str, text: str) -> Attack:
-    def write(folder: Path) -> Path:
+    def write(folder):
         file = folder / name
         file.write_text(text)
         return file
@@ -34,7 +32,7 @@ def _text(name: str, text: str) -> Attack:
 
 
 def _h5(change: Callable[[Any, Path], None]) -> Attack:
-    def write(folder: Path) -> Path:
+    def write(folder):
         file = folder / "a.h5"
         with h5py.File(file, "w") as content:
             content["time_s"] = TIME
@@ -193,7 +191,7 @@ def _bytes(file: Path) -> Path:
 
 
 @pytest.mark.parametrize("attack", ATTACKS)
-def test_what_lies_points_elsewhere_or_swells_is_refused(attack: str, tmp_path: Path) -> None:
+def test_what_lies_points_elsewhere_or_swells_is_refused(attack, tmp_path):
     write, bound = ATTACKS[attack]
     file = write(tmp_path)
     with pytest.raises(BadInput, match=bound) as caught:
@@ -205,7 +203,7 @@ def test_what_lies_points_elsewhere_or_swells_is_refused(attack: str, tmp_path: 
     assert not (tmp_path / "pwned").exists()
 
 
-def test_objects_of_a_mat_file_are_no_channels(tmp_path: Path) -> None:
+def test_objects_of_a_mat_file_are_no_channels(tmp_path):
     """What pickles and structures hold is neither run nor read."""
     assert read_recording(_mat_of_objects(tmp_path), "measured").channels == ()
     assert not (tmp_path / "pwned").exists() and not Path("pwned").exists()
@@ -221,14 +219,14 @@ def test_objects_of_a_mat_file_are_no_channels(tmp_path: Path) -> None:
         (TIME[:1], VALUES[:1], "at least two samples"),
     ],
 )
-def test_samples_that_are_no_series_are_refused(time: Any, values: Any, bound: str, tmp_path: Path) -> None:
+def test_samples_that_are_no_series_are_refused(time, values, bound, tmp_path):
     file = WRITERS["csv"](tmp_path / "a.csv", time, values, 900.0 + 0.0 * time)
     channel = read_recording(file, "measured").channel("measured", "acceleration_m_per_s2")
     with pytest.raises(BadInput, match=bound):
         channel.series("measured")
 
 
-def test_names_with_controls_and_markup_come_as_one_printable_line(tmp_path: Path) -> None:
+def test_names_with_controls_and_markup_come_as_one_printable_line(tmp_path):
     name = "<b>\x1b[31mcase\r\n[red]" + "x" * 500 + "_g"
     with h5py.File(tmp_path / "a.h5", "w") as content:
         content["time_s"] = TIME
@@ -238,14 +236,14 @@ def test_names_with_controls_and_markup_come_as_one_printable_line(tmp_path: Pat
     assert channel.name.startswith("<b> [31mcase")
 
 
-def test_a_reader_that_takes_too_long_is_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_reader_that_takes_too_long_is_ended(tmp_path, monkeypatch):
     monkeypatch.setattr(recordings, "SECONDS", 0.05)
     file = WRITERS["csv"](tmp_path / "a.csv", TIME, VALUES, 900.0 + 0.0 * TIME)
     with pytest.raises(BadInput, match=r"is read within .* no answer within"):
         read_recording(file, "measured")
 
 
-def test_a_missing_extra_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_extra_is_named(tmp_path, monkeypatch):
     monkeypatch.setattr(recordings, "find_spec", lambda _module: None)
     with pytest.raises(BadInput, match=r"pip install 'lineofaction\[mdf\]'"):
         read_recording(tmp_path / "a.mf4", "measured")

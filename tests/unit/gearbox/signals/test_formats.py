@@ -1,9 +1,5 @@
 """Recordings of other programs come back as they were written, with their units."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import numpy as np
 import pytest
 from recordings import FULL_SCALE, WRITERS, pyuff
@@ -25,7 +21,7 @@ ROUNDING = {
 
 
 @pytest.mark.parametrize("form", WRITERS)
-def test_a_channel_comes_back_in_si_units(form: str, tmp_path: Path) -> None:
+def test_a_channel_comes_back_in_si_units(form, tmp_path):
     file = WRITERS[form](tmp_path / f"a.{form}", TIME, ACCELERATION, RPM)
     recording = read_recording(file, "measured")
     by_hand = {"wav": ("channel 1", "m/s²")}.get(form, ("", ""))
@@ -41,14 +37,14 @@ def test_a_channel_comes_back_in_si_units(form: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("form", ["mat", "h5", "mf4", "csv"])
-def test_only_named_channels_are_read(form: str, tmp_path: Path) -> None:
+def test_only_named_channels_are_read(form, tmp_path):
     file = WRITERS[form](tmp_path / f"a.{form}", TIME, ACCELERATION, RPM)
     names = [channel.name for channel in read_recording(file, "measured").channels]
     assert len(names) == 2
     assert [one.name for one in read_recording(file, "measured", names[1:]).channels] == names[1:]
 
 
-def test_a_unit_that_is_not_stated_is_not_guessed(tmp_path: Path) -> None:
+def test_a_unit_that_is_not_stated_is_not_guessed(tmp_path):
     file = WRITERS["wav"](tmp_path / "a.wav", TIME, ACCELERATION, RPM)
     channel = read_recording(file, "measured").channel("measured", "channel 1")
     with pytest.raises(BadInput, match=r"unit of measured channel 1.*State the unit of acceleration: m/s²"):
@@ -57,7 +53,7 @@ def test_a_unit_that_is_not_stated_is_not_guessed(tmp_path: Path) -> None:
         channel.measured("measured", "acceleration", "rpm")
 
 
-def test_one_of_several_channels_is_not_guessed(tmp_path: Path) -> None:
+def test_one_of_several_channels_is_not_guessed(tmp_path):
     file = WRITERS["csv"](tmp_path / "a.csv", TIME, ACCELERATION, RPM)
     recording = read_recording(file, "measured")
     with pytest.raises(BadInput, match=r"0 could be it.*acceleration_m_per_s2, speed_rpm"):
@@ -66,7 +62,7 @@ def test_one_of_several_channels_is_not_guessed(tmp_path: Path) -> None:
         recording.channel("measured", "acceleration")
 
 
-def test_a_label_that_contradicts_the_units_of_the_file_is_refused(tmp_path: Path) -> None:
+def test_a_label_that_contradicts_the_units_of_the_file_is_refused(tmp_path):
     file = WRITERS["uff"](tmp_path / "a.uff", TIME, ACCELERATION, RPM)
     for length, fits in ((1.0, True), (1e3, False)):
         units = {"units_code": 9, "units_description": "own", "temp_mode": 1, "length": length}

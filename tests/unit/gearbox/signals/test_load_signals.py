@@ -1,7 +1,5 @@
 """Speeds and torques of a scene from recordings: the numbers that a hand would write, or a refusal."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from typing import Any
@@ -9,13 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 from recordings import MDF, Signal, h5py, pyuff
+from repository import EXAMPLES
 
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import SceneInput, read_model
 from lineofaction.gearbox.schemas.files import READERS, SENT, written_out
 from lineofaction.gearbox.schemas.named_files import in_folder
 
-EXAMPLES = Path(__file__).parents[4] / "examples"
 TIME = 3.0 + np.arange(2001) / 1000.0
 SPEED = 100.0 + 40.0 * (TIME - 3.0)  # rad/s
 TORQUE = 80.0 - 5.0 * (TIME - 3.0)
@@ -68,7 +66,7 @@ def _scene(drive: dict[str, Any], load: dict[str, Any] | None = None) -> dict[st
 
 
 @pytest.mark.parametrize("form", FORMS)
-def test_a_recording_is_what_a_hand_would_write(form: str, tmp_path: Path) -> None:
+def test_a_recording_is_what_a_hand_would_write(form, tmp_path):
     name = FORMS[form](tmp_path / f"drive.{form}").name
     signal = {"file": name, "start_s": 3.5, "end_s": 4.5}
     scene = written_out(
@@ -83,7 +81,7 @@ def test_a_recording_is_what_a_hand_would_write(form: str, tmp_path: Path) -> No
     np.testing.assert_allclose(load["torque_n_m"], -(77.5 - 5.0 * np.array(load["time_s"])), rtol=1e-6)
 
 
-def test_means_keep_the_turns_and_take_the_noise(tmp_path: Path) -> None:
+def test_means_keep_the_turns_and_take_the_noise(tmp_path):
     _csv(tmp_path / "a.csv")
     noisy = SPEED + np.random.default_rng(4).standard_normal(TIME.size)
     columns = np.stack([TIME, noisy / RPM], axis=1)
@@ -115,15 +113,13 @@ def test_means_keep_the_turns_and_take_the_noise(tmp_path: Path) -> None:
         ({"signal": "a.csv"}, "signal", "must be"),
     ],
 )
-def test_what_a_scene_may_not_name_is_refused(
-    drive: dict[str, Any], field: str, bound: str, tmp_path: Path
-) -> None:
+def test_what_a_scene_may_not_name_is_refused(drive, field, bound, tmp_path):
     _csv(tmp_path / "a.csv")
     with pytest.raises(BadInput, match=rf"(?s){field}.*({bound})"):
         written_out(_scene(drive), in_folder(tmp_path), READERS)
 
 
-def test_more_samples_than_a_course_holds_are_refused(tmp_path: Path) -> None:
+def test_more_samples_than_a_course_holds_are_refused(tmp_path):
     with h5py.File(tmp_path / "a.h5", "w") as content:
         content["speed_rpm"] = np.full(100_001, 900.0)
         content.attrs["sample_rate_hz"] = 51_200.0
@@ -131,7 +127,7 @@ def test_more_samples_than_a_course_holds_are_refused(tmp_path: Path) -> None:
         written_out(_scene({"signal": {"file": "a.h5"}}), in_folder(tmp_path), READERS)
 
 
-def test_a_scene_file_is_driven_by_a_recording(tmp_path: Path) -> None:
+def test_a_scene_file_is_driven_by_a_recording(tmp_path):
     text = (EXAMPLES / "palermo_scene.toml").read_text("utf-8")
     for name in EXAMPLES.glob("palermo*"):
         (tmp_path / name.name).write_bytes(name.read_bytes())
@@ -149,7 +145,7 @@ def test_a_scene_file_is_driven_by_a_recording(tmp_path: Path) -> None:
         read_model(SceneInput, tmp_path / "scene.toml")
 
 
-def test_a_service_opens_no_recordings(tmp_path: Path) -> None:
+def test_a_service_opens_no_recordings(tmp_path):
     _csv(tmp_path / "a.csv")
     with pytest.raises(BadInput, match=r"drives\[0\]\.signal.*a service opens no recordings"):
         written_out(_scene({"signal": {"file": "a.csv"}}), in_folder(tmp_path), SENT)

@@ -1,10 +1,5 @@
 """A worker loads what its own work needs: one of a small job starts soon and holds little memory."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
-import pytest
 from running_service import until
 
 from service.worker.order import WorkOrder
@@ -13,9 +8,7 @@ from service.worker.worker import Worker
 HEAVY = {"dynamics", "fastapi", "gmsh", "h5py", "numba", "pydantic", "scipy", "skfem", "sqlalchemy", "xarray"}
 
 
-def test_the_worker_of_a_small_job_loads_no_library_that_computes(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_worker_of_a_small_job_loads_no_library_that_computes(tmp_path, monkeypatch):
     """Python itself tells what is imported until the job has ended: warnings go into its result last."""
     monkeypatch.setenv("PYTHONPROFILEIMPORTTIME", "1")
     workspace, log = tmp_path / "work", tmp_path / "log"

@@ -1,14 +1,10 @@
 """What is stored stays as it is, whatever a later attempt of the same computation writes."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 from service.store.files import DirectoryFiles, digest_of
 from service.worker.child import _unlink_stored
 
 
-def test_another_attempt_writes_beside_what_was_stored(tmp_path: Path) -> None:
+def test_another_attempt_writes_beside_what_was_stored(tmp_path):
     workspace, kept = tmp_path / "work", tmp_path / "results"
     (workspace / "pieces").mkdir(parents=True)
     made, piece = workspace / "result.nc", workspace / "pieces" / "1"

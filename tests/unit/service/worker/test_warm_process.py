@@ -1,11 +1,8 @@
 """Children forked from a warm process are as those started anew, and nothing is lost if it dies."""
 
-from __future__ import annotations
-
 import os
 import signal
 import time
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -17,12 +14,12 @@ from service.worker.worker import WORK
 
 
 @pytest.fixture(scope="module", autouse=True)
-def warm_once() -> None:
+def warm_once():
     """Share no warm process: what becomes of one is what is tested here."""
 
 
 @pytest.fixture
-def machine(tmp_path: Path) -> Iterator[Bench]:
+def machine(tmp_path):
     made = bench(tmp_path, REGISTRY)
     made.scheduler.start()
     yield made
@@ -33,7 +30,6 @@ def warm_process(machine: Bench) -> int:
     """Return the process id of the warm process, once it is warm."""
     launcher = machine.scheduler._crew._launcher
     until(lambda: launcher.warm)
-    assert launcher._server is not None
     return launcher._server._process.pid
 
 
@@ -45,7 +41,7 @@ def parent_of_last(machine: Bench, key: str) -> int:
     return int(Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[1])
 
 
-def test_the_first_child_is_forked(machine: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_first_child_is_forked(machine, monkeypatch):
     """It waits for what it would have to load itself."""
     monkeypatch.setattr(Launcher.launch, "__defaults__", (600.0,))
     job = machine.submit(mode="hang")
@@ -58,7 +54,7 @@ def test_the_first_child_is_forked(machine: Bench, monkeypatch: pytest.MonkeyPat
     assert machine.store.verified(second.key, "database").path.read_text() == "second"
 
 
-def test_a_child_outlives_the_warm_process_and_others_follow(machine: Bench) -> None:
+def test_a_child_outlives_the_warm_process_and_others_follow(machine):
     machine.scheduler._crew._launcher.warm_up()
     warm = warm_process(machine)
     slow = machine.submit(mode="slow", text="slow")
@@ -72,7 +68,7 @@ def test_a_child_outlives_the_warm_process_and_others_follow(machine: Bench) -> 
     assert warm_process(machine) != warm
 
 
-def test_a_stop_does_not_wait_for_a_warm_process(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_stop_does_not_wait_for_a_warm_process(tmp_path, monkeypatch):
     monkeypatch.setattr(Launcher.launch, "__defaults__", (600.0,))
     (tmp_path / "long_to_load.py").write_text("import time\ntime.sleep(600)\n")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path), prepend=os.pathsep)
@@ -93,16 +89,14 @@ def test_a_stop_does_not_wait_for_a_warm_process(tmp_path: Path, monkeypatch: py
     machine.close()
 
 
-def test_a_stop_ends_the_warm_process(machine: Bench) -> None:
+def test_a_stop_ends_the_warm_process(machine):
     machine.scheduler._crew._launcher.warm_up()
     warm = warm_process(machine)
     machine.scheduler.stop()
     assert not lives(warm)
 
 
-def test_after_so_many_children_another_takes_its_place(
-    machine: Bench, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_after_so_many_children_another_takes_its_place(machine, monkeypatch):
     monkeypatch.setattr("host.children.launcher.MAX_FORKS", 2)
     machine.scheduler._crew._launcher.warm_up()
     warm = warm_process(machine)
@@ -112,9 +106,7 @@ def test_after_so_many_children_another_takes_its_place(
     until(lambda: not lives(warm))
 
 
-def test_nobody_waits_for_a_warm_process_that_forks_no_more(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_nobody_waits_for_a_warm_process_that_forks_no_more(tmp_path, monkeypatch):
     """As long as one of its children lives it has no successor."""
     monkeypatch.setattr("host.children.launcher.MAX_FORKS", 1)
     monkeypatch.setattr(Launcher.launch, "__defaults__", (600.0,))
@@ -128,7 +120,7 @@ def test_nobody_waits_for_a_warm_process_that_forks_no_more(
         machine.close()
 
 
-def test_modules_that_cannot_be_imported_leave_a_warm_process(tmp_path: Path) -> None:
+def test_modules_that_cannot_be_imported_leave_a_warm_process(tmp_path):
     launcher = Launcher(WORK, ["no_such_module", "service_fake_work"], tmp_path / "log", print)
     launcher.warm_up()
     try:

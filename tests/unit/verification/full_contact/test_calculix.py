@@ -1,7 +1,5 @@
 """CalculiX as a child: the deck it reads, how it ended, and results that come back."""
 
-from __future__ import annotations
-
 import re
 import stat
 from pathlib import Path
@@ -10,7 +8,6 @@ import numpy as np
 import pytest
 from calculix import (
     Loading,
-    PlacedPair,
     flank_sides,
     input_deck,
     numbered_bodies,
@@ -21,22 +18,20 @@ from calculix import (
 )
 from spur_gears import GEAR
 
-from fe_contact import GearPair
-from fe_contact.types import Status
+from fe_contact import GearPair, Status
+from verification.full_contact import Resolution
 from verification.full_contact.condensation.placed_mesh import placed_bodies
-from verification.full_contact.condensation.resolution import Resolution
 from verification.full_contact.condensation.sites import Range, contact_sites
 
 
 def program(folder: Path, body: str) -> str:
-    """A program that does `body` in the folder of the job."""
     path = folder / "fake"
     path.write_text(f"#!/bin/sh\n{body}\n")
     path.chmod(path.stat().st_mode | stat.S_IXUSR)
     return str(path)
 
 
-def test_a_finished_job_gives_what_it_printed(tmp_path: Path) -> None:
+def test_a_finished_job_gives_what_it_printed(tmp_path):
     body = 'cat job.inp > job.dat; printf " iteration 1\\n iteration 2\\n Job finished\\n"'
     run = run_calculix(program(tmp_path, body), "deck", tmp_path, 10.0)
     assert (run.status, run.reason, run.iterations, run.printed) == (Status.CONVERGED, "", 2, "deck")
@@ -56,7 +51,7 @@ def test_a_finished_job_gives_what_it_printed(tmp_path: Path) -> None:
         ("while :; do :; done", Status.NOT_COMPUTED, "no result within 1 CPU s"),
     ],
 )  # fmt: skip
-def test_a_job_that_does_not_end_well_says_why(tmp_path: Path, body: str, status: Status, said: str) -> None:
+def test_a_job_that_does_not_end_well_says_why(tmp_path, body, status, said):
     run = run_calculix(program(tmp_path, body), "deck", tmp_path, 1.0)
     assert run.status is status
     assert said in run.reason
@@ -76,13 +71,13 @@ PRINTED = """
 
 
 @pytest.fixture(scope="module")
-def placed() -> PlacedPair:
+def placed():
     pair, coarse = GearPair(GEAR, GEAR, 80e-3), Resolution(1.5)
     sites = contact_sites(pair, 0.3, Range((1e5, 1e5), 1e-6), coarse)
     return placed_pair(pair, placed_bodies(pair, 0.3, sites, coarse), 0.0)
 
 
-def test_the_deck_has_short_fields_and_surfaces_for_every_pair(placed: PlacedPair) -> None:
+def test_the_deck_has_short_fields_and_surfaces_for_every_pair(placed):
     fields = [field for line in input_deck(placed, LOADING).splitlines()[2:] if line[0] != "*"
               for field in line.split(",")]  # fmt: skip
     assert max(len(field) for field in fields) <= 20
@@ -91,12 +86,11 @@ def test_the_deck_has_short_fields_and_surfaces_for_every_pair(placed: PlacedPai
     assert deck.count("*CONTACT PAIR") == len(placed.meetings) == 2
     for number, (_, tooth) in enumerate(placed.meetings):
         surface = re.search(rf"NAME=GEAR2FLANK{number}, TYPE=ELEMENT\n((?:\d+,S\d\n)+)", deck)
-        assert surface is not None
         assert len(surface.group(1).split()) == len(flank_sides(placed.gears[1], tooth))
     assert "\n1.000000000000e+09\n" in deck  # 1e18 Pa/m in N/mm^3
 
 
-def test_the_bore_of_gear_1_turns_rigidly_and_clockwise(placed: PlacedPair) -> None:
+def test_the_bore_of_gear_1_turns_rigidly_and_clockwise(placed):
     deck = input_deck(placed, LOADING)
     ties = re.findall(r"\*EQUATION\n2\n(\d+),(\d),1\.,(\d+),1,(\S+)", deck)
     gear, (first, second) = placed.gears[0], numbered_bodies(placed.gears)
@@ -111,7 +105,7 @@ def test_the_bore_of_gear_1_turns_rigidly_and_clockwise(placed: PlacedPair) -> N
         )
 
 
-def test_printed_results_are_read_in_si() -> None:
+def test_printed_results_are_read_in_si():
     printed = read_printed(PRINTED)
     assert printed.turning == pytest.approx(7.510317e-6, rel=1e-12, abs=0.0)
     assert printed.nodes.tolist() == [15355, 15657]
@@ -129,6 +123,6 @@ def test_printed_results_are_read_in_si() -> None:
         (PRINTED.replace("3.000000E+01", "Infinity"), "no finite"),
     ],
 )
-def test_a_result_that_is_not_whole_is_refused(text: str, said: str) -> None:
+def test_a_result_that_is_not_whole_is_refused(text, said):
     with pytest.raises(ValueError, match=said):
         read_printed(text)

@@ -1,14 +1,12 @@
 """CalculiX on the mesh of one position: equilibrium, and the condensed peer."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest
 from calculix import find_calculix, solve_position
 from spur_gears import GEAR
 
-from fe_contact import FlankModification, Gear, GearPair
+from fe_contact import FlankModification, GearPair
 from verification.full_contact import Resolution, solve_full_contact
 
 CALCULIX = find_calculix()
@@ -20,7 +18,7 @@ pytestmark = pytest.mark.skipif(CALCULIX is None, reason="CalculiX (ccx) is not 
 
 
 @pytest.mark.parametrize("gear", [pytest.param(GEAR, marks=pytest.mark.nightly), CROWNED])
-def test_equilibrium_and_the_condensed_peer(gear: Gear) -> None:
+def test_equilibrium_and_the_condensed_peer(gear):
     assert CALCULIX is not None
     pair = GearPair(gear, gear, center_distance=80e-3)
     point = solve_position(CALCULIX, pair, float(pair.normal_force(TORQUE)), 0.0, 300.0, COARSE)
@@ -32,7 +30,7 @@ def test_equilibrium_and_the_condensed_peer(gear: Gear) -> None:
     assert point.transmission_error == pytest.approx(own, rel=2e-3, abs=0.0)
 
 
-def test_a_position_past_its_limit_is_said() -> None:
+def test_a_position_past_its_limit_is_said():
     pair = GearPair(GEAR, GEAR, center_distance=80e-3)
     assert CALCULIX is not None
     point = solve_position(CALCULIX, pair, float(pair.normal_force(TORQUE)), 0.0, 1.0, Resolution(6.0))

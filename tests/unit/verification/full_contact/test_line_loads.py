@@ -1,14 +1,12 @@
 """Line loads of full contact: forces on hats become loads whose integral is the force."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
 from verification.full_contact.line_load import LineLoad, line_loads
 
 
-def test_a_linear_load_comes_back_from_the_forces_on_its_hats() -> None:
+def test_a_linear_load_comes_back_from_the_forces_on_its_hats():
     stations = np.array([-4.0, -3.9, -3.0, 0.0, 4.0])
     width = 0.5 * (np.append(np.diff(stations), 0.0) + np.insert(np.diff(stations), 0, 0.0))
     forces = (7.0 - stations) * width
@@ -22,6 +20,6 @@ def test_a_linear_load_comes_back_from_the_forces_on_its_hats() -> None:
 
 
 @pytest.mark.parametrize("length", [0.1, 1.0, 5.0])
-def test_the_largest_mean_of_a_tent_is_about_its_top(length: float) -> None:
+def test_the_largest_mean_of_a_tent_is_about_its_top(length):
     tent = LineLoad(0, np.array([-3.0, 1.0, 5.0]), np.array([0.0, 8.0, 0.0]))
     assert tent.largest_mean(length) == pytest.approx(8.0 - 0.5 * length, rel=1e-4)

@@ -1,7 +1,5 @@
 """Plane strain elements, the patch test of two blocks, and contact of a given compliance."""
 
-from __future__ import annotations
-
 import itertools
 from functools import cache
 
@@ -46,7 +44,7 @@ def pressed(slave: int) -> tuple[WeakGap, ContactSystem]:
 
 
 @pytest.mark.parametrize("slave", [0, 1])
-def test_a_flat_contact_carries_one_pressure_and_action_is_reaction(slave: int) -> None:
+def test_a_flat_contact_carries_one_pressure_and_action_is_reaction(slave):
     _, system = pressed(slave)
     solution = solve_active_set(system, FORCE)
     assert solution.status.usable
@@ -62,7 +60,7 @@ def test_a_flat_contact_carries_one_pressure_and_action_is_reaction(slave: int) 
     assert gap.weight.sum() == pytest.approx(WIDTH, rel=1e-13)
 
 
-def test_what_passes_its_mate_by_is_left_out() -> None:
+def test_what_passes_its_mate_by_is_left_out():
     """The mate shifted sideways by 0.4 of the width: only what still faces it counts."""
     bodies = blocks()
     first = FlankCurve(bodies[0].points[bodies[0].columns[0]])
@@ -74,7 +72,7 @@ def test_what_passes_its_mate_by_is_left_out() -> None:
     assert centroid / gap.weight.sum() == pytest.approx(0.7 * WIDTH, rel=1e-12)
 
 
-def test_the_condensed_compliance_is_that_of_the_whole_body() -> None:
+def test_the_condensed_compliance_is_that_of_the_whole_body():
     body = blocks()[0]
     np.testing.assert_allclose(body.compliance, body.compliance.T, rtol=0.0, atol=0.0)
     assert np.linalg.eigvalsh(body.compliance).min() > 0.0
@@ -111,7 +109,7 @@ def area() -> float:
     return total
 
 
-def test_rigid_motion_takes_no_force() -> None:
+def test_rigid_motion_takes_no_force():
     matrix = plane_strain_stiffness(POINTS, TRIANGLES, STEEL).toarray()
     np.testing.assert_allclose(matrix, matrix.T, rtol=0.0, atol=1e-15 * matrix.max())
     turned = np.stack([-POINTS[:, 1], POINTS[:, 0]], axis=-1) / 1e-3
@@ -120,7 +118,7 @@ def test_rigid_motion_takes_no_force() -> None:
     assert np.sum(np.linalg.eigvalsh(matrix) > 1e-9 * matrix.max()) == len(matrix) - 3
 
 
-def test_even_strain_stores_the_energy_of_plane_strain() -> None:
+def test_even_strain_stores_the_energy_of_plane_strain():
     matrix = plane_strain_stiffness(POINTS, TRIANGLES, STEEL)
     e, nu = STEEL.youngs_modulus, STEEL.poissons_ratio
     lam, mu = e * nu / ((1 + nu) * (1 - 2 * nu)), e / (2 * (1 + nu))
@@ -166,7 +164,7 @@ def by_enumeration(s: ContactSystem, torque: float) -> list[tuple[np.ndarray, fl
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_it_finds_the_one_set_that_keeps_the_laws(seed: int) -> None:
+def test_it_finds_the_one_set_that_keeps_the_laws(seed):
     case = random_system(seed)
     ((pressure, lag),) = by_enumeration(case, 2.0)
     solution = solve_active_set(case, 2.0)
@@ -176,7 +174,7 @@ def test_it_finds_the_one_set_that_keeps_the_laws(seed: int) -> None:
     assert solution.residual < 1e-12
 
 
-def test_the_lag_grows_with_the_torque_from_wherever_it_starts() -> None:
+def test_the_lag_grows_with_the_torque_from_wherever_it_starts():
     case = random_system(5, hats=40)
     torques = np.geomspace(1e-3, 1e3, 25)
     lags = [solve_active_set(case, torque).lag for torque in torques]

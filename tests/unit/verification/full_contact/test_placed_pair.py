@@ -1,7 +1,5 @@
 """Both gears in conjugate position: they touch, external and internal, and an approach turns the driver."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -49,7 +47,7 @@ def closest(first: FloatArray, second: FloatArray) -> float:
 @pytest.mark.drawn
 @pytest.mark.parametrize("pair", [PAIR, INTERNAL], ids=["external", "internal"])
 @pytest.mark.parametrize("position", [-0.45, 0.0, 0.3])
-def test_every_pair_on_the_path_of_contact_touches(pair: ParallelAxes, position: float) -> None:
+def test_every_pair_on_the_path_of_contact_touches(pair, position):
     first, second = bodies_at(pair, position)
     path, touching = pair.path_of_contact, 0
     for ahead in first.strips:
@@ -63,7 +61,7 @@ def test_every_pair_on_the_path_of_contact_touches(pair: ParallelAxes, position:
     )
 
 
-def test_the_driving_gear_turns_towards_its_mate() -> None:
+def test_the_driving_gear_turns_towards_its_mate():
     bodies = bodies_at(PAIR, 0.0)
     before, after = (placed_pair(PAIR, bodies, approach) for approach in (0.0, 50e-6))
     moved = after.gears[0].points - before.gears[0].points
@@ -76,7 +74,7 @@ def test_the_driving_gear_turns_towards_its_mate() -> None:
     assert freedoms(np.array([3, 0])).tolist() == [6, 7, 0, 1]
 
 
-def test_modified_flanks_are_apart_by_what_was_removed_and_turn_no_element_over() -> None:
+def test_modified_flanks_are_apart_by_what_was_removed_and_turn_no_element_over():
     relieved = replace(PINION, modification=FlankModification(profile_crowning=40e-6))
     pair = replace(PAIR, pinion=relieved)
     roll = float(pair.roll_lengths(0.0)[0])
@@ -91,7 +89,7 @@ def test_modified_flanks_are_apart_by_what_was_removed_and_turn_no_element_over(
         assert least_jacobian(body.points[body.triangles]).min() > 0.1
 
 
-def test_teeth_off_the_path_are_held_where_the_lag_brings_them_to_touch() -> None:
+def test_teeth_off_the_path_are_held_where_the_lag_brings_them_to_touch():
     near = contact_sites(PAIR, 0.2, HELD, COARSE)
     gap = least_omitted_gap(PAIR, 0.2, near)
     assert np.isfinite(gap)

@@ -1,7 +1,5 @@
 """Full contact of gears by condensation: laws that every solution keeps, and refusals."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 
@@ -9,10 +7,8 @@ import numpy as np
 import pytest
 from spur_gears import GEAR, PAIR
 
-from fe_contact import FlankModification, Gear, GearPair, InternalGearPair, RingGear
+from fe_contact import FlankModification, Gear, GearBlank, GearPair, InternalGearPair, Material, RingGear
 from fe_contact.errors import InputError, MeshError
-from fe_contact.geometry import GearBlank, ParallelAxes
-from fe_contact.material import Material
 from verification.full_contact import FullContactTable, Resolution, refusal, solve_full_contact
 from verification.full_contact.condensation import placed_mesh
 from verification.full_contact.condensation import solve as solved_position
@@ -29,7 +25,7 @@ def table(*positions: float) -> FullContactTable:
 
 
 @pytest.mark.parametrize("position", [0.05, 0.2, 0.5])
-def test_equilibrium_energy_and_complementarity_hold_to_rounding(position: float) -> None:
+def test_equilibrium_energy_and_complementarity_hold_to_rounding(position):
     for point in table(position).points[0]:
         assert point.status.usable, point.reason
         assert point.residual < 1e-10  # bore moment and torque, u f and p C p, pressures, gaps
@@ -37,7 +33,7 @@ def test_equilibrium_energy_and_complementarity_hold_to_rounding(position: float
         assert point.iterations > 0
 
 
-def test_it_stiffens_under_load_and_torques_differ_off_the_line_of_action() -> None:
+def test_it_stiffens_under_load_and_torques_differ_off_the_line_of_action():
     ste = table(0.5).transmission_error[0]
     assert np.all(np.diff(ste) > 0.0)
     assert np.all(np.diff(ste / np.array(TORQUES)) < 0.0)
@@ -48,7 +44,7 @@ def test_it_stiffens_under_load_and_torques_differ_off_the_line_of_action() -> N
 
 
 @pytest.mark.law
-def test_a_pair_of_twins_mirrors() -> None:
+def test_a_pair_of_twins_mirrors():
     """Driven backwards by the other gear: the same contact, named by the angle of what then drives."""
     position, torque = 0.34, 1
     ste = float(table(position).transmission_error[0, torque])
@@ -59,7 +55,7 @@ def test_a_pair_of_twins_mirrors() -> None:
     assert first[0] == pytest.approx(second[0], abs=1e-3)
 
 
-def test_positions_repeat_and_a_coarser_mesh_states_the_error() -> None:
+def test_positions_repeat_and_a_coarser_mesh_states_the_error():
     near, far = table(0.2), solve_full_contact(PAIR, TORQUES, [3.2], COARSE)
     np.testing.assert_allclose(far.transmission_error, near.transmission_error, rtol=1e-9)
     assert far.points[0][0].position == 3.2
@@ -70,7 +66,7 @@ def test_positions_repeat_and_a_coarser_mesh_states_the_error() -> None:
     assert "error_estimate_m" in found.points[0][0].to_json()
 
 
-def test_elasticity_scales() -> None:
+def test_elasticity_scales():
     """Lengths, face and torque scaled: STE over length depends on torque / (E b r^2) alone."""
     gear = Gear(20, 2e-3, 40e-3, 20e-3, material=Material(70e9, 0.3))
     pair = GearPair(gear, gear, center_distance=40e-3)
@@ -79,7 +75,7 @@ def test_elasticity_scales() -> None:
     np.testing.assert_allclose(2.0 * scaled, table(0.5).transmission_error, rtol=1e-4)
 
 
-def test_relief_parts_the_flanks_by_what_is_removed() -> None:
+def test_relief_parts_the_flanks_by_what_is_removed():
     """Both flanks relieved evenly along the whole profile: the gear lags by that much more."""
     removed = 12e-6
     crowned = replace(GEAR, modification=FlankModification(profile_crowning=removed))
@@ -95,9 +91,7 @@ def test_relief_parts_the_flanks_by_what_is_removed() -> None:
 @pytest.mark.parametrize(
     "pair", [GearPair(GEAR, WHEEL, 102e-3), InternalGearPair(GEAR, WIDE_RING)], ids=["external", "internal"]
 )
-def test_the_raised_ring_stands_for_the_teeth_that_are_left_out(
-    pair: ParallelAxes, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_raised_ring_stands_for_the_teeth_that_are_left_out(pair, monkeypatch):
     solved = []
     for teeth in (placed_mesh.FEW_TEETH, pair.wheel.teeth):
         monkeypatch.setattr(placed_mesh, "FEW_TEETH", teeth)
@@ -106,7 +100,7 @@ def test_the_raised_ring_stands_for_the_teeth_that_are_left_out(
 
 
 @pytest.mark.law
-def test_a_high_contact_ratio_shares_among_more_pairs() -> None:
+def test_a_high_contact_ratio_shares_among_more_pairs():
     tall = Gear(
         teeth=60, normal_module=2e-3, face_width=20e-3, bore_diameter=40e-3,
         addendum_coefficient=1.4, dedendum_coefficient=1.65, root_radius_coefficient=0.2,
@@ -119,7 +113,7 @@ def test_a_high_contact_ratio_shares_among_more_pairs() -> None:
     assert point.load_share[1] == pytest.approx(point.load_share[-1], abs=2e-3)
 
 
-def test_the_same_gears_inside_a_ring_deflect_less() -> None:
+def test_the_same_gears_inside_a_ring_deflect_less():
     pinion = Gear(24, 2e-3, 20e-3, bore_diameter=24e-3)
     ring = RingGear(72, 2e-3, 20e-3, rim_diameter=164e-3, addendum_coefficient=0.85)
     (point,) = solve_full_contact(InternalGearPair(pinion, ring), [50.0], [-0.2], COARSE).points[0]
@@ -130,7 +124,7 @@ def test_the_same_gears_inside_a_ring_deflect_less() -> None:
 
 
 @pytest.mark.law
-def test_unlike_materials_share_the_deflection() -> None:
+def test_unlike_materials_share_the_deflection():
     soft = replace(WHEEL, material=Material(9e9, 0.35))
     found = solve_full_contact(GearPair(GEAR, soft, 102e-3), [40.0], [0.4], COARSE)
     stiff = solve_full_contact(GearPair(GEAR, WHEEL, 102e-3), [40.0], [0.4], COARSE)
@@ -138,7 +132,7 @@ def test_unlike_materials_share_the_deflection() -> None:
     assert found.transmission_error[0, 0] > 8.0 * stiff.transmission_error[0, 0]
 
 
-def test_what_it_cannot_hold_is_refused_by_reason() -> None:
+def test_what_it_cannot_hold_is_refused_by_reason():
     assert refusal(PAIR) is None
     helical = [replace(GEAR, helix_angle=angle) for angle in (0.2, -0.2)]
     assert "helical" in str(refusal(GearPair(*helical, center_distance=helical[0].reference_radius * 2.0)))
@@ -157,8 +151,8 @@ def test_what_it_cannot_hold_is_refused_by_reason() -> None:
         solve_full_contact(PAIR, [], [0.0])
 
 
-def test_a_position_without_a_mesh_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
-    def fail(*_: object) -> None:
+def test_a_position_without_a_mesh_says_why(monkeypatch):
+    def fail(*_):
         raise MeshError("gmsh: no")
 
     monkeypatch.setattr(solved_position, "placed_bodies", fail)

@@ -1,7 +1,5 @@
 """What tables, flank results and root stress took for granted is checked: set right, refused or reported."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -34,16 +32,15 @@ TINY = {"torques": [100.0], "misalignments": [0.02e-6], "positions": 16, "tolera
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 
 def table(pair: GearPair, cache: Path, **asked: object) -> SteDatabase:
-    return analyze(pair, cache=cache, **asked)  # type: ignore[arg-type]
+    return analyze(pair, cache=cache, **asked)
 
 
 def assumption(found: SteDatabase, effect: str) -> Json:
-    """The one entry of an effect."""
     (entry,) = [one for one in found.metadata.receipt["assumptions"] if one["effect"] == effect]
     return dict(entry)
 
@@ -60,8 +57,8 @@ def same(one: SteDatabase, other: SteDatabase) -> None:
             np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
 
 
-def test_an_automatic_effect_that_is_needed_is_switched_on_and_the_table_repeated(cache: Path) -> None:
-    assert not check_request(CLEAR, *table_request(**SKEWED)).model.corner_contact  # type: ignore[arg-type]
+def test_an_automatic_effect_that_is_needed_is_switched_on_and_the_table_repeated(cache):
+    assert not check_request(CLEAR, *table_request(**SKEWED)).model.corner_contact
     repeated, explicit = (
         table(CLEAR, cache, **SKEWED, effects=effects) for effects in ({}, {"corner_contact": "on"})
     )
@@ -76,7 +73,7 @@ def test_an_automatic_effect_that_is_needed_is_switched_on_and_the_table_repeate
     assert explicit.metadata.receipt["repeated"] == []
 
 
-def test_the_caller_may_have_it_fail_or_only_reported(cache: Path) -> None:
+def test_the_caller_may_have_it_fail_or_only_reported(cache):
     with pytest.raises(SolveError, match="tip edges stay clear"):
         table(CLEAR, cache, **SKEWED, on_violation="fail")
     reported = table(CLEAR, cache, **SKEWED, on_violation="report")
@@ -85,7 +82,7 @@ def test_the_caller_may_have_it_fail_or_only_reported(cache: Path) -> None:
 
 
 @pytest.mark.law
-def test_what_was_switched_off_by_name_stays_off(cache: Path) -> None:
+def test_what_was_switched_off_by_name_stays_off(cache):
     asked = {"torques": [100.0], "level": "draft", "positions": 64}
     without, whole = (table(PAIR, cache, **asked, effects=e) for e in ({"corner_contact": "off"}, {}))
     assert without.metadata.receipt["repeated"] == []
@@ -96,7 +93,7 @@ def test_what_was_switched_off_by_name_stays_off(cache: Path) -> None:
     assert 0.0 < change < found["change"] * without.peak_to_peak(torque=100.0).value
 
 
-def test_edges_that_stay_clear_pass(cache: Path) -> None:
+def test_edges_that_stay_clear_pass(cache):
     relieved = replace(GEAR, modification=FlankModification(tip_relief=40e-6, tip_relief_length=0.5e-3))
     asked = {"torques": [20.0], "level": "draft", "positions": 32}
     found = table(GearPair(relieved, relieved), cache, **asked)
@@ -110,7 +107,7 @@ def test_edges_that_stay_clear_pass(cache: Path) -> None:
     assert assumption(found, "corner_contact")["holds"] is True
 
 
-def test_an_effect_below_the_tolerance_is_neglected_and_its_model_with_it(cache: Path) -> None:
+def test_an_effect_below_the_tolerance_is_neglected_and_its_model_with_it(cache):
     neglected, aligned = (table(PAIR, cache, **(TINY | more)) for more in ({}, {"misalignments": [0.0]}))
     same(neglected, aligned)
     assert neglected.metadata.receipt["plan"]["model"] == aligned.metadata.receipt["plan"]["model"]
@@ -132,14 +129,14 @@ def test_an_effect_below_the_tolerance_is_neglected_and_its_model_with_it(cache:
         {"misalignments": [3e-6], "tolerance": 2e-3},
     ],
 )
-def test_it_is_kept_without_a_tolerance_by_name_or_where_it_matters(more: Json) -> None:
-    checked = check_request(PAIR, *table_request(**TINY | more))  # type: ignore[arg-type]
+def test_it_is_kept_without_a_tolerance_by_name_or_where_it_matters(more):
+    checked = check_request(PAIR, *table_request(**TINY | more))
     assert checked.decision["misalignment"] == "on"
     assert checked.model.across_face
 
 
 @pytest.mark.law
-def test_an_effect_neglected_in_error_is_set_right(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_effect_neglected_in_error_is_set_right(cache, monkeypatch):
     asked = TINY | {"misalignments": [10e-6]}
     right = table(PAIR, cache, **asked)
     monkeypatch.setattr(neglected_effects, "SHARE", 1e3)
@@ -152,7 +149,7 @@ def test_an_effect_neglected_in_error_is_set_right(cache: Path, monkeypatch: pyt
     same(wrong, right)
 
 
-def test_teeth_that_jam_are_noticed(cache: Path) -> None:
+def test_teeth_that_jam_are_noticed(cache):
     # backlash of 60 um: room for a misalignment of 40 um, not for one of 80 um
     thinner = replace(GEAR, thickness_allowance=32e-6)
     pair = GearPair(thinner, thinner)
@@ -171,12 +168,11 @@ AT = [0.1, *handovers(CLEAR)]
 
 
 def edges(receipt: Json) -> Json:
-    """The entry of the tip edges."""
     (entry,) = [one for one in receipt["assumptions"] if one["effect"] == "corner_contact"]
     return dict(entry)
 
 
-def test_flank_results_are_repeated_refused_or_reported(cache: Path) -> None:
+def test_flank_results_are_repeated_refused_or_reported(cache):
     how: dict[str, Any] = {"run": Run(cache=cache), "at": AT}
     repeated = flank_results(CLEAR, *point_request(**SKEWED_POINT), **how)
     explicit = flank_results(CLEAR, *point_request(effects={"corner_contact": "on"}, **SKEWED_POINT), **how)
@@ -195,7 +191,7 @@ def test_flank_results_are_repeated_refused_or_reported(cache: Path) -> None:
         flank_results(CLEAR, *point_request(on_violation="fail", **SKEWED_POINT), **how)
 
 
-def test_root_stress_is_repeated_too(cache: Path) -> None:
+def test_root_stress_is_repeated_too(cache):
     how: dict[str, Any] = {"run": Run(cache=cache), "at": AT}
     repeated = root_stress(CLEAR, *point_request(**SKEWED_POINT), **how)
     explicit = root_stress(CLEAR, *point_request(effects={"corner_contact": "on"}, **SKEWED_POINT), **how)
@@ -211,20 +207,20 @@ def test_root_stress_is_repeated_too(cache: Path) -> None:
         root_stress(CLEAR, *point_request(on_violation="fail", **SKEWED_POINT), **how)
 
 
-def test_positions_that_pass_a_handover_by_miss_no_edge(cache: Path) -> None:
+def test_positions_that_pass_a_handover_by_miss_no_edge(cache):
     """Sixteen positions and five hundred assess the edges alike: the gap is least where pairs change."""
     pair = GearPair(GEAR, GEAR)
     asked = {"torques": [100.0], "level": "draft", "effects": {"corner_contact": "off"}, "cache": cache}
     bends = []
     for positions in (8, 13, 256):
-        found = analyze(pair, positions=positions, **asked)  # type: ignore[arg-type]
+        found = analyze(pair, positions=positions, **asked)
         curve = found.static_transmission_error[:, 0, 0, 0]
         bends.append(edges(found.metadata.receipt)["change"] * np.ptp(curve))
     assert bends[0] == pytest.approx(bends[2], rel=0.02)
     assert bends[1] == pytest.approx(bends[2], rel=0.02)
 
 
-def test_handovers_are_just_outside_the_path_of_contact() -> None:
+def test_handovers_are_just_outside_the_path_of_contact():
     pair = check_request(GearPair(GEAR, GEAR), TableAxes(torques=[1.0])).request.pair
     path = pair.path_of_contact
     rolls = [path.pitch_point + (x + j) * path.base_pitch for x in handovers(pair) for j in (-2, -1, 0, 1)]

@@ -1,21 +1,17 @@
 """The effect ledger: every effect with its decision, influence, cost, price and check."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 from analysis_requests import table_request
 from spur_gears import GEAR
 
-from fe_contact import FlankModification, GearPair, PitchDeviation, Shaft, analyze
+from fe_contact import AnalysisOptions, FlankModification, GearPair, PitchDeviation, Shaft, TableAxes, analyze
 from fe_contact.analysis.checks.effect_ledger import effect_ledger
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.run_plan import plan_run
 from fe_contact.effects import EFFECTS
-from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.types import Json
 
 FULL = replace(
@@ -33,7 +29,7 @@ FIELDS = {
 
 def ledger(pair: GearPair, **asked: object) -> dict[str, Json]:
     """Entries by name, before anything is computed."""
-    checked = check_request(pair, *table_request(**{"torques": [100.0], "positions": 16} | asked))  # type: ignore[arg-type]
+    checked = check_request(pair, *table_request(**{"torques": [100.0], "positions": 16} | asked))
     return {entry["name"]: entry for entry in effect_ledger(checked, None)}
 
 
@@ -47,7 +43,7 @@ def ledger(pair: GearPair, **asked: object) -> dict[str, Json]:
         (PLAIN, {"effects": dict.fromkeys(("tooth_coupling", "corner_contact"), "off")}),
     ],
 )
-def test_every_effect_has_every_field(pair: GearPair, asked: Json) -> None:
+def test_every_effect_has_every_field(pair, asked):
     found = ledger(pair, **asked)
     assert list(found) == [effect.name for effect in EFFECTS]
     for entry in found.values():
@@ -59,7 +55,7 @@ def test_every_effect_has_every_field(pair: GearPair, asked: Json) -> None:
     json.dumps(found, allow_nan=False)
 
 
-def test_a_choice_against_the_scene_is_obeyed_and_has_a_price() -> None:
+def test_a_choice_against_the_scene_is_obeyed_and_has_a_price():
     off = ledger(PLAIN, effects={"tooth_coupling": "off"})["tooth_coupling"]
     assert not off["on"]
     assert off["decision"] == "as requested, although the scene calls for it"
@@ -72,7 +68,7 @@ def test_a_choice_against_the_scene_is_obeyed_and_has_a_price() -> None:
     assert all(entry["price"] == "" for entry in ledger(PLAIN).values())
 
 
-def test_three_dimensions_cost_what_the_plan_says(tmp_path: Path) -> None:
+def test_three_dimensions_cost_what_the_plan_says(tmp_path):
     axes = TableAxes(torques=[100.0])
     flat, solid = (
         plan_run(PLAIN, axes, AnalysisOptions(model=model, positions=16), cache=tmp_path)
@@ -83,7 +79,7 @@ def test_three_dimensions_cost_what_the_plan_says(tmp_path: Path) -> None:
     assert found["face_load_distribution"]["cost_cpu_seconds"] == pytest.approx(extra, rel=1e-6)
 
 
-def test_a_minimal_receipt_estimates_neither_influence_nor_cost() -> None:
+def test_a_minimal_receipt_estimates_neither_influence_nor_cost():
     table = analyze(PLAIN, torques=[100.0], level="draft", positions=16, receipt="minimal")
     for entry in table.metadata.effect_ledger:
         assert set(entry) == FIELDS

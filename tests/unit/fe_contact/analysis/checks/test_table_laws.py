@@ -1,7 +1,5 @@
 """A table that breaks a law of mechanics is no result: planted breaks fail it, tables as solved do not."""
 
-from __future__ import annotations
-
 import copy
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -37,7 +35,7 @@ UNEVEN = replace(GEAR, pitch_deviation=PitchDeviation(5e-6 * np.sin(np.arange(20
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 
@@ -47,7 +45,7 @@ def solved(pair: GearPair, cache: Path, **asked: Any) -> SolvedTable:
 
 
 @pytest.fixture(scope="module")
-def relieved(cache: Path) -> SolvedTable:
+def relieved(cache):
     return solved(GearPair(RELIEVED, GEAR), cache, **THREE_LOADS)
 
 
@@ -69,7 +67,7 @@ def _into(
 ) -> Callable[[dict[str, np.ndarray], np.ndarray], None]:
     """Return a fault at one position and the middle load of an array of the table."""
 
-    def plant(arrays: dict[str, np.ndarray], _force: np.ndarray) -> None:
+    def plant(arrays, _force):
         place = arrays[name][SPOT] if name == "no_load_transmission_error" else arrays[name][SPOT, 1]
         place[...] = change(place)
 
@@ -156,14 +154,14 @@ def planted(made: SolvedTable, fault: Break) -> SolvedTable:
 
 
 @pytest.mark.parametrize("fault", BREAKS.values(), ids=BREAKS)
-def test_a_planted_break_fails_by_law_place_and_numbers(relieved: SolvedTable, fault: Break) -> None:
+def test_a_planted_break_fails_by_law_place_and_numbers(relieved, fault):
     broken = planted(relieved, fault)
     with pytest.raises(SolveError, match=f"{fault.law}: .* is .* at position .*, bound ") as refused:
         assert_lawful(broken)
     assert refused.value.partial is broken.table
 
 
-def test_every_law_has_a_planted_break(relieved: SolvedTable) -> None:
+def test_every_law_has_a_planted_break(relieved):
     laws = {law.law for law in check_laws(relieved.table, relieved.places.places, relieved.solved)}
     assert laws - {"continuity without load"} == {fault.law for fault in BREAKS.values()}
 
@@ -180,13 +178,11 @@ def test_every_law_has_a_planted_break(relieved: SolvedTable) -> None:
     ],
     ids=["plain", "light and heavy", "relieved", "uneven pitches", "misaligned", "helical"],
 )
-def test_tables_as_solved_obey_all_laws(pair: GearPair, asked: Any, cache: Path) -> None:
+def test_tables_as_solved_obey_all_laws(pair, asked, cache):
     assert_lawful(solved(pair, cache, **asked))
 
 
-def test_a_run_whose_table_breaks_a_law_fails_with_it(
-    relieved: SolvedTable, cache: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_run_whose_table_breaks_a_law_fails_with_it(relieved, cache, monkeypatch):
     broken = planted(relieved, BREAKS["a deflection below the flanks"])
     monkeypatch.setattr(compute_database, "solve_table", lambda *_, **__: broken)
     for tolerance in (None, 0.02):
@@ -194,12 +190,12 @@ def test_a_run_whose_table_breaks_a_law_fails_with_it(
             THREE_LOADS if tolerance is None else {"torques": THREE_LOADS["torques"], "tolerance": tolerance}
         )
         with pytest.raises(SolveError, match="breaks a law of mechanics") as refused:
-            analyze(GearPair(RELIEVED, GEAR), cache=cache, **asked)  # type: ignore[arg-type]
+            analyze(GearPair(RELIEVED, GEAR), cache=cache, **asked)
         assert refused.value.partial is broken.table
 
 
-def test_the_receipt_says_how_near_each_law_is_to_its_bound(cache: Path) -> None:
-    laws = analyze(PAIR, cache=cache, **THREE_LOADS).metadata.receipt["laws"]  # type: ignore[arg-type]
+def test_the_receipt_says_how_near_each_law_is_to_its_bound(cache):
+    laws = analyze(PAIR, cache=cache, **THREE_LOADS).metadata.receipt["laws"]
     assert len(laws) >= 10
     assert all(0.0 <= law["ratio"] <= 1.0 for law in laws)
     ratio = {law["law"]: law["ratio"] for law in laws}
@@ -212,7 +208,7 @@ EDGE_BREAK = ((5.0, 21.5, 22.3, 22.6, 22.85), (0.0, -4.0, -5.5, -5.0, 13.8))
 """Roll lengths in mm and what is removed in um: the end of a measured trace at its tip."""
 
 
-def test_a_trace_on_one_tooth_never_lifts_by_more_than_it_is_high(cache: Path) -> None:
+def test_a_trace_on_one_tooth_never_lifts_by_more_than_it_is_high(cache):
     roll, removed = (np.array(values) for values in EDGE_BREAK)
     grid = FlankGrid(tuple(1e-3 * roll), (-12e-3, 12e-3), tuple((1e-6 * x, 1e-6 * x) for x in removed))
     asked: Any = {"torques": [200.0], "level": "draft"}
@@ -222,7 +218,7 @@ def test_a_trace_on_one_tooth_never_lifts_by_more_than_it_is_high(cache: Path) -
     assert np.ptp(table.static_transmission_error) < np.ptp(removed) * 1e-6 + plain.max()
 
 
-def test_a_jump_to_the_next_crest_is_no_more_than_its_curvature_makes_it(cache: Path) -> None:
+def test_a_jump_to_the_next_crest_is_no_more_than_its_curvature_makes_it(cache):
     """The strip of a crest is narrower: two cylinders approach by p/(pi E*) ln of the ratio of curvatures."""
     small = gear(51, normal_module=1e-3, face_width=15e-3, bore_diameter=20e-3)
     ends = small.form_roll_length, small.tip_roll_length
@@ -239,7 +235,7 @@ def test_a_jump_to_the_next_crest_is_no_more_than_its_curvature_makes_it(cache: 
     assert 20e-9 < steps.max() < 0.3e-6
 
 
-def test_a_contact_at_the_edge_of_flanks_that_open_never_softens(cache: Path) -> None:
+def test_a_contact_at_the_edge_of_flanks_that_open_never_softens(cache):
     """Hollow flanks touch at the edge of the mate where plain flanks touch inside."""
     hollow = tuple(ToothFlank(tooth=t, profile_form=-3e-6 * (t % 5)) for t in range(2, 21))
     pair = GearPair(replace(GEAR, tooth_flanks=hollow), GEAR)
@@ -256,7 +252,7 @@ def test_a_contact_at_the_edge_of_flanks_that_open_never_softens(cache: Path) ->
     assert np.all(np.diff(tangent, axis=1) < 1e-9 * tangent[:, 1:])
 
 
-def test_a_patch_leaves_its_edge_without_a_step_of_the_curve(cache: Path) -> None:
+def test_a_patch_leaves_its_edge_without_a_step_of_the_curve(cache):
     """A soft wheel is tilted so much that a step of the tilt by 2 % was one of the curve by 0.06 um."""
     steel = gear(51, normal_module=1e-3, face_width=15e-3, bore_diameter=33e-3, tip_diameter=52.894e-3)
     plastic = Material(youngs_modulus=2.282e9, poissons_ratio=0.3)
@@ -275,11 +271,11 @@ def test_a_patch_leaves_its_edge_without_a_step_of_the_curve(cache: Path) -> Non
         analyze(pair, cache=cache, **asked)  # raises where a law is broken
 
 
-def test_a_light_load_forgives_the_accuracy_of_the_gaps_and_no_more(cache: Path) -> None:
+def test_a_light_load_forgives_the_accuracy_of_the_gaps_and_no_more(cache):
     """Under some newtons an error of the gaps of 1 nm is a per cent of the deflection."""
     made = solved(GearPair(RELIEVED, GEAR), cache, torques=[0.1], level="draft", positions=16)
 
-    def lifted(height: float) -> SolvedTable:
+    def lifted(height):
         rigid = made.table.no_load_transmission_error + height
         return replace(made, table=replace(made.table, no_load_transmission_error=rigid))
 

@@ -1,10 +1,7 @@
 """A tolerance is kept: plan, run, measure, refine what dominates, and say why it ends."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,9 +9,9 @@ from analysis_requests import table_request
 
 from fe_contact import AllowedError, Gear, GearPair, InternalGearPair, RingGear, SteDatabase, analyze
 from fe_contact.analysis.database import refined_table
-from fe_contact.analysis.database.compute_database import _Computed, compute_database, compute_pass
+from fe_contact.analysis.database.compute_database import compute_database, compute_pass
 from fe_contact.analysis.estimates import validation_loads
-from fe_contact.analysis.request.model_choice import Decision, decide
+from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.errors import MeshError, SolveError
 from fe_contact.options import AnalysisOptions, Run, TableAxes
@@ -27,7 +24,7 @@ PLANE = {"torques": [2.0, 5.0], "model": "plane_strain"}
 
 
 @pytest.fixture(autouse=True)
-def nothing_but_discretization(monkeypatch) -> None:
+def nothing_but_discretization(monkeypatch):
     """No refinement mends what the method and plane strain leave out: it would end every run here."""
     none = (0.0, 0.0, 0.0)
     monkeypatch.setattr(model_error, "FLOOR", none)
@@ -36,10 +33,10 @@ def nothing_but_discretization(monkeypatch) -> None:
 
 
 @pytest.fixture
-def from_draft(monkeypatch) -> None:
+def from_draft(monkeypatch):
     """Begin with the draft, whatever is expected of it: what follows is about what is measured."""
 
-    def drafted(checked, cache=None, **_) -> Decision:
+    def drafted(checked, cache=None, **_):
         first = decide(checked, cache)
         return first.refined("draft", first.mesh.slices, first.plan.nodes, "the coarsest")
 
@@ -171,7 +168,7 @@ def test_passes_share_condensed_bodies(from_draft, monkeypatch):
     computed: list[list[str]] = []
     predicted: list[float] = []
 
-    def counted(checked, case, run, decision, clock) -> _Computed:
+    def counted(checked, case, run, decision, clock):
         done = compute_pass(checked, case, run, decision, clock)
         computed.append(sorted(file.name for file in run.cache.glob("compliance-*")))
         predicted.append(receipt(done.table)["prediction"]["cpu_seconds"])
@@ -221,10 +218,9 @@ def test_a_pass_that_fails_or_is_interrupted_keeps_the_table_before_it(from_draf
 
 
 def fail_from(monkeypatch, number: int, error: BaseException) -> None:
-    """Let a pass and those after it fail."""
     begun: list[int] = []
 
-    def failing(*arguments, **more) -> _Computed:
+    def failing(*arguments, **more):
         begun.append(1)
         if len(begun) >= number:
             raise error
@@ -254,7 +250,7 @@ def test_a_level_or_a_minimal_receipt_refines_nothing():
 
 
 @pytest.mark.law
-def test_loads_are_inserted_until_every_interval_meets_the_tolerance(tmp_path: Path):
+def test_loads_are_inserted_until_every_interval_meets_the_tolerance(tmp_path):
     """Those that were requested stay the axis; the others are support loads between them."""
     wide = analyze(SPUR, tolerance=0.01, **(PLANE | {"torques": [16.0, 80.0]}), cache=tmp_path)
     kept = receipt(wide)["tolerance"]
@@ -275,7 +271,7 @@ def figures_at(table, torque):
     return table.mean(torque=torque), table.peak_to_peak(torque=torque)
 
 
-def test_an_interval_that_misses_the_tolerance_is_not_met(tmp_path: Path, monkeypatch):
+def test_an_interval_that_misses_the_tolerance_is_not_met(tmp_path, monkeypatch):
     """Without a limit on halvings it would be: met is said of the intervals, too."""
     monkeypatch.setattr(validation_loads, "MAX_HALVINGS", 0)
     wide = analyze(SPUR, tolerance=0.01, **(PLANE | {"torques": [1.0, 80.0]}), cache=tmp_path)
@@ -290,7 +286,7 @@ def test_an_interval_that_misses_the_tolerance_is_not_met(tmp_path: Path, monkey
     assert receipt(dense)["tolerance"]["between_nodes"] == []
 
 
-def test_a_level_inserts_nothing(tmp_path: Path):
+def test_a_level_inserts_nothing(tmp_path):
     table = analyze(SPUR, level="draft", **(PLANE | {"torques": [16.0, 80.0]}), cache=tmp_path)
     assert table.inserted_force.size == 0
     assert table.interval_error[0, 0, 0, 0] > 0.0

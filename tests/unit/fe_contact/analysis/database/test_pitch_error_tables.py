@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from analysis_requests import point_request, table_request
 
-from fe_contact import Gear, GearPair, PitchDeviation, analyze, flank_results
+from fe_contact import Gear, GearPair, PitchDeviation, Run, RunOut, TableAxes, Wave, analyze, flank_results
 from fe_contact.analysis import position_nodes
 from fe_contact.analysis.estimates.position_errors import measured_nodes
 from fe_contact.analysis.pairs import solved_contact
@@ -16,8 +16,6 @@ from fe_contact.analysis.tables import solve_table
 from fe_contact.contact.sweep import solve_sets
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.errors import InputError
-from fe_contact.geometry import RunOut, Wave
-from fe_contact.options import Run, TableAxes
 from fe_contact.planning.plan import NodeRule
 from model_studies.stage_clock import StageClock
 

@@ -1,7 +1,5 @@
 """What the next pass refines: a pure function of what ran and of the errors it measured."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 
@@ -50,7 +48,7 @@ def told(made: Refinement | str) -> object:
 
 
 @pytest.fixture(scope="module")
-def helical() -> Decision:
+def helical():
     return ran(pair(0.3), "standard", 15)
 
 

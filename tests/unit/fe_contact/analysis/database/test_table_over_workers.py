@@ -1,12 +1,9 @@
 """A table cut between its positions and put together again has the bits of one that was not."""
 
-from __future__ import annotations
-
 import pickle
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from math import radians
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -46,12 +43,12 @@ class Elsewhere:
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 
 @pytest.fixture(autouse=True)
-def small_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
+def small_tasks(monkeypatch):
     """Cut small tables as large ones are."""
     monkeypatch.setattr(contact_lines, "TASK_SECONDS", 0.002)
     monkeypatch.setattr(dispatch, "START_SECONDS", 0.0)
@@ -97,7 +94,7 @@ CASES: dict[str, tuple[Callable[[], GearPair], dict[str, Any]]] = {
 @pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize("case", CASES)
-def test_a_table_cut_into_blocks_keeps_its_bits(case: str, cache: Path) -> None:
+def test_a_table_cut_into_blocks_keeps_its_bits(case, cache):
     pair, asked = CASES[case]
     asked = {"torques": [60.0, 150.0], "level": "draft", "cache": cache} | asked
     workers = Elsewhere()
@@ -107,7 +104,7 @@ def test_a_table_cut_into_blocks_keeps_its_bits(case: str, cache: Path) -> None:
     assert whole.inserted_misalignment.size == (1 if case == "inserted alignments" else 0)
 
 
-def test_errors_and_influences_are_tasks_too(cache: Path) -> None:
+def test_errors_and_influences_are_tasks_too(cache):
     """Held-out points are cut as the table is; they bring its compliance and start from its solutions."""
     asked: dict[str, Any] = {"torques": [60.0, 150.0], "level": "draft", "cache": cache} | SKEWED
     workers = Elsewhere()
@@ -132,7 +129,7 @@ def assert_same(one: SteDatabase, other: SteDatabase) -> None:
     assert second == first
 
 
-def test_gears_condensed_elsewhere_are_the_same(cache: Path) -> None:
+def test_gears_condensed_elsewhere_are_the_same(cache):
     workers = Elsewhere()
     asked: dict[str, Any] = {"torques": [100.0], "level": "draft", "positions": 16}
     whole = analyze(helical(), **asked, cache=cache)
@@ -141,7 +138,7 @@ def test_gears_condensed_elsewhere_are_the_same(cache: Path) -> None:
     assert_same(whole, cut)
 
 
-def test_the_receipt_counts_the_time_of_all(cache: Path) -> None:
+def test_the_receipt_counts_the_time_of_all(cache):
     """Every task is said to have cost 100 s: they show in the stages they were part of, and nowhere else."""
     workers = Elsewhere(RunCost(tasks=7, cpu_seconds=900.0))  # what other runs spent before
     asked: dict[str, Any] = {"torques": [60.0, 150.0], "level": "draft", "positions": 16, "cache": cache}
@@ -154,7 +151,7 @@ def test_the_receipt_counts_the_time_of_all(cache: Path) -> None:
     assert "elsewhere" not in analyze(helical(), **asked).metadata.receipt
 
 
-def test_tasks_do_not_depend_on_who_works(cache: Path) -> None:
+def test_tasks_do_not_depend_on_who_works(cache):
     asked: dict[str, Any] = {"torques": [60.0], "level": "draft", "positions": 16, "cache": cache}
     first, second = Elsewhere(), Elsewhere()
     for workers in (first, second):
@@ -162,7 +159,7 @@ def test_tasks_do_not_depend_on_who_works(cache: Path) -> None:
     assert first.tasks == second.tasks
 
 
-def test_too_little_to_send_stays_here(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_too_little_to_send_stays_here(monkeypatch):
     """A table as a whole: its gears as well, which nobody has condensed."""
     monkeypatch.setattr(dispatch, "START_SECONDS", 1e3)
     workers = Elsewhere()
@@ -170,7 +167,7 @@ def test_too_little_to_send_stays_here(monkeypatch: pytest.MonkeyPatch) -> None:
     assert not workers.tasks
 
 
-def test_sensitivity_over_workers_keeps_its_bits(cache: Path) -> None:
+def test_sensitivity_over_workers_keeps_its_bits(cache):
     workers = Elsewhere()
     asked: dict[str, Any] = {
         "normal_forces": [2000.0], "misalignments": [20e-6], "center_distance_changes": [50e-6],

@@ -1,7 +1,5 @@
 """Laws of the estimated errors of mean, peak-to-peak and harmonics."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 

@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 from analysis_requests import table_request
 
-from fe_contact import FlankModification, Gear, GearPair, SteDatabase, analyze
+from fe_contact import FlankModification, Gear, GearPair, Run, SteDatabase, analyze
 from fe_contact.analysis import tables
 from fe_contact.analysis.checks.table_laws import check_laws
 from fe_contact.analysis.database import compute_database
 from fe_contact.analysis.estimates import inserted_places, validation_alignments
 from fe_contact.analysis.request.request_check import check_request, checked_request
 from fe_contact.errors import DatabaseError
-from fe_contact.options import Run
 from fe_contact.ste.fields import DIMENSIONS
 
 DISTANCE = "center_distance_change"
@@ -46,7 +45,7 @@ def requested(table: SteDatabase, name: str) -> np.ndarray:
     return np.compress(table.requested_rows(DISTANCE), getattr(table, name), axis=axis)
 
 
-def test_center_distances_are_inserted_until_every_interval_meets_the_tolerance(refined) -> None:
+def test_center_distances_are_inserted_until_every_interval_meets_the_tolerance(refined):
     receipt, inserted = refined.metadata.receipt, refined.inserted_center_distance_change
     assert refined.requested_nodes(DISTANCE).tolist() == list(CHANGES)
     assert inserted.size >= 1
@@ -55,7 +54,7 @@ def test_center_distances_are_inserted_until_every_interval_meets_the_tolerance(
     assert (receipt["tolerance"]["met"], receipt["tolerance"]["between_nodes"]) == (True, [])
 
 
-def test_without_halvings_the_interval_is_named_with_its_limit(cache, monkeypatch) -> None:
+def test_without_halvings_the_interval_is_named_with_its_limit(cache, monkeypatch):
     monkeypatch.setattr(validation_alignments, "MAX_HALVINGS", 0)
     table = spur(center_distance_changes=CHANGES, cache=cache)
     kept = table.metadata.receipt["tolerance"]
@@ -66,7 +65,7 @@ def test_without_halvings_the_interval_is_named_with_its_limit(cache, monkeypatc
     assert table.inserted_center_distance_change.size == 0
 
 
-def test_inserted_nodes_change_nothing_at_those_requested(refined, cache, monkeypatch) -> None:
+def test_inserted_nodes_change_nothing_at_those_requested(refined, cache, monkeypatch):
     """They agree with those of a table without to the last bit."""
     monkeypatch.setattr(validation_alignments, "MAX_HALVINGS", 0)
     plain = spur(center_distance_changes=CHANGES, cache=cache)
@@ -80,7 +79,7 @@ def test_inserted_nodes_change_nothing_at_those_requested(refined, cache, monkey
 
 
 @pytest.mark.law
-def test_a_refined_table_answers_as_one_whose_caller_requested_all_nodes(refined, cache) -> None:
+def test_a_refined_table_answers_as_one_whose_caller_requested_all_nodes(refined, cache):
     whole = spur(center_distance_changes=refined.center_distance_change, cache=cache)
     assert whole.inserted_center_distance_change.size == 0
     for name in set(GRID) - {"error_estimate"}:  # interpolated at inserted nodes
@@ -93,7 +92,7 @@ def test_a_refined_table_answers_as_one_whose_caller_requested_all_nodes(refined
 
 
 @pytest.mark.law
-def test_what_is_said_of_an_interval_holds_where_nothing_was_solved(refined, cache) -> None:
+def test_what_is_said_of_an_interval_holds_where_nothing_was_solved(refined, cache):
     for change in (3e-5, 1.1e-4, 2.2e-4, 3.3e-4):
         truth = spur(center_distance_changes=[change], cache=cache)
         ours, true = (one.curve(torque=100.0, center_distance_change=change) for one in (refined, truth))
@@ -104,7 +103,7 @@ def test_what_is_said_of_an_interval_holds_where_nothing_was_solved(refined, cac
             assert abs(value.value - exact.value) <= min(value.error, max(0.02 * exact.value, 20e-9))
 
 
-def test_the_file_keeps_what_was_inserted(refined, tmp_path) -> None:
+def test_the_file_keeps_what_was_inserted(refined, tmp_path):
     refined.to_netcdf(tmp_path / "STE.nc")
     again = SteDatabase.from_netcdf(tmp_path / "STE.nc")
     assert again.identical(refined)
@@ -113,7 +112,7 @@ def test_the_file_keeps_what_was_inserted(refined, tmp_path) -> None:
     assert (marks.dims, int(marks.sum())) == ((DISTANCE,), refined.inserted_center_distance_change.size)
 
 
-def test_nothing_is_solved_twice(cache, monkeypatch) -> None:
+def test_nothing_is_solved_twice(cache, monkeypatch):
     """Operating points of the table are those of its axis, each solved once at all positions."""
     solved: list[float] = []
 
@@ -131,7 +130,7 @@ def test_nothing_is_solved_twice(cache, monkeypatch) -> None:
     assert sorted(solved) == pytest.approx(0.08 + table.center_distance_change, rel=1e-12)
 
 
-def test_laws_are_checked_with_what_was_inserted(cache, monkeypatch) -> None:
+def test_laws_are_checked_with_what_was_inserted(cache, monkeypatch):
     sizes = []
 
     def checked(table, *contact):
@@ -144,7 +143,7 @@ def test_laws_are_checked_with_what_was_inserted(cache, monkeypatch) -> None:
     assert table.center_distance_change.size > 2
 
 
-def test_a_study_that_reads_nodes_alone_gets_nothing_between_them(cache) -> None:
+def test_a_study_that_reads_nodes_alone_gets_nothing_between_them(cache):
     axes, options = table_request(center_distance_changes=CHANGES, **FIXED)
     checked = check_request(PAIR, axes, options)
     alone = checked_request(replace(checked.request, nodes_alone=True))
@@ -153,12 +152,12 @@ def test_a_study_that_reads_nodes_alone_gets_nothing_between_them(cache) -> None
     assert table.metadata.receipt["tolerance"]["used_at_nodes"] <= 1.0
 
 
-def test_misalignments_are_inserted_until_every_interval_meets_the_tolerance(tmp_path) -> None:
-    def gear(hand: float) -> Gear:
+def test_misalignments_are_inserted_until_every_interval_meets_the_tolerance(tmp_path):
+    def gear(hand):
         flank = FlankModification(helix_crowning=4e-6)
         return Gear(24, 2e-3, 15e-3, 24e-3, helix_angle=hand * 0.3, modification=flank)
 
-    def helical(skews, force) -> SteDatabase:
+    def helical(skews, force):
         pair = GearPair(gear(1.0), gear(-1.0), 48e-3 / np.cos(0.3))
         wish = {"tolerance": 0.05, "model": "3d", "cache": tmp_path}
         return analyze(pair, normal_forces=force, misalignments=skews, **wish)
@@ -178,6 +177,6 @@ def test_misalignments_are_inserted_until_every_interval_meets_the_tolerance(tmp
             assert abs(value.value - exact.value) <= min(value.error, max(0.05 * exact.value, 20e-9))
 
 
-def test_marks_are_as_long_as_their_axis(refined) -> None:
+def test_marks_are_as_long_as_their_axis(refined):
     with pytest.raises(DatabaseError, match="center_distance_inserted must have the dimension"):
         replace(refined, center_distance_inserted=np.zeros(1))

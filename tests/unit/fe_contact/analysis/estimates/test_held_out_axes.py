@@ -6,11 +6,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fe_contact import Gear, GearPair, analyze
+from fe_contact import Gear, GearPair, Status, analyze
 from fe_contact.analysis.estimates.validation_alignments import AWAY as AWAY_BETWEEN_ALIGNMENTS
 from fe_contact.analysis.estimates.validation_axes import validation_axes
 from fe_contact.analysis.estimates.validation_loads import AWAY
-from fe_contact.types import Status
 
 TORQUES = (50.0, 100.0, 200.0)
 CHANGES = (0.0, 2e-4, 4e-4)
@@ -125,6 +124,6 @@ def test_a_table_that_cannot_be_interpolated_has_no_estimate(coarse):
         coarse, static_transmission_error=coarse.static_transmission_error[:, ::-1], support_force=np.empty(0)
     )
     for table in (failed, falling):
-        assert validation_axes(SimpleNamespace(table=table)).axes == {}  # type: ignore[arg-type]
+        assert validation_axes(SimpleNamespace(table=table)).axes == {}
     with pytest.raises(AttributeError):  # a good table asks its places
-        validation_axes(SimpleNamespace(table=coarse))  # type: ignore[arg-type]
+        validation_axes(SimpleNamespace(table=coarse))

@@ -1,7 +1,5 @@
 """Between its nodes a table is within its stated error of what is solved there, and of a tolerance it met."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -12,13 +10,13 @@ DAY = (0, 3)
 
 
 @pytest.mark.law
-def test_drawn_tables_cover_what_is_solved_between_their_loads(tmp_path: Path) -> None:
+def test_drawn_tables_cover_what_is_solved_between_their_loads(tmp_path):
     drawn = list(drawn_tables(count=DAY[-1] + 1))
     check_coverage([drawn[k] for k in DAY], tmp_path, minimum=0.9)  # of ten points nine
 
 
 @pytest.mark.nightly
-def test_thirty_drawn_tables_cover_what_is_solved_between_their_nodes(tmp_path: Path) -> None:
+def test_thirty_drawn_tables_cover_what_is_solved_between_their_nodes(tmp_path):
     check_coverage(list(drawn_tables()), tmp_path)
 
 

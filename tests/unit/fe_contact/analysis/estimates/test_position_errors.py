@@ -1,7 +1,5 @@
 """Errors between positions: of fixed ones, told from half of them, and of those that gather at kinks."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -109,7 +107,7 @@ def smooth(position: FloatArray) -> FloatArray:
 
 
 @pytest.mark.parametrize("count", [32, 64, 192])
-def test_errors_hold_for_corners_wherever_they_stand(count: int) -> None:
+def test_errors_hold_for_corners_wherever_they_stand(count):
     """Straight lines between corners at random places, a few positions apart: misses are few."""
     random, position, ratio = np.random.default_rng(7), knots(count), []
     for _ in range(60):
@@ -126,18 +124,18 @@ def test_errors_hold_for_corners_wherever_they_stand(count: int) -> None:
 
 
 @pytest.mark.parametrize("count", [16, 32, 64])
-def test_errors_hold_for_a_smooth_curve(count: int) -> None:
+def test_errors_hold_for_a_smooth_curve(count):
     position, values = knots(count), smooth(knots(count))
     true = quantity_changes(position, values, smooth(FINE), 1, FINE)[SOME, 0]
     assert np.all(errors_by_halves(position, values, 1).curves[SOME, 0] >= true)
 
 
-def test_of_a_smooth_curve_they_fall_at_least_with_the_square_of_the_spacing() -> None:
+def test_of_a_smooth_curve_they_fall_at_least_with_the_square_of_the_spacing():
     coarse, fine = (errors_by_halves(knots(n), smooth(knots(n)), 1).curves[SOME, 0] for n in (32, 64))
     assert np.all(coarse / fine > [4.0, 3.0, 4.0])  # a peak stands anywhere between two positions
 
 
-def test_a_peak_between_two_positions_counts() -> None:
+def test_a_peak_between_two_positions_counts():
     position = knots(32)
     peaked = np.maximum(0.0, 1.0 - np.abs(position - (8.5 / 32)) * 8.0)[:, None]
     missed = 1.0 - peaked.max()
@@ -150,7 +148,7 @@ def test_a_peak_between_two_positions_counts() -> None:
     assert np.mean(band > 0.0) > 0.9 and band.max() < np.abs(middle - ahead).max()
 
 
-def test_errors_scale_with_the_curve_and_ignore_level_and_pitches() -> None:
+def test_errors_scale_with_the_curve_and_ignore_level_and_pitches():
     position, values = knots(32), kinked(knots(32))
     plain = errors_by_halves(position, values, 1)
     moved = errors_by_halves(position, 3.0 * values + 7.0, 1)

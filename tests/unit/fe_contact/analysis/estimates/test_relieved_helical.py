@@ -1,7 +1,5 @@
 """Laws of the errors that meshes leave of quiet helical pairs: a sign of the mean, a size of the ripple."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 
@@ -32,7 +30,7 @@ def quiet_pair(face_mm: float = 26.0, **changes: object) -> GearPair:
     helix, module = math.radians(24.0), 2e-3
     relief = FlankModification(tip_relief=10e-6, tip_relief_length=1e-3, helix_crowning=4e-6)
 
-    def gear(teeth: int, hand: float) -> Gear:
+    def gear(teeth, hand):
         bore = 0.5 * teeth * module
         made = Gear(teeth, module, 1e-3 * face_mm, bore, helix_angle=hand * helix, modification=relief)
         return dataclasses.replace(made, **changes)
@@ -70,7 +68,7 @@ def test_the_sign_of_the_mean_is_known_and_a_wrong_one_is_seen(level):
     rows, left = of_level(level), REMAINDER[level]
     missing = np.array([row.mean_missing for row in rows])
 
-    def remaining(remainder: MeshRemainder) -> float:
+    def remaining(remainder):
         signed = [mean_of_limit(remainder, row.by_mesh, row.by_patches)[0] for row in rows]
         return float(np.sqrt(np.mean(np.square(missing - signed)) / np.mean(np.square(missing))))
 
@@ -135,7 +133,7 @@ def test_no_mesh_is_tried_that_gains_less_than_it_leaves():
     standard = decision(quiet_pair(), torques=[100.0], tolerance=AllowedError(0.01, 0.0))
     standard = standard.refined("standard", 15, standard.plan.nodes, "first")
 
-    def shares(**by_source: float) -> np.ndarray:
+    def shares(**by_source):
         found = np.zeros((len(SOURCES), 2, 1, 1, 1))
         for name, share in by_source.items():
             found[SOURCES.index(name), 1] = share

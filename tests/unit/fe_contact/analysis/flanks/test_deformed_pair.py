@@ -1,7 +1,5 @@
 """Both gears as they bend in mesh: work, placement, files."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from pathlib import Path
@@ -12,7 +10,7 @@ import numpy as np
 import pytest
 from analysis_requests import point_request, table_request
 
-from fe_contact import Gear, GearPair, deformed_pairs
+from fe_contact import Gear, GearPair, InternalGearPair, OperatingPoint, RingGear, Run, deformed_pairs
 from fe_contact.analysis.flanks.deformed_pair import mesh_angles
 from fe_contact.analysis.flanks.solved_operating_point import solve_operating_point
 from fe_contact.analysis.request.request_check import check_request
@@ -25,15 +23,14 @@ from fe_contact.contact import (
     plane_flank_forces,
 )
 from fe_contact.errors import InputError
-from fe_contact.geometry import InternalGearPair, RingGear, Toothing, tooth_profile
-from fe_contact.options import OperatingPoint, Run
+from fe_contact.geometry import Toothing, tooth_profile
 from model_studies.stage_clock import StageClock
 
 pytestmark = pytest.mark.usefixtures("coarse_sectors")
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 
@@ -69,7 +66,7 @@ def solved(pair: GearPair | InternalGearPair, cache: Path, **request: Any) -> So
 
 
 @pytest.mark.law
-def test_the_work_of_the_forces_is_that_of_the_contact(cache: Path) -> None:
+def test_the_work_of_the_forces_is_that_of_the_contact(cache):
     """f' S f of both gears, tooth by tooth, is F' C F of the contact; corner forces count by their lever.
 
     In the plane, edges also yield along their flanks: work that forces across the flank do not do.
@@ -93,7 +90,7 @@ def test_the_work_of_the_forces_is_that_of_the_contact(cache: Path) -> None:
             else:
                 assert contact.plane is not None
                 both = plane_flank_forces(candidates, force, p, contact.plane)
-                flanks, width = contact.plane, candidates.slices.width  # type: ignore[assignment]
+                flanks, width = contact.plane, candidates.slices.width
             work = width * sum(
                 float(f @ flank.block(tooth, other) @ g)
                 for flank, forces in zip(flanks, both, strict=True)
@@ -147,7 +144,7 @@ def bare_compliance(place: SolvedOperatingPoint) -> np.ndarray:
     ],
     ids=["spur", "right", "left", "offset", "internal spur", "internal helical"],
 )
-def test_placed_flanks_touch_on_every_contact_line(pair: GearPair | InternalGearPair) -> None:
+def test_placed_flanks_touch_on_every_contact_line(pair):
     """Points of both profiles at the roll lengths of all pairs, at several planes, are the same points."""
     for position in (0.0, 0.3, 0.9):
         angles = mesh_angles(pair, position)
@@ -173,7 +170,7 @@ def test_placed_flanks_touch_on_every_contact_line(pair: GearPair | InternalGear
                 assert where[0] == pytest.approx(where[1], abs=1e-12)
 
 
-def test_a_base_pitch_later_the_next_teeth_stand_there() -> None:
+def test_a_base_pitch_later_the_next_teeth_stand_there():
     assert mesh_angles(spur_pair(), 3.25) == pytest.approx(mesh_angles(spur_pair(), 0.25), abs=1e-12)
     with pytest.raises(InputError, match="neighbors = -1"):
         deformed_pairs(spur_pair(), OperatingPoint(torque=10.0), neighbors=-1)
@@ -191,7 +188,7 @@ def flank_point(gear: Toothing, tooth: int, angle: float, roll: float, along: fl
 
 
 @pytest.fixture(scope="module")
-def found(cache: Path) -> Any:
+def found(cache):
     return deformed_pairs(
         helical_pair(),
         *point_request(normal_force=2000.0, misalignment=15e-6, level="draft"),
@@ -200,7 +197,7 @@ def found(cache: Path) -> Any:
     )
 
 
-def test_files_come_back_as_they_were(found: Any, tmp_path: Path) -> None:
+def test_files_come_back_as_they_were(found, tmp_path):
     one = found[1]
     files = tmp_path / "pinion.vtu", tmp_path / "wheel.vtu"
     one.write(*files)
@@ -219,7 +216,7 @@ def test_files_come_back_as_they_were(found: Any, tmp_path: Path) -> None:
     assert lag == pytest.approx(one.wheel_lag, abs=1e-18)
 
 
-def test_the_wheel_lags_by_the_transmission_error_and_flanks_give_way(found: Any) -> None:
+def test_the_wheel_lags_by_the_transmission_error_and_flanks_give_way(found):
     pair, one = helical_pair(), found[0]
     alpha = pair.working_pressure_angle
     along = np.array([math.cos(alpha), math.sin(alpha), 0.0])
@@ -238,7 +235,7 @@ def test_the_wheel_lags_by_the_transmission_error_and_flanks_give_way(found: Any
 
 
 @pytest.mark.parametrize("hand", [1.0, -1.0])
-def test_meshes_of_pinion_and_ring_meet_where_the_load_is(hand: float, cache: Path) -> None:
+def test_meshes_of_pinion_and_ring_meet_where_the_load_is(hand, cache):
     """Under a load at one end of the face both are stressed most there, and there the other mesh is near."""
     pair = internal_pair(hand)
     (found,) = deformed_pairs(

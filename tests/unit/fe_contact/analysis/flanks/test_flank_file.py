@@ -1,9 +1,6 @@
 """Flank results on disk: every bit comes back, what follows is there for others, damage is refused."""
 
-from __future__ import annotations
-
 from dataclasses import fields
-from pathlib import Path
 
 import h5netcdf
 import numpy as np
@@ -17,20 +14,18 @@ from fe_contact.ste import Metadata
 
 
 @pytest.fixture(scope="module")
-def found() -> LoadDistribution:
+def found():
     asked = {"torque": 100.0, "center_distance_change": 5e-5, "level": "draft", "model": "plane_strain"}
     return flank_results(PAIR, *point_request(**asked), at=np.arange(8) / 8, case={"name": "spur"})
 
 
 @pytest.fixture
-def file(found: LoadDistribution, tmp_path: Path) -> Path:
+def file(found, tmp_path):
     found.to_netcdf(tmp_path / "flanks.nc")
     return tmp_path / "flanks.nc"
 
 
-def test_every_bit_comes_back_and_what_follows_is_there_for_others(
-    found: LoadDistribution, file: Path
-) -> None:
+def test_every_bit_comes_back_and_what_follows_is_there_for_others(found, file):
     back = LoadDistribution.from_netcdf(file)
     assert np.any(np.isinf(found.gap))
     for entry in fields(found):
@@ -44,7 +39,7 @@ def test_every_bit_comes_back_and_what_follows_is_there_for_others(
 
     with xarray.open_dataset(file, engine="h5netcdf") as table:
         for gear in ("pinion", "wheel"):
-            pattern = contact_pattern(found, gear)  # type: ignore[arg-type]
+            pattern = contact_pattern(found, gear)
             assert np.array_equal(table[f"contact_pattern_{gear}"], pattern.pressure)
             assert np.array_equal(table[f"pattern_roll_length_{gear}"], pattern.roll_length)
         assert np.array_equal(table["line_load"], found.line_load)
@@ -52,7 +47,7 @@ def test_every_bit_comes_back_and_what_follows_is_there_for_others(
         assert table.attrs["mean_face_load_factor"] == found.mean_face_load_factor
 
 
-def test_scene_and_making_are_recorded(found: LoadDistribution) -> None:
+def test_scene_and_making_are_recorded(found):
     scene, here = found.scene, GearPair(GEAR, GEAR, 80.05e-3)
     assert scene.torque == pytest.approx(100.0, rel=1e-12)
     assert scene.center_distance_change == 5e-5
@@ -71,7 +66,7 @@ def test_scene_and_making_are_recorded(found: LoadDistribution) -> None:
     assert {entry["name"] for entry in metadata.effect_ledger} >= {"corner_contact", "misalignment"}
 
 
-def test_damage_and_strangers_are_refused(file: Path, tmp_path: Path) -> None:
+def test_damage_and_strangers_are_refused(file, tmp_path):
     with pytest.raises(DatabaseError, match="no such file"):
         LoadDistribution.from_netcdf(tmp_path / "none.nc")
     with h5netcdf.File(file, "a") as content:
@@ -88,7 +83,7 @@ def test_damage_and_strangers_are_refused(file: Path, tmp_path: Path) -> None:
         LoadDistribution.from_netcdf(file)
 
 
-def test_a_missing_part_is_named_and_missing_metadata_is_not(found: LoadDistribution, tmp_path: Path) -> None:
+def test_a_missing_part_is_named_and_missing_metadata_is_not(found, tmp_path):
     found.to_xarray().drop_vars("gap").to_netcdf(tmp_path / "part.nc", engine="h5netcdf")
     with pytest.raises(DatabaseError, match="without gap"):
         LoadDistribution.from_netcdf(tmp_path / "part.nc")

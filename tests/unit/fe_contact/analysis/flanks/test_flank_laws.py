@@ -1,7 +1,5 @@
 """Laws of mechanics on flank results: planted faults break them, and sound results stay within bounds."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -52,7 +50,7 @@ def solved(pair: GearPair, model: str, misalignment: float) -> Solved:
 
 
 @pytest.fixture(scope="module")
-def relieved(coarse_sectors: None) -> Solved:
+def relieved(coarse_sectors):
     return solved(spur(), "3d", 20e-6)
 
 
@@ -65,9 +63,7 @@ class Break:
 
 
 def at_spot(name: str, change: Callable[[np.ndarray], np.ndarray]) -> Callable[..., LoadDistribution]:
-    """Return what changes an array at one position."""
-
-    def plant(flanks: LoadDistribution) -> LoadDistribution:
+    def plant(flanks):
         values = np.array(getattr(flanks, name))
         values[SPOT] = change(values[SPOT])
         return replace(flanks, **{name: values})
@@ -116,7 +112,7 @@ BREAKS = {
 
 
 @pytest.mark.parametrize("name", BREAKS)
-def test_a_planted_break_makes_flank_results_fail(relieved: Solved, name: str) -> None:
+def test_a_planted_break_makes_flank_results_fail(relieved, name):
     flanks, problem = relieved
     require_laws(check_flank_laws(flanks, problem), flanks, "load distribution")
     broken = BREAKS[name].plant(flanks)
@@ -126,7 +122,7 @@ def test_a_planted_break_makes_flank_results_fail(relieved: Solved, name: str) -
 
 
 @pytest.mark.parametrize("share", [0.99, 1.01])
-def test_the_pressure_of_plain_flanks_is_bounded_to_a_percent(share: float) -> None:
+def test_the_pressure_of_plain_flanks_is_bounded_to_a_percent(share):
     flanks, problem = solved(helical(), "3d", 10e-6)
     broken = replace(flanks, pressure=share * flanks.pressure)
     laws = {law.law for law in check_flank_laws(broken, problem) if law.broken}
@@ -137,9 +133,7 @@ def test_the_pressure_of_plain_flanks_is_bounded_to_a_percent(share: float) -> N
     ("pair", "model", "misalignment"),
     [(spur, "plane_strain", 0.0), (spur, "3d", -15e-6), (helical, "3d", -15e-6), (helical, "3d", 40e-6)],
 )
-def test_sound_results_take_little_of_the_room_of_balances(
-    pair: Callable[[], GearPair], model: str, misalignment: float
-) -> None:
+def test_sound_results_take_little_of_the_room_of_balances(pair, model, misalignment):
     laws = check_flank_laws(*solved(pair(), model, misalignment))
     assert not [law.text for law in laws if law.broken]
     balances = [law.ratio for law in laws if "balance" in law.law or "carry the load" in law.law]
@@ -147,11 +141,11 @@ def test_sound_results_take_little_of_the_room_of_balances(
     assert max(balances) < 0.2
 
 
-def test_flank_results_that_break_a_law_are_none(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_flank_results_that_break_a_law_are_none(monkeypatch):
     original = flank_analysis.load_distribution
 
-    def faulty(*args: object, **kwargs: object) -> LoadDistribution:
-        return BREAKS["forces beyond the torque"].plant(original(*args, **kwargs))  # type: ignore[arg-type]
+    def faulty(*args, **kwargs):
+        return BREAKS["forces beyond the torque"].plant(original(*args, **kwargs))
 
     monkeypatch.setattr(flank_analysis, "load_distribution", faulty)
     point, options = OperatingPoint(torque=90.0), AnalysisOptions(level="draft", model="plane_strain")
@@ -159,7 +153,7 @@ def test_flank_results_that_break_a_law_are_none(monkeypatch: pytest.MonkeyPatch
         flank_results(spur(), point, options, at=AT)
 
 
-def test_the_receipt_has_the_worst_place_under_each_law() -> None:
+def test_the_receipt_has_the_worst_place_under_each_law():
     point, options = OperatingPoint(torque=90.0), AnalysisOptions(level="draft", model="plane_strain")
     laws = flank_results(spur(), point, options, at=AT).metadata.receipt["laws"]
     assert {law["law"] for law in laws} >= {fault.law for fault in BREAKS.values()}
@@ -167,7 +161,7 @@ def test_the_receipt_has_the_worst_place_under_each_law() -> None:
 
 
 @pytest.mark.parametrize(("shape", "kinked"), [("linear", True), ("parabolic", False)])
-def test_a_kink_under_the_largest_pressure_names_the_strip(shape: str, kinked: bool) -> None:
+def test_a_kink_under_the_largest_pressure_names_the_strip(shape, kinked):
     """Pairs at the start of a relief: the strip on it is that of pressure and line load."""
     relief = FlankModification(tip_relief=15e-6, tip_relief_length=1.5e-3, tip_relief_shape=shape)
     gear = Gear(20, 3e-3, 12e-3, 30e-3, modification=relief)

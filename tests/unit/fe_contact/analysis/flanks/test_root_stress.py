@@ -1,7 +1,5 @@
 """Root stress of a pair: linear in the forces, mirror images, scaling, plane against face, peaks."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path
@@ -12,7 +10,7 @@ from analysis_requests import point_request, table_request
 from numpy.typing import ArrayLike
 from spur_gears import GEAR
 
-from fe_contact import Gear, GearPair, RootStress, root_stress
+from fe_contact import Gear, GearPair, InternalGearPair, RingGear, RootStress, Run, root_stress
 from fe_contact.analysis.flanks import root_stress as root_module
 from fe_contact.analysis.flanks.root_meshes import finer_root
 from fe_contact.analysis.flanks.root_stress import pair_histories, stress_seconds, unit_stresses
@@ -21,10 +19,8 @@ from fe_contact.analysis.flanks.solved_operating_point import solve_operating_po
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
 from fe_contact.compliance import unit_root_stress, unit_root_stress_3d
-from fe_contact.geometry import InternalGearPair, RingGear
 from fe_contact.mesh import MeshRecipe, SectorRecipe
 from fe_contact.microgeometry.root_influence import RootInfluence
-from fe_contact.options import Run
 from model_studies.stage_clock import StageClock
 
 FORCE = 2000.0
@@ -35,7 +31,7 @@ NO_CORNERS = {"corner_contact": "off"}
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 
@@ -52,9 +48,7 @@ def place(pair: GearPair, cache: Path, model: str) -> SolvedOperatingPoint:
 
 
 @pytest.mark.parametrize(("pair", "different"), [(SPUR, 1), (HELICAL, 2)])
-def test_a_prediction_has_each_stress_on_both_meshes_until_it_is_kept(
-    pair: GearPair, different: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_prediction_has_each_stress_on_both_meshes_until_it_is_kept(pair, different, tmp_path, monkeypatch):
     monkeypatch.setattr(root_module, "body_seconds", lambda *_: 1.0)
     contact = place(pair, tmp_path, "auto" if pair is SPUR else "3d").contact
     each = stress_seconds(pair, contact.plan, None) / (2 * different)
@@ -72,7 +66,7 @@ def with_forces(found: SolvedOperatingPoint, keep: np.ndarray, factor: float = 1
 
 @pytest.mark.law
 @pytest.mark.parametrize("model", ["plane_strain", "3d"])
-def test_stress_is_linear_in_the_forces(cache: Path, model: str) -> None:
+def test_stress_is_linear_in_the_forces(cache, model):
     found = place(SPUR, cache, model)
     if model == "3d":
         unit = unit_root_stress_3d(GEAR, finer_root(SectorRecipe.draft(GEAR)), cache=cache)
@@ -88,7 +82,7 @@ def test_stress_is_linear_in_the_forces(cache: Path, model: str) -> None:
     assert np.array_equal(double, 2.0 * whole)
 
 
-def test_one_pair_alone_gives_stress_in_proportion_to_the_load(cache: Path) -> None:
+def test_one_pair_alone_gives_stress_in_proportion_to_the_load(cache):
     """At the pitch point nothing is shared, so that the contact cannot change where the force goes."""
     one, five = (solved(SPUR, cache, normal_force=f, at=[0.0]).pinion for f in (FORCE, 5.0 * FORCE))
     assert np.abs(five.stress - 5.0 * one.stress).max() < 1e-9 * np.abs(five.stress).max()
@@ -97,7 +91,7 @@ def test_one_pair_alone_gives_stress_in_proportion_to_the_load(cache: Path) -> N
     assert own.min() > 0.0
 
 
-def test_gears_alike_are_mirror_images_in_position(cache: Path) -> None:
+def test_gears_alike_are_mirror_images_in_position(cache):
     """What the pinion's tooth meets on its way in, the wheel's meets on its way out."""
     found = solved(SPUR, cache, at=np.arange(16) / 16, effects=NO_CORNERS)
     pinion, wheel = found.pinion.passage(), found.wheel.passage()
@@ -109,7 +103,7 @@ def test_gears_alike_are_mirror_images_in_position(cache: Path) -> None:
 
 
 @pytest.mark.nightly
-def test_opposite_hands_are_mirror_images_along_the_face(cache: Path) -> None:
+def test_opposite_hands_are_mirror_images_along_the_face(cache):
     swapped = GearPair(*(replace(g, helix_angle=-g.helix_angle) for g in (HELICAL.pinion, HELICAL.wheel)))
     options = {"at": [0.2, 0.7], "misalignment": 10e-6}
     one = solved(HELICAL, cache, **options)
@@ -120,7 +114,7 @@ def test_opposite_hands_are_mirror_images_along_the_face(cache: Path) -> None:
         assert mine.peak("tension").face_position == pytest.approx(-theirs.peak("tension").face_position)
 
 
-def test_misalignment_raises_the_stress_where_the_load_goes(cache: Path) -> None:
+def test_misalignment_raises_the_stress_where_the_load_goes(cache):
     aligned, skew = (solved(SPUR, cache, at=[0.0], model="3d", misalignment=m) for m in (0.0, 20e-6))
     for gear in ("pinion", "wheel"):
         low, high = (getattr(found, gear).peak("tension") for found in (aligned, skew))
@@ -130,7 +124,7 @@ def test_misalignment_raises_the_stress_where_the_load_goes(cache: Path) -> None
 
 
 @pytest.mark.law
-def test_the_roots_of_a_ring_gear_are_pulled_at_the_same_end(cache: Path) -> None:
+def test_the_roots_of_a_ring_gear_are_pulled_at_the_same_end(cache):
     """A ring is seen from its other side: its fillets and its ends must still be those of the contact."""
     ring = RingGear(teeth=60, normal_module=4e-3, face_width=10e-3, rim_diameter=0.29, tip_diameter=0.2342)
     pair = InternalGearPair(replace(GEAR, face_width=10e-3), ring, 80e-3)
@@ -146,7 +140,7 @@ def test_the_roots_of_a_ring_gear_are_pulled_at_the_same_end(cache: Path) -> Non
     assert math.degrees(found.pinion.peak("tension").tangent_angle) == pytest.approx(37.0, abs=5.0)
 
 
-def test_peak_and_passage_say_the_same(cache: Path) -> None:
+def test_peak_and_passage_say_the_same(cache):
     history = solved(SPUR, cache, at=np.arange(32) / 32).pinion
     passage = history.passage()
     assert np.all(np.diff(passage.position) > 0.0)
@@ -161,7 +155,7 @@ def test_peak_and_passage_say_the_same(cache: Path) -> None:
     assert passage.tension[0] == passage.tension[-1] == 0.0  # far from the mesh
 
 
-def test_crests_of_parabolas_and_slopes_lean_on_what_counts() -> None:
+def test_crests_of_parabolas_and_slopes_lean_on_what_counts():
     s = np.array([0.0, 1.0, 1.5, 3.0, 3.5])
     values = np.stack([5.0 - 2.0 * (s - at) ** 2 for at in (1.2, 2.1, 3.2)])
     value, at = crest_values(s, values)
@@ -179,7 +173,7 @@ def test_crests_of_parabolas_and_slopes_lean_on_what_counts() -> None:
 
 
 @pytest.mark.law
-def test_a_root_under_the_patch_counts_for_no_peak(cache: Path) -> None:
+def test_a_root_under_the_patch_counts_for_no_peak(cache):
     """Contact next to the form point: the patch, wider than the contact, lies on the fillet."""
     gear = replace(GEAR, profile_shift_coefficient=-0.05)
     deep = GearPair(gear, replace(GEAR, profile_shift_coefficient=0.05), 80e-3)
@@ -197,7 +191,7 @@ def test_a_root_under_the_patch_counts_for_no_peak(cache: Path) -> None:
 
 @pytest.mark.law
 @pytest.mark.parametrize("model", ["plane_strain", "3d"])
-def test_unit_loads_on_slices_give_the_peaks_of_the_whole_history(cache: Path, model: str) -> None:
+def test_unit_loads_on_slices_give_the_peaks_of_the_whole_history(cache, model):
     """What searches follow: equal in the plane; over the face forces go to the ends of coarse layers."""
     found = place(SPUR, cache, model)
     roots = RootInfluence.of(found.contact, cache)
@@ -208,7 +202,7 @@ def test_unit_loads_on_slices_give_the_peaks_of_the_whole_history(cache: Path, m
         assert stress[gear] == pytest.approx(peaks, rel=1e-3 if model == "plane_strain" else 0.015)
 
 
-def test_changes_of_root_stress_are_those_of_differences(cache: Path) -> None:
+def test_changes_of_root_stress_are_those_of_differences(cache):
     found = place(SPUR, cache, "plane_strain")
     roots, force = RootInfluence.of(found.contact, cache), found.solution.force
     change = force * np.cos(np.arange(force.size)).reshape(force.shape)

@@ -1,20 +1,16 @@
 """A table of a condensed pair says how wrong it is: as an analysis would, and within what is true."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from fe_contact import Gear, GearPair, analyze
+from fe_contact import FlankModification, Gear, GearPair, SteDatabase, analyze
 from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.analysis.live.stored_bodies import condensed_pair
 from fe_contact.analysis.pairs.pair_contact import PairContact
-from fe_contact.geometry import FlankModification
 from fe_contact.geometry.finite_width import finite_width_excess
-from fe_contact.ste import SteDatabase
 from fe_contact.ste.curve_errors import AT_NODES, SOURCES
 from fe_contact.ste.curve_quantities import FIRST_HARMONIC, MEAN, PEAK_TO_PEAK
 from fe_contact.types import FloatArray
@@ -32,23 +28,21 @@ CORNERS = {"corner_contact": "on"}
 
 
 def with_flank(modification: FlankModification) -> GearPair:
-    """Return the pair with another pinion flank."""
     return replace(PAIR, pinion=replace(GEAR, modification=modification))
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 
 @pytest.fixture(scope="module")
-def pair(cache: Path) -> CondensedPair:
+def pair(cache):
     """Return the corrected plane, analyzed with a full receipt."""
     return condensed(analyze(PAIR, torques=TORQUES, level="draft", positions=64, cache=cache), cache)
 
 
 def condensed(table: SteDatabase, cache: Path) -> CondensedPair:
-    """Return the bodies of a table from the cache."""
     found = condensed_pair(PAIR, table, {}, cache)
     assert found is not None
     return found
@@ -65,13 +59,13 @@ def figures(table: SteDatabase) -> tuple[FloatArray, FloatArray]:
 
 
 @pytest.mark.parametrize("model", ["auto", "3d"])
-def test_errors_of_the_discretization_are_those_of_an_analysis_of_its_own(cache: Path, model: str) -> None:
+def test_errors_of_the_discretization_are_those_of_an_analysis_of_its_own(cache, model):
     count = 64 if model == "3d" else 192
     wish = {"torques": TORQUES, "level": "draft", "model": model, "cache": cache, "effects": CORNERS}
-    bodies = condensed(analyze(PAIR, positions=16, **wish), cache)  # type: ignore[arg-type]
+    bodies = condensed(analyze(PAIR, positions=16, **wish), cache)
     quick, whole = (
         bodies.table(with_flank(SHORT), TORQUES),
-        analyze(with_flank(SHORT), positions=count, **wish),  # type: ignore[arg-type]
+        analyze(with_flank(SHORT), positions=count, **wish),
     )
     for name in ("discretisation", "slices", "finite_width", "contact_solver"):
         source = AT_NODES.index(name)
@@ -82,7 +76,7 @@ def test_errors_of_the_discretization_are_those_of_an_analysis_of_its_own(cache:
     assert {name for name in AT_NODES if quick.curve_error[AT_NODES.index(name)].max() > 1e-12} >= acting
 
 
-def test_wide_load_patches_count_where_they_show(pair: CondensedPair) -> None:
+def test_wide_load_patches_count_where_they_show(pair):
     """Patches are wider on the coarse meshes: at the knee of a relief that changes the curve."""
     coarse, own = pair.contacts.coarse, pair.contact.plan.patch
     assert coarse is not None and coarse.plan.patch.half_width > 1.5 * own.half_width
@@ -96,7 +90,7 @@ def test_wide_load_patches_count_where_they_show(pair: CondensedPair) -> None:
 
 
 @pytest.mark.law
-def test_stated_errors_hold_against_finer_meshes_and_more_positions(cache: Path, pair: CondensedPair) -> None:
+def test_stated_errors_hold_against_finer_meshes_and_more_positions(cache, pair):
     held, over = [], []
     for flank in FLANKS.values():
         value, stated = figures(pair.table(with_flank(flank), TORQUES))
@@ -116,9 +110,7 @@ def test_stated_errors_hold_against_finer_meshes_and_more_positions(cache: Path,
     assert np.median(over) < 10.0
 
 
-def test_without_coarse_meshes_errors_are_those_usual_of_the_level(
-    tmp_path: Path, pair: CondensedPair
-) -> None:
+def test_without_coarse_meshes_errors_are_those_usual_of_the_level(tmp_path, pair):
     table = analyze(PAIR, torques=TORQUES, level="draft", positions=64, receipt="minimal", cache=tmp_path)
     alone = condensed(table, tmp_path)
     assert alone.contacts.coarse is None
@@ -130,7 +122,7 @@ def test_without_coarse_meshes_errors_are_those_usual_of_the_level(
     assert np.all((ratio > 1.0) & (ratio < 6.0))
 
 
-def test_a_pair_so_misaligned_that_it_leads_is_wrong_by_more_than_nothing(tmp_path: Path) -> None:
+def test_a_pair_so_misaligned_that_it_leads_is_wrong_by_more_than_nothing(tmp_path):
     asked = {"level": "draft", "model": "3d", "positions": 8, "receipt": "minimal"}
     alone = condensed(analyze(PAIR, torques=TORQUES, cache=tmp_path, **asked), tmp_path)
     misaligned = alone.table(PAIR, TORQUES, 50e-6)
@@ -138,7 +130,7 @@ def test_a_pair_so_misaligned_that_it_leads_is_wrong_by_more_than_nothing(tmp_pa
     assert np.all(figures(misaligned)[1] > 0.0)
 
 
-def test_plane_strain_that_stands_in_for_a_finite_width_is_corrected(cache: Path) -> None:
+def test_plane_strain_that_stands_in_for_a_finite_width_is_corrected(cache):
     """A tolerance may leave the finite width out; live answers then lack it too, and say how much that is."""
     wide = replace(PAIR, pinion=replace(GEAR, face_width=60e-3), wheel=replace(GEAR, face_width=60e-3))
     table = analyze(wide, torques=15.0 * TORQUES, tolerance=0.05, positions=16, cache=cache)
@@ -155,7 +147,7 @@ def test_plane_strain_that_stands_in_for_a_finite_width_is_corrected(cache: Path
     assert "finite_width" in {one["effect"] for one in unchecked}
 
 
-def test_an_error_is_told_at_the_loads_and_not_between_them(pair: CondensedPair) -> None:
+def test_an_error_is_told_at_the_loads_and_not_between_them(pair):
     table = pair.table(PAIR, TORQUES)
     assert table.metadata.receipt["not_estimated"] == []
     assert np.isfinite(table.curve_error[: len(AT_NODES)]).all() and np.isfinite(table.error_estimate).all()
@@ -164,7 +156,7 @@ def test_an_error_is_told_at_the_loads_and_not_between_them(pair: CondensedPair)
     assert list(table.metadata.receipt["curve_error"]) == list(SOURCES[: len(AT_NODES)])
 
 
-def test_nothing_is_assembled_for_a_second_question(pair: CondensedPair) -> None:
+def test_nothing_is_assembled_for_a_second_question(pair):
     pair.table(PAIR, TORQUES)
     kept = [dict(each._problems) for each in _contacts(pair)]
     pair.table(with_flank(LONG), np.array([0.7]))

@@ -1,7 +1,5 @@
 """Curves from a compliance in memory are those of a whole analysis, for any flanks, load and alignment."""
 
-from __future__ import annotations
-
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -28,12 +26,10 @@ TORQUES = np.array([0.5, 1.0])
 
 
 def with_flank(pair: GearPair, modification: FlankModification) -> GearPair:
-    """Return the pair with another pinion flank."""
     return replace(pair, pinion=replace(pair.pinion, modification=modification))
 
 
 def table_of(pair: GearPair, cache: Path, model: str = "plane_strain", **wish: object) -> SteDatabase:
-    """Analyze at the positions of a condensed pair."""
     return analyze(
         pair,
         torques=TORQUES,
@@ -43,12 +39,12 @@ def table_of(pair: GearPair, cache: Path, model: str = "plane_strain", **wish: o
         receipt="minimal",
         cache=cache,
         effects={"corner_contact": "on"},
-        **wish,  # type: ignore[arg-type]
+        **wish,
     )
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("compliance")
 
 
@@ -59,7 +55,7 @@ def condensed(pair: GearPair, cache: Path, model: str = "plane_strain") -> Conde
     return found
 
 
-def test_a_relieved_flank_has_the_curve_of_its_own_analysis(cache: Path) -> None:
+def test_a_relieved_flank_has_the_curve_of_its_own_analysis(cache):
     relieved = with_flank(PAIR, RELIEF)
     quick = condensed(PAIR, cache).table(relieved, TORQUES)
     whole = table_of(relieved, cache)
@@ -69,7 +65,7 @@ def test_a_relieved_flank_has_the_curve_of_its_own_analysis(cache: Path) -> None
     assert abs(quick.peak_to_peak(torque=1.0).value / plain.peak_to_peak(torque=1.0).value - 1.0) > 0.02
 
 
-def test_crowning_and_misalignment_have_the_curve_of_their_own_analysis(cache: Path) -> None:
+def test_crowning_and_misalignment_have_the_curve_of_their_own_analysis(cache):
     crowned = with_flank(PAIR, FlankModification(helix_crowning=2e-6))
     quick = condensed(PAIR, cache, "3d").table(crowned, TORQUES, misalignment=5e-6)
     whole = table_of(crowned, cache, "3d", misalignments=[5e-6])
@@ -78,7 +74,7 @@ def test_crowning_and_misalignment_have_the_curve_of_their_own_analysis(cache: P
 
 
 @pytest.mark.law
-def test_crowned_and_misaligned_flanks_carry_what_they_carry_in_results_of_their_own(cache: Path) -> None:
+def test_crowned_and_misaligned_flanks_carry_what_they_carry_in_results_of_their_own(cache):
     crowned = with_flank(PAIR, FlankModification(helix_crowning=2e-6))
     table, solved = condensed(PAIR, cache, "3d").solve_table(crowned, TORQUES, misalignment=5e-6)
     quick = load_distribution(solved.pair, solved.problem, solved.solution, 1)
@@ -94,7 +90,7 @@ def test_crowned_and_misaligned_flanks_carry_what_they_carry_in_results_of_their
 
 
 @pytest.mark.parametrize("model", ["plane_strain", "3d"])
-def test_a_preview_is_every_other_position_of_the_table_without_errors(cache: Path, model: str) -> None:
+def test_a_preview_is_every_other_position_of_the_table_without_errors(cache, model):
     pair, relieved = condensed(PAIR, cache, model), with_flank(PAIR, RELIEF)
     quick, _ = pair.solve_table(relieved, TORQUES, preview=True)
     whole = pair.table(relieved, TORQUES)
@@ -106,7 +102,7 @@ def test_a_preview_is_every_other_position_of_the_table_without_errors(cache: Pa
 
 
 @pytest.mark.parametrize("model", ["plane_strain", "3d"])
-def test_a_preview_is_found_from_the_one_before_but_does_not_depend_on_it(cache: Path, model: str) -> None:
+def test_a_preview_is_found_from_the_one_before_but_does_not_depend_on_it(cache, model):
     pair, relieved = condensed(PAIR, cache, model), with_flank(PAIR, RELIEF)
     pair._latest.preview = None
     _, alone = pair.solve_table(relieved, TORQUES, preview=True)
@@ -117,7 +113,7 @@ def test_a_preview_is_found_from_the_one_before_but_does_not_depend_on_it(cache:
     np.testing.assert_allclose(after.solution.force, alone.solution.force, rtol=0.0, atol=1e-8 * largest)
 
 
-def test_a_preview_after_one_of_almost_the_same_flanks_takes_fewer_iterations(cache: Path) -> None:
+def test_a_preview_after_one_of_almost_the_same_flanks_takes_fewer_iterations(cache):
     pair, relieved = condensed(PAIR, cache, "3d"), with_flank(PAIR, RELIEF)
     pair._latest.preview = None
     _, alone = pair.solve_table(relieved, TORQUES, preview=True)
@@ -127,7 +123,7 @@ def test_a_preview_after_one_of_almost_the_same_flanks_takes_fewer_iterations(ca
     assert after.solution.iterations.mean() < 0.8 * alone.solution.iterations.mean()
 
 
-def test_another_center_distance_has_the_curve_of_its_own_analysis(cache: Path) -> None:
+def test_another_center_distance_has_the_curve_of_its_own_analysis(cache):
     pair = condensed(PAIR, cache)
     for change in (1e-5, 3e-5, 2e-5):
         quick = pair.table(with_flank(PAIR, RELIEF), TORQUES, center_distance_change=change)
@@ -139,9 +135,7 @@ def test_another_center_distance_has_the_curve_of_its_own_analysis(cache: Path) 
     assert np.abs(nominal.static_transmission_error / quick.static_transmission_error - 1.0).max() > 1e-3
 
 
-def test_a_center_distance_at_which_more_teeth_touch_is_refused(
-    cache: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_center_distance_at_which_more_teeth_touch_is_refused(cache, monkeypatch):
     pair = condensed(PAIR, cache)
     module = sys.modules[CondensedPair.__module__]  # its name in the package is the function's
     monkeypatch.setattr(module, "condensed_teeth", lambda _: 7)
@@ -150,7 +144,7 @@ def test_a_center_distance_at_which_more_teeth_touch_is_refused(
     assert not pair._by_distance
 
 
-def test_what_bodies_or_plane_cannot_hold_is_refused(cache: Path) -> None:
+def test_what_bodies_or_plane_cannot_hold_is_refused(cache):
     pair = condensed(PAIR, cache)
     with pytest.raises(InputError, match=r"pinion\.modification"):
         pair.table(with_flank(PAIR, FlankModification(helix_crowning=2e-6)), TORQUES)
@@ -163,7 +157,7 @@ def test_what_bodies_or_plane_cannot_hold_is_refused(cache: Path) -> None:
     assert pair.table(PAIR, np.array([2.0])).n_failed == 0
 
 
-def test_pitch_deviations_stay_with_the_gear(cache: Path) -> None:
+def test_pitch_deviations_stay_with_the_gear(cache):
     deviation = PitchDeviation(tuple(2e-6 * np.cos(2.0 * np.pi * np.arange(20) / 20)))
     uneven = replace(PAIR, pinion=replace(GEAR, pitch_deviation=deviation))
     quick = condensed(uneven, cache).table(with_flank(uneven, RELIEF), TORQUES)
@@ -173,5 +167,5 @@ def test_pitch_deviations_stay_with_the_gear(cache: Path) -> None:
     assert np.array_equal(quick.static_transmission_error, whole.static_transmission_error)
 
 
-def test_without_the_compliance_there_is_no_condensed_pair(cache: Path, tmp_path: Path) -> None:
+def test_without_the_compliance_there_is_no_condensed_pair(cache, tmp_path):
     assert condensed_pair(PAIR, table_of(PAIR, cache), {}, tmp_path) is None

@@ -1,7 +1,5 @@
 """Which model and mesh an accuracy asks for: the cheapest that promises it, unless chosen explicitly."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from dataclasses import replace
@@ -154,7 +152,6 @@ RATED = [2700.0]
 
 
 def finite_width(pinion: Gear, tolerance: float) -> bool:
-    """Whether the decided model has it."""
     asked = check_request(
         GearPair(pinion, WHEEL),
         *table_request(normal_forces=RATED, tolerance=AllowedError.from_value(tolerance)),
@@ -162,7 +159,7 @@ def finite_width(pinion: Gear, tolerance: float) -> bool:
     return decide(asked).checked.model.finite_width
 
 
-def test_a_ripple_made_small_by_crowning_keeps_the_finite_width() -> None:
+def test_a_ripple_made_small_by_crowning_keeps_the_finite_width():
     """Without it peak-to-peak of the crowned pair is 6.9 % off at the rated load, of the plain one 3 %."""
     assert not finite_width(GEAR, 0.05)
     assert finite_width(CROWNED, 0.05)

@@ -1,10 +1,7 @@
 """Effects toggled one by one and deviations varied: the figures of single tables, and what changes."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -14,13 +11,11 @@ from spur_gears import GEAR
 from fe_contact import FlankModification, Gear, GearPair, PitchDeviation, ablate, analyze, study_sensitivity
 from fe_contact.analysis.database.compute_database import compute_database
 from fe_contact.analysis.pairs import contact_lines
-from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.studies import ablation
 from fe_contact.analysis.studies.ablation import Ablation, predicted_ablation
 from fe_contact.analysis.studies.sensitivity import RippleCurve
 from fe_contact.errors import InputError
 from fe_contact.options import Run, TableAxes
-from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.studies.ablate.run import RUN
 from model_studies.workers import RunCost, dispatch
 
@@ -31,20 +26,20 @@ ASKED = {"normal_forces": [800.0, 2500.0], "level": "draft", "positions": 64}
 
 
 @pytest.fixture(scope="module")
-def made() -> Ablation:
-    return ablate(PAIR, *table_request(**ASKED), only=ONLY)  # type: ignore[arg-type]
+def made():
+    return ablate(PAIR, *table_request(**ASKED), only=ONLY)
 
 
-def test_a_prediction_has_the_contact_of_every_table_and_condenses_gears_once(made: Ablation) -> None:
-    checked = Ablation.request(PAIR, *table_request(**ASKED))  # type: ignore[arg-type]
+def test_a_prediction_has_the_contact_of_every_table_and_condenses_gears_once(made):
+    checked = Ablation.request(PAIR, *table_request(**ASKED))
     whole, alone = (predicted_ablation(checked, only, None) for only in (ONLY, ["tooth_coupling"]))
     assert (len(whole.contacts), len(alone.contacts)) == (1 + len(made.effects), 2)
     assert whole.bodies > alone.bodies == predicted_ablation(checked, ["corner_contact"], None).bodies
 
 
-def test_a_change_is_that_of_two_tables(made: Ablation) -> None:
+def test_a_change_is_that_of_two_tables(made):
     effects = {"tooth_coupling": "off"}
-    whole, without = (analyze(PAIR, **ASKED, effects=e) for e in ({}, effects))  # type: ignore[arg-type]
+    whole, without = (analyze(PAIR, **ASKED, effects=e) for e in ({}, effects))
     entry = next(one for one in made.effects if one.name == "tooth_coupling")
     assert entry.on
     for k, force in enumerate(whole.force):
@@ -56,10 +51,9 @@ def test_a_change_is_that_of_two_tables(made: Ablation) -> None:
         assert entry.harmonic_change[k, 0] == pytest.approx(first, rel=1e-12, abs=0.0)
 
 
-def test_estimates_are_within_a_factor_of_two(made: Ablation) -> None:
+def test_estimates_are_within_a_factor_of_two(made):
     for entry in made.effects:
         estimate, measured = entry.estimate, made.measured(entry)
-        assert estimate is not None
         assert (estimate.torque, estimate.misalignment) == (measured.torque, measured.misalignment)
         for name in ("mean", "peak_to_peak"):
             if abs(getattr(measured, f"relative_{name}")) > 0.01:
@@ -69,11 +63,9 @@ def test_estimates_are_within_a_factor_of_two(made: Ablation) -> None:
 
 @pytest.mark.law
 @pytest.mark.parametrize(("start", "tasks"), [(0.0, "solve_block"), (2.0, "_attempted"), (9.0, None)])
-def test_large_tables_are_shared_by_their_blocks_and_small_ones_whole(
-    made: Ablation, start: float, tasks: str | None, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_large_tables_are_shared_by_their_blocks_and_small_ones_whole(made, start, tasks, monkeypatch):
     """`start`: seconds that pay for workers, in those that one of the tables takes."""
-    request = Ablation.request(PAIR, *table_request(**ASKED))  # type: ignore[arg-type]
+    request = Ablation.request(PAIR, *table_request(**ASKED))
     seconds = request.predicted(request.planned(None), None, with_errors=False).cpu_seconds
     monkeypatch.setattr(dispatch, "START_SECONDS", start * seconds)
     monkeypatch.setattr(contact_lines, "TASK_SECONDS", 1e-3)
@@ -82,17 +74,17 @@ def test_large_tables_are_shared_by_their_blocks_and_small_ones_whole(
     class Noting:
         cost = RunCost()
 
-        def run(self, function: Any, shared: Any, items: Any) -> Any:
+        def run(self, function, shared, items):
             names.add(function.__name__)
             return (function(shared, item) for item in items)
 
-    shared = ablate(PAIR, *table_request(**ASKED), Run(workers=Noting()), only=only)  # type: ignore[arg-type]
+    shared = ablate(PAIR, *table_request(**ASKED), Run(workers=Noting()), only=only)
     assert names == ({tasks} if tasks else set())
     for effect, alone in zip(shared.effects, made.effects, strict=False):
         assert effect.mean_change.tolist() == alone.mean_change.tolist()
 
 
-def test_what_is_left_out_is_named_and_an_unknown_effect_refused(made: Ablation) -> None:
+def test_what_is_left_out_is_named_and_an_unknown_effect_refused(made):
     assert made.omitted == {"misalignment": "the gears are aligned"}
     assert [entry.name for entry in made.effects] == [
         "tooth_coupling", "corner_contact", "profile_modification", "finite_width",
@@ -103,12 +95,12 @@ def test_what_is_left_out_is_named_and_an_unknown_effect_refused(made: Ablation)
         ablate(PAIR, TableAxes(normal_forces=[1000.0]), only=["windage"])
 
 
-def test_an_effect_that_is_off_is_switched_on(made: Ablation) -> None:
+def test_an_effect_that_is_off_is_switched_on(made):
     off = ablate(
         PAIR,
         *table_request(effects={"tooth_coupling": "off"}, **ASKED),
         only=["tooth_coupling"],
-    )  # type: ignore[arg-type]
+    )
     (entry,) = off.effects
     (usual,) = [one for one in made.effects if one.name == "tooth_coupling"]
     assert not entry.on
@@ -116,28 +108,28 @@ def test_an_effect_that_is_off_is_switched_on(made: Ablation) -> None:
     np.testing.assert_array_equal(off.nominal.mean, usual.without_effect.mean)
 
 
-def test_longer_periods_cost_more() -> None:
+def test_longer_periods_cost_more():
     early = PitchDeviation((3e-6, *([0.0] * 19)))
     pair = GearPair(replace(GEAR, pitch_deviation=early), GEAR)
-    (entry,) = ablate(pair, *table_request(**ASKED), only=["pitch_error"]).effects  # type: ignore[arg-type]
+    (entry,) = ablate(pair, *table_request(**ASKED), only=["pitch_error"]).effects
     # twenty base pitches to solve instead of one, over the same finite elements
     assert entry.with_effect.predicted_cpu_seconds > entry.without_effect.predicted_cpu_seconds + 0.01
     assert entry.cost_ratio > 1.0
 
 
-def test_what_no_plane_holds_stays_in() -> None:
+def test_what_no_plane_holds_stays_in():
     asked = ASKED | {"misalignments": [10e-6], "positions": 16}
-    made = ablate(GearPair(GEAR, GEAR), *table_request(**asked), only=["face_load_distribution"])  # type: ignore[arg-type]
+    made = ablate(GearPair(GEAR, GEAR), *table_request(**asked), only=["face_load_distribution"])
     assert made.effects == ()
     assert "misalignments" in made.omitted["face_load_distribution"]
 
 
-def test_a_tolerance_chooses_one_mesh_for_all_tables(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_tolerance_chooses_one_mesh_for_all_tables(monkeypatch):
     made = []
 
-    def noted(checked: Checked, *further: object) -> SteDatabase:
+    def noted(checked, *further):
         made.append((checked.request.options.level, checked.request.options.tolerance))
-        return compute_database(checked, *further)  # type: ignore[arg-type]
+        return compute_database(checked, *further)
 
     monkeypatch.setattr(ablation, "compute_database", noted)
     asked = {"normal_forces": [2500.0], "tolerance": 0.05, "positions": 16}

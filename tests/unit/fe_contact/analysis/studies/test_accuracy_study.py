@@ -1,7 +1,5 @@
 """The accuracy study: closed forms, two solvers, and errors that fall."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The accuracy study beside records of full contact: whose they are, and what they differ by."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Sequence
 
@@ -10,11 +8,9 @@ import pytest
 from analysis_requests import table_request
 
 from bounds import written
-from fe_contact import FlankModification, Gear, GearPair
-from fe_contact.analysis.request.request import Checked
+from fe_contact import AnalysisOptions, FlankModification, Gear, GearPair, SteDatabase, TableAxes, frontier
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.studies.closed_form_fidelity import THIN_SLICES
-from fe_contact.analysis.studies.frontier import frontier
 from fe_contact.analysis.studies.full_contact_record import (
     FACE,
     NO_RECORD,
@@ -26,8 +22,6 @@ from fe_contact.analysis.studies.full_contact_record import (
     solved_in,
 )
 from fe_contact.errors import InputError
-from fe_contact.options import AnalysisOptions, TableAxes
-from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.studies.frontier.run import RUN
 
 GEAR = Gear(teeth=20, normal_module=2e-3, face_width=8e-3, bore_diameter=20e-3)
@@ -38,12 +32,12 @@ FIDELITIES = ["iso6336", "thin_slices"]
 
 
 @pytest.fixture(scope="module")
-def checked() -> Checked:
+def checked():
     return check_request(PAIR, TableAxes(normal_forces=FORCES), AnalysisOptions(positions=32))
 
 
 @pytest.fixture(scope="module")
-def table(checked: Checked) -> SteDatabase:
+def table(checked):
     """Of thin slices, which take no mesh."""
     return THIN_SLICES.run(checked)
 
@@ -68,7 +62,7 @@ def record(table: SteDatabase, positions: int = 5, failed: Sequence[int] = ()) -
     )
 
 
-def test_errors_are_those_of_the_positions_that_were_solved_at_the_worst_load(table: SteDatabase) -> None:
+def test_errors_are_those_of_the_positions_that_were_solved_at_the_worst_load(table):
     found = compare_full_contact(record(table, failed=[FAILED]), table, table)
     assert (found.solves, found.solved) == (10, 8)
     assert found.mean_error == pytest.approx(SOFTER - 1.0, rel=1e-9)
@@ -83,7 +77,7 @@ def test_errors_are_those_of_the_positions_that_were_solved_at_the_worst_load(ta
     }
 
 
-def test_a_table_costs_its_solves_and_one_position_has_no_peak_to_peak(table: SteDatabase) -> None:
+def test_a_table_costs_its_solves_and_one_position_has_no_peak_to_peak(table):
     found = compare_full_contact(record(table, 4), table, None)
     assert found.seconds(768) == pytest.approx(768 * 2.5)
     assert found.to_json(768)["cpu_seconds_measured"] == pytest.approx(20.0)
@@ -93,23 +87,21 @@ def test_a_table_costs_its_solves_and_one_position_has_no_peak_to_peak(table: St
     assert "peak_to_peak_error" not in found.to_json(64)
 
 
-def test_a_record_is_thinned_to_equally_spaced_positions(table: SteDatabase) -> None:
+def test_a_record_is_thinned_to_equally_spaced_positions(table):
     whole = record(table, 16)
     assert whole.at_positions(4).position.tolist() == [0.0, 0.25, 0.5, 0.75]
     assert whole.at_positions(64).position.tolist() == whole.position.tolist()
     assert whole.at_positions(3).transmission_error.shape == (1, 3, 2)
 
 
-def test_a_record_is_read_as_it_was_written(table: SteDatabase) -> None:
+def test_a_record_is_read_as_it_was_written(table):
     whole = record(table, failed=[FAILED])
     read = FullContactRecord.from_json(whole.to_json())
     for field in dataclasses.fields(whole):
         np.testing.assert_equal(getattr(read, field.name), getattr(whole, field.name))
 
 
-def test_a_record_is_of_the_very_pair_and_model_at_loads_of_the_case(
-    checked: Checked, table: SteDatabase
-) -> None:
+def test_a_record_is_of_the_very_pair_and_model_at_loads_of_the_case(checked, table):
     records = [record(table)]
     found = record_of(checked, records)
     assert found is not None and found.torque.tolist() == records[0].torque.tolist()
@@ -131,7 +123,7 @@ def test_a_record_is_of_the_very_pair_and_model_at_loads_of_the_case(
     assert [record_of(check_request(*other), records) for other in others] == [None] * len(others)
 
 
-def test_what_needs_the_face_is_compared_over_it() -> None:
+def test_what_needs_the_face_is_compared_over_it():
     """A model in three dimensions, misalignment, or a flank that varies across the face; else the plane."""
     crowned = dataclasses.replace(GEAR, modification=FlankModification(helix_crowning=5e-6))
     aligned = {"normal_forces": FORCES, "positions": 32}
@@ -144,7 +136,7 @@ def test_what_needs_the_face_is_compared_over_it() -> None:
     assert {solved_in(one) for one in needing} == {FACE}
 
 
-def test_an_accuracy_study_goes_on_without_a_record_and_says_so(table: SteDatabase) -> None:
+def test_an_accuracy_study_goes_on_without_a_record_and_says_so(table):
     request = table_request(normal_forces=FORCES, positions=32)
     beside = frontier(PAIR, *request, fidelities=FIDELITIES, full_contact=2, records=[record(table, 4)])
     assert RUN.figures(beside)["full_contact"]["mean_error"] == pytest.approx(SOFTER - 1.0, rel=1e-3)
@@ -157,7 +149,7 @@ def test_an_accuracy_study_goes_on_without_a_record_and_says_so(table: SteDataba
             frontier(PAIR, *request, fidelities=FIDELITIES, full_contact=wrong)
 
 
-def test_plane_strain_is_within_half_a_per_cent_of_recorded_curves() -> None:
+def test_plane_strain_is_within_half_a_per_cent_of_recorded_curves():
     """The 20/20 pair of the examples: two solvers that share neither compliance nor contact."""
     gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
     pair = GearPair(gear, gear, center_distance=80e-3)
@@ -173,7 +165,7 @@ def test_plane_strain_is_within_half_a_per_cent_of_recorded_curves() -> None:
     assert found.record.mesh_error < 5e-3
 
 
-def test_every_record_that_comes_with_the_study_names_its_version_and_has_solutions() -> None:
+def test_every_record_that_comes_with_the_study_names_its_version_and_has_solutions():
     records = full_contact_records()
     assert len(records) > 2
     for one in records:

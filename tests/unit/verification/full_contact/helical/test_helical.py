@@ -1,7 +1,5 @@
 """Full contact of helical pairs: laws of the turning sections, of the facing flanks, and of solutions."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import cache
@@ -10,9 +8,8 @@ import numpy as np
 import pytest
 from spur_gears import GEAR, PAIR
 
-from fe_contact import GearPair
+from fe_contact import STEEL, GearPair
 from fe_contact.errors import InputError
-from fe_contact.material import STEEL
 from verification.full_contact import (
     FullContactTable,
     HelicalMesh,
@@ -28,11 +25,7 @@ from verification.full_contact.helical.flank_bodies import (
     meshed_section,
     section_compliance,
 )
-from verification.full_contact.helical.twisted_stiffness import (
-    outward,
-    section_stiffness,
-    twisted_stiffness,
-)
+from verification.full_contact.helical.twisted_stiffness import outward, section_stiffness, twisted_stiffness
 from verification.full_contact.over_face.extruded_stiffness import X, Y, Z, extruded_stiffness
 from verification.full_contact.over_face.layers import Layers
 
@@ -60,7 +53,7 @@ def meshed() -> MeshedSection:
 LAYERS = Layers(np.linspace(-6e-3, 6e-3, 3))
 
 
-def test_rigid_motion_along_and_about_the_axis_needs_no_force() -> None:
+def test_rigid_motion_along_and_about_the_axis_needs_no_force():
     """A turn and a shift along the axis are alike in all turning sections; a shift across is not."""
     section = meshed().section
     stiffness = twisted_stiffness(section, LAYERS, STEEL)
@@ -75,7 +68,7 @@ def test_rigid_motion_along_and_about_the_axis_needs_no_force() -> None:
     assert forces[2] > 1e-6 * scale
 
 
-def test_without_twist_it_is_the_extruded_body() -> None:
+def test_without_twist_it_is_the_extruded_body():
     section = replace(meshed().section, twist=0.0)
     ours = twisted_stiffness(section, LAYERS, STEEL)
     theirs = extruded_stiffness(section.points, section.triangles, LAYERS, STEEL)
@@ -83,7 +76,7 @@ def test_without_twist_it_is_the_extruded_body() -> None:
     assert difference.max() < 1e-11 * abs(theirs.matrix).max()
 
 
-def test_a_section_gives_way_to_no_shift() -> None:
+def test_a_section_gives_way_to_no_shift():
     section = meshed().section
     matrix = section_stiffness(section, STEEL)
     for component in (X, Y, Z):
@@ -92,7 +85,7 @@ def test_a_section_gives_way_to_no_shift() -> None:
         assert np.abs(matrix @ shift).max() < 1e-10 * np.abs(matrix.data).max()
 
 
-def test_normals_touch_the_base_circle() -> None:
+def test_normals_touch_the_base_circle():
     points = np.array([[0.0, 40e-3], [10e-3, 39e-3]])
     normals = outward(points, 37e-3)
     np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1.0, rtol=1e-14)
@@ -100,7 +93,7 @@ def test_normals_touch_the_base_circle() -> None:
     np.testing.assert_allclose(moment, -37e-3, rtol=1e-12)
 
 
-def test_a_body_gives_way_as_its_functions_add_up() -> None:
+def test_a_body_gives_way_as_its_functions_add_up():
     """The functions of a flank are one together, also where the middle node stands aside."""
     body = face_body(meshed(), LAYERS, STEEL, 1.5)
     strip = body.meshed.strips[0]
@@ -120,7 +113,7 @@ def relative_radius(pair: GearPair, roll: float) -> float:
 
 
 @pytest.mark.parametrize("part", [0.2, 0.8])
-def test_conjugate_flanks_touch_on_the_line_of_action(part: float) -> None:
+def test_conjugate_flanks_touch_on_the_line_of_action(part):
     """No gap there, that of the relative curvature beside it, arms of the base radii."""
     path = PAIR.path_of_contact
     roll = path.start + part * path.length
@@ -139,7 +132,7 @@ def test_conjugate_flanks_touch_on_the_line_of_action(part: float) -> None:
 
 
 @pytest.mark.law
-def test_equilibrium_holds_and_the_lag_grows() -> None:
+def test_equilibrium_holds_and_the_lag_grows():
     table = solved(1.0)
     for row in table.points:
         for point in row:
@@ -154,18 +147,18 @@ def test_equilibrium_holds_and_the_lag_grows() -> None:
 
 
 @pytest.mark.law
-def test_the_mirrored_pair_is_the_same() -> None:
+def test_the_mirrored_pair_is_the_same():
     np.testing.assert_allclose(solved(-1.0).transmission_error, solved(1.0).transmission_error, rtol=1e-7)
 
 
 @pytest.mark.law
-def test_driven_or_driving_is_the_same_at_the_mirrored_place() -> None:
+def test_driven_or_driving_is_the_same_at_the_mirrored_place():
     """Of two equal gears: positions s and -s about the pitch point, seen from the other side."""
     ahead, behind = solved(1.0).transmission_error
     np.testing.assert_allclose(ahead, behind, rtol=2e-3)
 
 
-def test_what_it_cannot_hold_is_refused() -> None:
+def test_what_it_cannot_hold_is_refused():
     assert refusal_helical(helical_pair(1.0)) is None
     unlike = replace(helical_pair(1.0), wheel=replace(helical_pair(1.0).wheel, face_width=9e-3))
     assert "faces" in str(refusal_helical(unlike))

@@ -1,7 +1,5 @@
 """Patch test over the face, laws of the condensed bodies, and the elimination that condenses them."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np
@@ -16,7 +14,7 @@ from fe_contact.types import FloatArray
 from verification.full_contact.condensation.active_set import ContactSystem, solve_active_set
 from verification.full_contact.condensation.condensed_body import condensed_body, dissected, freedoms
 from verification.full_contact.condensation.flank_curve import FlankCurve
-from verification.full_contact.condensation.weak_gap import WeakGap, weak_gap
+from verification.full_contact.condensation.weak_gap import weak_gap
 from verification.full_contact.over_face.extruded_body import ExtrudedBody, extruded_body
 from verification.full_contact.over_face.extruded_stiffness import X, Z, extruded_stiffness
 from verification.full_contact.over_face.face_gap import FaceGap, face_gap
@@ -51,7 +49,7 @@ def pressed(slave: int, layers: int = 3, skew: float = 0.0) -> tuple[FaceGap, Co
     bodies = blocks(layers)
     curves = [FlankCurve(body.points[body.columns[0]]) for body in bodies]
 
-    def section(z: float) -> tuple[WeakGap, float]:
+    def section(z):
         assert 0.0 < abs(z) < 0.5 * FACE
         away = FlankCurve(curves[1].nodes + np.array([skew * (z / FACE + 0.5) ** 2, 0.0]))
         return weak_gap((curves[0], away), (curves[0], away)[slave], slave, towards), 0.0
@@ -68,7 +66,7 @@ def pressed(slave: int, layers: int = 3, skew: float = 0.0) -> tuple[FaceGap, Co
 
 
 @pytest.mark.parametrize("slave", [0, 1])
-def test_a_flat_contact_carries_one_pressure_and_action_is_reaction(slave: int) -> None:
+def test_a_flat_contact_carries_one_pressure_and_action_is_reaction(slave):
     _, system = pressed(slave)
     solution = solve_active_set(system, FORCE)
     assert solution.status.usable
@@ -91,7 +89,7 @@ def test_a_flat_contact_carries_one_pressure_and_action_is_reaction(slave: int) 
     assert gap.weight.sum() == pytest.approx(WIDTH * FACE, rel=1e-12)
 
 
-def test_condensed_compliances_are_those_of_the_whole_halves() -> None:
+def test_condensed_compliances_are_those_of_the_whole_halves():
     """Reciprocity, positive energy, u f = p C p, and the reactions at the held side."""
     body, stiffness = steel(), extruded_stiffness(block(0).points, block(0).triangles, LAYERS, STEEL)
     rng = np.random.default_rng(3)
@@ -121,7 +119,7 @@ def test_condensed_compliances_are_those_of_the_whole_halves() -> None:
             assert moment == pytest.approx(-float(body.arms @ own.ravel()), rel=1e-9)
 
 
-def test_rigid_motions_and_even_strains_have_their_energy() -> None:
+def test_rigid_motions_and_even_strains_have_their_energy():
     stiffness = extruded_stiffness(block(0).points, block(0).triangles, LAYERS, STEEL)
     x, y = block(0).points[stiffness.node].T
     hats = stiffness.function <= LAYERS.count
@@ -140,7 +138,7 @@ def test_rigid_motions_and_even_strains_have_their_energy() -> None:
 
 
 @pytest.mark.law
-def test_more_layers_converge() -> None:
+def test_more_layers_converge():
     """Where the contact ends inside the face: differences fall with the square of the thickness or so."""
     lags = []
     for layers in (2, 4, 8, 16):
@@ -153,7 +151,7 @@ def test_more_layers_converge() -> None:
     assert steps[2] < 1e-3 * lags[-1]
 
 
-def test_a_wide_block_is_in_plane_strain_in_its_middle() -> None:
+def test_a_wide_block_is_in_plane_strain_in_its_middle():
     wide = Layers(np.array([0.0, 4.0, 8.0, 10.0, 11.0, 11.5, 12.0]) * DEPTH)
     body, plane = extruded_body(block(0), wide, STEEL), condensed_body(block(0), STEEL)
     line = np.zeros(2 * len(plane.nodes))
@@ -188,7 +186,7 @@ def columns(shift: float = 0.0) -> tuple[ColumnMatrix, FloatArray]:
     return ColumnMatrix(sp.csc_array(np.tril(dense)), starts, graph), dense
 
 
-def test_it_is_that_of_dense_algebra() -> None:
+def test_it_is_that_of_dense_algebra():
     matrix, dense = columns()
     first = matrix.starts[-1 - KEPT]
     inner, across, outer = dense[:first, :first], dense[:first, first:], dense[first:, first:]

@@ -1,7 +1,5 @@
 """Full contact of gears over the face: laws that every solution keeps, and refusals."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 
@@ -45,7 +43,7 @@ def sloped() -> tuple[FullContactTable, ...]:
 
 
 @pytest.mark.law
-def test_equilibrium_and_complementarity_hold_to_rounding() -> None:
+def test_equilibrium_and_complementarity_hold_to_rounding():
     for table in (*plain(), *sloped()):
         for point in table.points[0]:
             assert point.status.usable, point.reason
@@ -54,7 +52,7 @@ def test_equilibrium_and_complementarity_hold_to_rounding() -> None:
             assert point.torque_ratio == pytest.approx(1.0, abs=3e-4)
 
 
-def test_opposite_misalignments_mirror() -> None:
+def test_opposite_misalignments_mirror():
     """Flanks that are alike at both ends cannot tell them; with a slope the mirrored one is as far away."""
     aligned, one, other = (table.transmission_error[0] for table in plain())
     np.testing.assert_allclose(one, other, rtol=1e-9)
@@ -64,7 +62,7 @@ def test_opposite_misalignments_mirror() -> None:
     assert np.all(straight > first)
 
 
-def test_line_loads_carry_the_torque_and_mirror() -> None:
+def test_line_loads_carry_the_torque_and_mirror():
     aligned, one, other = (table.points[0][1] for table in plain())
     for point in (aligned, one, other):
         forces = [np.trapezoid(own.load, own.face_position) for own in point.line_loads]
@@ -75,7 +73,7 @@ def test_line_loads_carry_the_torque_and_mirror() -> None:
 
 
 @pytest.mark.law
-def test_a_slope_is_a_misalignment() -> None:
+def test_a_slope_is_a_misalignment():
     """Removed from a flank or turned away: the same gap but for where on the flank it is."""
     steep = replace(PAIR, wheel=replace(GEAR, modification=FlankModification(helix_slope=SLOPE)))
     found = over_face(steep, 0.0)[0].transmission_error
@@ -83,7 +81,7 @@ def test_a_slope_is_a_misalignment() -> None:
 
 
 @pytest.mark.law
-def test_a_misalignment_in_a_ring_gear_undoes_the_slope_of_either_gear() -> None:
+def test_a_misalignment_in_a_ring_gear_undoes_the_slope_of_either_gear():
     """Both remove towards positive face positions, and the misalignment closes the gap there."""
     sloped = FlankModification(helix_slope=SLOPE)
     plain = over_face(INSIDE, 0.0)[0]
@@ -98,14 +96,14 @@ def test_a_misalignment_in_a_ring_gear_undoes_the_slope_of_either_gear() -> None
         assert point.torque_ratio == pytest.approx(3.0, rel=2e-3)
 
 
-def test_it_is_a_little_softer_than_plane_strain() -> None:
+def test_it_is_a_little_softer_than_plane_strain():
     flat = solve_full_contact(PAIR, [20.0, TORQUE], [POSITION], COARSE).transmission_error
     ratio = plain()[0].transmission_error / flat
     assert np.all(ratio > 1.02)
     assert np.all(ratio < 1.04)
 
 
-def test_layers_are_finest_at_the_face_and_springs_size_the_mesh() -> None:
+def test_layers_are_finest_at_the_face_and_springs_size_the_mesh():
     layers = graded_layers(25e-3, 5)
     thickness = np.diff(layers.planes)
     assert thickness.sum() == pytest.approx(12.5e-3)
@@ -124,7 +122,7 @@ def test_layers_are_finest_at_the_face_and_springs_size_the_mesh() -> None:
         assert model.closer(PAIR) == pytest.approx(0.5 * opened * deflection)
 
 
-def test_what_it_cannot_hold_is_refused_by_reason() -> None:
+def test_what_it_cannot_hold_is_refused_by_reason():
     assert refusal_over_face(PAIR) is None
     assert refusal_over_face(replace(PAIR, wheel=replace(GEAR, modification=CROWNED))) is None
     helical = [replace(GEAR, helix_angle=angle) for angle in (0.2, -0.2)]

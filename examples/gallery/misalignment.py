@@ -1,0 +1,12 @@
+"""
+What tilts the mesh out of line?
+================================
+
+Misalignment under load by its cause. ``loa.deflect("scene.toml")`` finds it.
+"""
+
+import lineofaction as loa
+
+deflected = loa.read("results/deflection.nc")
+deflected.plot("misalignment by cause")
+print(deflected)
