@@ -37,11 +37,23 @@ def test_a_missing_module_is_named_with_its_extra(monkeypatch):
 
 
 HIDDEN = sorted({name for names in MODULES.values() for name in names} | {"llvmlite", "starlette", "uvloop"})
-NO_ANALYSIS = f"gmsh is not installed. {ANALYSIS_ADVICE}"
+
+
+ABSENT = """
+import importlib, sys
+from importlib import metadata
+sys.modules.update(dict.fromkeys({hidden!r}))  # importing one of them fails now
+read = metadata.Distribution.from_name.__func__
+def found(cls, name):
+    if name.replace("-", "_") in {hidden!r} or name == "scikit-fem":
+        raise metadata.PackageNotFoundError(name)
+    return read(cls, name)
+metadata.Distribution.from_name = classmethod(found)
+"""
 
 
 def in_the_base(code: str, *arguments: str) -> subprocess.CompletedProcess[str]:
-    hidden = f"import importlib, sys\nsys.modules.update(dict.fromkeys({HIDDEN!r}))\n"  # importing fails now
+    hidden = ABSENT.format(hidden=HIDDEN)
     command = [sys.executable, "-c", hidden + code, *arguments]
     return subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT, timeout=900)
 
@@ -129,7 +141,8 @@ def test_the_base_reads_plots_and_reports_results_of_every_kind(tmp_path, monkey
 @pytest.mark.law
 def test_the_base_refuses_to_compute_and_to_serve(tmp_path):
     refused = loa("analyze", "examples/palermo_spur_20_20.toml", "-o", str(tmp_path / "ste.nc"))
-    assert (refused.returncode, refused.stderr) == (1, f"error: {NO_ANALYSIS}\n")
+    assert refused.returncode == 1
+    assert re.fullmatch(rf"error: \w+ is not installed\. {re.escape(ANALYSIS_ADVICE)}\n", refused.stderr)
     refused = loa("serve", "--data-directory", str(tmp_path / "data"))
     assert refused.returncode == 1
     assert re.fullmatch(r"error: \w+ is not installed\. .*'lineofaction\[service\]'\n", refused.stderr)
