@@ -6,6 +6,7 @@ The outputs are those that `scripts/notebooks.py --renew` stores and the night c
 from __future__ import annotations
 
 import json
+import re
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
@@ -17,6 +18,9 @@ from sphinx.application import Sphinx
 
 NOTEBOOKS = Path(__file__).parents[1] / "examples" / "notebooks"
 PAGES = Path(__file__).parent / "notebooks"  # Sphinx reads pages below its own folder alone
+
+_IN_TREE = re.compile(r"\.\./((?:\.\./)*)examples/(notebooks|gallery)/")
+"""Links that lead to the files where a page is read in the tree, and to their pages on the site."""
 
 
 class NotebookParser(MystParser):
@@ -50,9 +54,14 @@ def _copy_notebooks(_app: Sphinx) -> None:
     shutil.copytree(NOTEBOOKS, PAGES, ignore=lambda _, names: {n for n in names if not n.endswith(".ipynb")})
 
 
+def _link_pages(_app: Sphinx, _name: str, source: list[str]) -> None:
+    source[0] = _IN_TREE.sub(r"\1\2/", source[0]).replace("gallery/GALLERY_HEADER.rst", "gallery/index.rst")
+
+
 def setup(app: Sphinx) -> dict[str, Any]:
-    """Register the parser, and copy the notebooks before pages are read."""
+    """Register the parser, copy the notebooks before pages are read, and let links lead to their pages."""
     app.add_source_suffix(".ipynb", "ipynb")
     app.add_source_parser(NotebookParser)
     app.connect("builder-inited", _copy_notebooks, priority=100)
+    app.connect("source-read", _link_pages)
     return {"parallel_read_safe": True}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from functools import cache
 from importlib.util import find_spec
 from typing import Any
 
@@ -12,11 +13,12 @@ MODULES = {
     "analysis": (
         "gmsh",
         "fast_simplification",
-        "matplotlib",
         "meshlane",
         "numba",
-        "plotly",
+        "pandas",
+        "scipy",
         "skfem",
+        "xarray",
     ),
     "service": (
         "alembic",
@@ -63,8 +65,12 @@ class MissingExtra(ModuleNotFoundError):
         return type(self), (self.name, self.extra)
 
 
+@cache
 def require(extra: str) -> None:
-    """Raise `MissingExtra` unless all modules of an extra can be found; none is loaded."""
+    """Raise `MissingExtra` unless all modules of an extra can be found; none is loaded.
+
+    What computes calls it before it begins; what reads and draws results does not.
+    """
     for module in MODULES[extra]:
         if find_spec(module) is None:
             raise MissingExtra(module, extra)

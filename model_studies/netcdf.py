@@ -74,11 +74,10 @@ def opened_netcdf(path: Path, **decoding: Any) -> Iterator[Any]:
 
 def read_dataset(path: Path, **decoding: Any) -> xarray.Dataset:
     """Return a file as a dataset of xarray in memory; raises as `opened`."""
-    import xarray  # noqa: PLC0415 - takes a second, and other readers do not need it
-    from xarray.backends import H5NetCDFStore  # noqa: PLC0415
+    from host.deferred import xarray  # noqa: PLC0415 (named above for types)
 
     with opened_netcdf(path, decode_vlen_strings=True) as file:
-        return xarray.load_dataset(H5NetCDFStore(file), **decoding)
+        return xarray.load_dataset(xarray.backends.H5NetCDFStore(file), **decoding)
 
 
 def _check(file: Any, maximum: int) -> None:

@@ -60,11 +60,15 @@ def rank_correlation(deviation: FloatArray, sample: FloatArray) -> FloatArray:
     Of both the stronger is returned: a response may grow to both sides of the design. `deviation` (N, d)
     counts from the design, `sample` (N, L) is the response.
     """
-    from scipy.stats import rankdata  # noqa: PLC0415 (start-up time)
-
-    ranks = rankdata(sample, axis=0)
-    signed, sized = (_correlation(rankdata(x, axis=0), ranks) for x in (deviation, np.abs(deviation)))
+    ranks = _ranks(sample)
+    signed, sized = (_correlation(_ranks(x), ranks) for x in (deviation, np.abs(deviation)))
     return np.where(np.abs(sized) > np.abs(signed), sized, signed)
+
+
+def _ranks(sample: FloatArray) -> FloatArray:
+    """Return the ranks of entries (N, k) in their columns, from 1; equal ones share the mean of theirs."""
+    below, at_most = ([np.searchsorted(np.sort(x), x, side) for x in sample.T] for side in ("left", "right"))
+    return np.asarray(0.5 * (np.array(below) + np.array(at_most) + 1.0).T)
 
 
 def _correlation(first: FloatArray, second: FloatArray) -> FloatArray:

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy import sparse
 
 from bounds import at_most
 from dynamics.checks import positive
 from dynamics.errors import InputError
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
+from host.deferred import sparse
 
 PANELS_PER_WAVELENGTH = 6.0
 """Least number of longest edges in a wavelength with which a model resolves the waves on the hull."""

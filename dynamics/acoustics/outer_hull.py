@@ -8,8 +8,6 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from dynamics.acoustics.air import directions
 from dynamics.acoustics.hull import Hull, LinearPanels, shared_edges
@@ -18,6 +16,7 @@ from dynamics.housings.reduced_housing import ReducedHousing
 from dynamics.identity_cache import identity_cached
 from dynamics.kernels.compiled import compiled
 from dynamics.types import BoolArray, FloatArray, IntArray
+from host.deferred import csgraph, sparse
 
 ORDER = 8
 """Order of the views, which come from 2 ORDER^2 = 128 directions."""
@@ -217,6 +216,6 @@ def _areas(triangles: IntArray, mask: BoolArray) -> list[IntArray]:
     """Return the areas of triangles joined by edges, among those of a mask."""
     members = np.flatnonzero(mask)
     first, second, _ = shared_edges(triangles[members, :3])
-    joined = coo_array((np.ones(first.size), (first, second)), shape=(members.size,) * 2)
-    count, part = connected_components(joined)
+    joined = sparse.coo_array((np.ones(first.size), (first, second)), shape=(members.size,) * 2)
+    count, part = csgraph.connected_components(joined)
     return [members[part == number] for number in range(count)]

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from scipy.special import spherical_jn, spherical_yn
 
 from dynamics.acoustics.air import Air
 from dynamics.acoustics.hull import Hull
@@ -18,6 +17,7 @@ from dynamics.checks import integer, positive
 from dynamics.errors import InputError
 from dynamics.types import ComplexArray, FloatArray
 from dynamics.work_cost import Cost
+from host.deferred import special
 
 PRODUCT = 0.1e-9
 """CPU seconds for a panel and a pair of shapes."""
@@ -157,7 +157,7 @@ def sphere_efficiency(order: int, ka: float) -> float:
     """
     integer("order", order, 0, 50)
     positive("ka", ka)
-    slope = spherical_jn(order, ka, True) ** 2 + spherical_yn(order, ka, True) ** 2
+    slope = special.spherical_jn(order, ka, True) ** 2 + special.spherical_yn(order, ka, True) ** 2
     return float(1.0 / (ka * ka * slope))
 
 
@@ -167,7 +167,7 @@ def monopoles_efficiency(order: int, ka: float) -> float:
     Raises `InputError` as `sphere_efficiency` does.
     """
     integer("order", order, 0, 50)
-    return float((positive("ka", ka) * spherical_jn(order, ka)) ** 2)
+    return float((positive("ka", ka) * special.spherical_jn(order, ka)) ** 2)
 
 
 def errors_db(ka: float, orders: int = 3) -> dict[str, FloatArray]:

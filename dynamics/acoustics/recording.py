@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 import math
 import struct
@@ -11,12 +10,12 @@ from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
-from scipy.io import wavfile
 
 from bounds import above, at_least, at_most
 from bounds.brief import brief
 from dynamics.checks import increasing, integer, one_of, positive
 from dynamics.errors import InputError
+from dynamics.orders.plain_filters import plain_high_passed
 from dynamics.orders.resampling import resampled
 from dynamics.results import RunResult
 from dynamics.types import ComplexArray, FloatArray
@@ -151,10 +150,12 @@ def audible(values: FloatArray, sample_rate: float) -> FloatArray:
     samples = np.shape(values)[-1]
     if samples < 4:
         raise InputError("values", samples, "at least 4 samples")
-    from scipy.signal import butter, detrend, sosfiltfilt  # noqa: PLC0415 (start-up time)
-
-    sections = butter(SLOPE, LOWEST, "highpass", fs=sample_rate, output="sos")
     beyond = min(round(sample_rate / LOWEST), samples - 1)  # a period of the lowest frequency, reflected
+    try:
+        from scipy.signal import butter, detrend, sosfiltfilt  # noqa: PLC0415 (start-up time)
+    except ModuleNotFoundError:
+        return plain_high_passed(values, SLOPE, LOWEST, sample_rate, beyond)
+    sections = butter(SLOPE, LOWEST, "highpass", fs=sample_rate, output="sos")
     return np.asarray(sosfiltfilt(sections, detrend(values), padtype="even", padlen=beyond))
 
 
@@ -248,13 +249,14 @@ def wav_file(recording: Recording, full_scale: float) -> bytes:
     if full_scale < recording.peak:
         bound = at_least(recording.peak, note=f" {recording.unit}, the recording's peak")
         raise InputError("full_scale", full_scale, bound)
-    sound = io.BytesIO()
-    wavfile.write(sound, recording.sample_rate, (recording.samples / full_scale).astype(np.float32))
+    samples, rate = (recording.samples / full_scale).astype("<f4"), recording.sample_rate
+    # one channel of numbers of 4 bytes, 32 bits; code 3: floating point
+    head = _chunk(b"fmt ", struct.pack("<HHIIHHH", 3, 1, rate, 4 * rate, 4, 32, 0))
+    head += _chunk(b"fact", struct.pack("<I", samples.size))
     entries = (recording.quantity, recording.unit, full_scale)
     comment = json.dumps(dict(zip(COMMENT, entries, strict=True))).encode("ascii")
     information = b"INFO" + _chunk(b"ICMT", comment + b"\0")
-    # without the head of the file, RIFF and its length, which is written anew
-    body = sound.getvalue()[8:] + _chunk(b"LIST", information)
+    body = b"WAVE" + head + _chunk(b"data", samples.tobytes()) + _chunk(b"LIST", information)
     return _chunk(b"RIFF", body)
 
 

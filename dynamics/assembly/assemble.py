@@ -9,7 +9,6 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import eigh
 
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.assembly.bearing_force import BearingForce, bearing_force_map
@@ -36,6 +35,8 @@ from dynamics.mechanism.supports import Supports
 from dynamics.mechanism.train_phases import TrainPhases
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray, IntArray, Json
+from host import require
+from host.deferred import linalg
 
 MESH_SHARE = 0.01
 """Least share of a mode's strain energy in the meshes with which they excite it."""
@@ -122,6 +123,7 @@ def assemble(scene: Scene) -> System:
 
     Raises `InputError`: parts do not fit each other, or a free direction has no inertia.
     """
+    require("analysis")
     massless, resting = under_laws(scene), scene
     if massless:
         # the tangents are found with such housings at rest
@@ -191,7 +193,7 @@ def _highest_excited_mode(model: Model, arrays: SystemArrays) -> float:
     mesh_rows = arrays.direction[elements.first[:meshes]] * per_meter
     mesh_stiffness = model.flanks.mean_stiffness
     springs = mesh_rows.T @ (mesh_stiffness[:, None] * mesh_rows)
-    square, shape = eigh(springs + supports, per_meter[:, None] * arrays.mass * per_meter)
+    square, shape = linalg.eigh(springs + supports, per_meter[:, None] * arrays.mass * per_meter)
     strain = mesh_stiffness @ (mesh_rows @ shape) ** 2
     elastic = [rotor.elastic.highest for rotor in model.mechanism.rotors if rotor.elastic is not None]
     highest = max(elastic, default=np.inf)

@@ -16,11 +16,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import scipy
 
 from bounds import from_to
 from dynamics.bearings.rolling_bearing import BallBearing, CatalogLine
 from dynamics.errors import InputError
+from host.deferred import scipy
 
 SLENDERNESS = (0.0, 0.09, 0.1, 0.11, 0.12, 0.15, 0.2, 0.25, 0.3)
 """Ball diameter over pitch diameter, at which `RATING` has values."""

@@ -10,7 +10,6 @@ import math
 from functools import cached_property, lru_cache
 
 import numpy as np
-import scipy
 
 from dynamics.bearings import BallBearing, RollerBearing
 from dynamics.bearings.ball_elements import BallElements, RowPlacement
@@ -19,6 +18,7 @@ from dynamics.bearings.loaded_bearing import LoadedBearing, Reaction
 from dynamics.bearings.roller_elements import EXPONENT, RollerElements
 from dynamics.bearings.rolling_bearing import RollingBearing
 from dynamics.types import FloatArray
+from host.deferred import scipy
 
 AVERAGED = 64
 """Least number of elements, copies included, at which the force hardly varies as the cage turns.

@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 from typing import ClassVar, NamedTuple
 
 import numpy as np
-import scipy
 
 from dynamics.bearings.bearing_law import BearingDuty, SceneBearingLaw
 from dynamics.checks import finite, increasing, one_of
@@ -21,6 +20,7 @@ from dynamics.kernels.cubics import Cubics, area, piece_at, value_and_slope
 from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine
 from dynamics.types import FloatArray
+from host.deferred import scipy
 
 DIRECTIONS = ("x", "y", "z", "tilt_x", "tilt_y")
 """Directions of a curve, in the order of the five motions of a bearing."""

@@ -1,6 +1,5 @@
 """Static deflection of a geared system under load cases, and the alignment of its meshes by cause."""
 
-import host.analysis  # noqa: F401 (says what to install)
 from dynamics.deflection.bearing_loads import BearingLoad, equivalent_load, life_duration
 from dynamics.deflection.deflect import CaseDeflection, Deflection, deflect
 from dynamics.deflection.loaded_scene import ForceUnderCase, loaded_scene

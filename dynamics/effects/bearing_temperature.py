@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-import scipy
 
 from bounds import engineering
 from dynamics.bearings import RollingBearing
@@ -16,6 +15,7 @@ from dynamics.effects.loaded_parts import LoadedRotor
 from dynamics.mechanism.thermal_expansion import warmed_bearings
 from dynamics.scene.scene import Scene
 from dynamics.temperatures import WarmBearing
+from host.deferred import scipy
 
 MIN_CHANGE = 1e-12  # m
 UNLOADED = 1e-9  # m; within it rows of a pair just touch

@@ -1,6 +1,5 @@
 """Force elements: the list of all laws, their compiled evaluation, terms of rotating frames."""
 
-import host.analysis  # noqa: F401 (says what to install)
 from dynamics.bearings.rolling_contact import RollingContact
 from dynamics.bearings.spring_curve import SpringCurve
 from dynamics.loads.applied_force import SpeedTorque

@@ -3,7 +3,6 @@
 The only package of dynamics that uses scikit-fem, meshlane and, in a child process, gmsh.
 """
 
-import host.analysis  # noqa: F401 (says what to install)
 from dynamics.housings.cached_reduction import meshed_step, reduced_housing
 from dynamics.housings.mesh_faces import Bore, BoundedPlane, Box, Group, Plane
 from dynamics.housings.mesh_files import read_mesh

@@ -8,7 +8,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse as sp
 
 from bounds import inside
 from dynamics.errors import InputError
@@ -19,6 +18,7 @@ from dynamics.housings.supports import Foot, SeatBore, SeatFrame, in_axes, mean_
 from dynamics.housings.tetrahedral_mesh import TetrahedralMesh
 from dynamics.solid_housing import Material, Ring
 from dynamics.types import FloatArray, IntArray
+from host.deferred import sparse as sp
 
 LOOSE_STIFFNESS = 1e-12
 """Stiffness against a rigid motion below which mounts leave it free, relative to the stiffest motion."""

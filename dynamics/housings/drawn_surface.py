@@ -9,9 +9,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from fast_simplification import simplify
-from scipy.sparse import csr_array
-from scipy.spatial import cKDTree
 
 from bounds import at_most, from_to
 from dynamics.checks import one_of
@@ -23,6 +20,7 @@ from dynamics.housings.tetrahedral_mesh import FACES
 from dynamics.mesh_content import mesh_text
 from dynamics.solid_housing import MESH_FORMATS, MESH_SUFFIXES
 from dynamics.types import FloatArray, IntArray
+from host.deferred import fast_simplification, sparse, spatial
 
 MAX_TRIANGLES = 20_000  # largest number of triangles of a drawn surface
 WANTED_TRIANGLES = 6_000
@@ -58,11 +56,13 @@ class DrawnSurface:
         for aggressiveness in _AGGRESSIVENESS:
             if len(corners) <= maximum:
                 break
-            points, facets = simplify(self.points, self.facets, target_count=maximum, agg=aggressiveness)
+            points, facets = fast_simplification.simplify(
+                self.points, self.facets, target_count=maximum, agg=aggressiveness
+            )
             weight = _NORMAL_WEIGHT * float(np.linalg.norm(_across(points[facets]), axis=1).mean() ** 0.5)
             simplified = np.hstack([points, weight * node_normals(points, facets)])
             descriptors = np.hstack([self.points, weight * node_normals(self.points, self.facets)])
-            corners = np.asarray(cKDTree(descriptors).query(simplified)[1])[facets]
+            corners = np.asarray(spatial.cKDTree(descriptors).query(simplified)[1])[facets]
         area = np.linalg.norm(_across(self.points[corners]), axis=1)
         retained, facets = np.unique(corners[area > _MIN_AREA * area.mean()], return_inverse=True)
         return DrawnSurface(self.points[retained], facets.reshape(-1, 3)), retained
@@ -85,7 +85,9 @@ def _at_corners(corners: IntArray, values: FloatArray, count: int) -> FloatArray
     The points of the facets are `corners` (t, c).
     """
     rows, columns = corners.ravel(), np.repeat(np.arange(len(corners)), corners.shape[1])
-    return np.asarray(csr_array((np.ones(rows.size), (rows, columns)), shape=(count, len(corners))) @ values)
+    return np.asarray(
+        sparse.csr_array((np.ones(rows.size), (rows, columns)), shape=(count, len(corners))) @ values
+    )
 
 
 def drawn_step(file: Path, maximum: int = MAX_TRIANGLES) -> DrawnSurface:

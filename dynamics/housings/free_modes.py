@@ -12,11 +12,11 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
-import scipy.sparse as sp
 
 from dynamics.errors import SolveError
 from dynamics.housings.assembled_housing import BLOCK, AssembledHousing
 from dynamics.types import FloatArray, IntArray
+from host.deferred import sparse as sp
 from host.graph_order import graph_order
 
 Solve = Callable[[FloatArray], FloatArray]

@@ -8,8 +8,6 @@ from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 import numpy as np
-import scipy.sparse as sp
-from scipy.sparse.csgraph import connected_components
 
 from bounds import from_to
 from dynamics.checks import one_of
@@ -20,6 +18,8 @@ from dynamics.mesh_content import check_mesh_content, mesh_text
 from dynamics.solid_housing import MESH_FORMATS, MESH_SUFFIXES
 from dynamics.types import FloatArray, IntArray
 from host import READING, ChildFailed, ask_child
+from host.deferred import csgraph
+from host.deferred import sparse as sp
 
 MIN_SHAPE = 0.02
 """Least `element_shape`, below which an element is a sliver: its volume over that of a regular tetrahedron
@@ -66,7 +66,7 @@ def _check_quality(mesh: TetrahedralMesh) -> None:
     corners = mesh.tetrahedra[:, :4]
     row, column = np.repeat(corners[:, :1], 3, axis=1).ravel(), corners[:, 1:].ravel()
     graph = sp.coo_array((np.ones(len(row)), (row, column)), shape=2 * (len(mesh.points),))
-    _, label = connected_components(graph, directed=False)
+    _, label = csgraph.connected_components(graph, directed=False)
     parts = np.unique(label[corners[:, 0]]).size
     if parts > 1:
         remedy = "Unite the bodies, or merge the nodes they share."

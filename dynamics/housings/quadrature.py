@@ -8,9 +8,9 @@ from itertools import combinations_with_replacement
 from typing import Any, NamedTuple
 
 import numpy as np
-import scipy.sparse as sp
 
 from dynamics.types import FloatArray, IntArray
+from host.deferred import sparse as sp
 
 ORDER = 4
 """Degree that is integrated exactly: products of two quadratic shape functions on straight elements."""

@@ -14,7 +14,6 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-from scipy.linalg import block_diag, eigh
 
 from bounds import Quantity, Text
 from dynamics.bearings.matrix import Matrix, matrix_rows
@@ -25,6 +24,7 @@ from dynamics.housings.supports import SeatFrame
 from dynamics.joints import Housing
 from dynamics.types import FloatArray, IntArray
 from dynamics.work_cost import WorkCost
+from host.deferred import linalg
 from model_studies.netcdf import UnreadableFile
 from model_studies.record_file import read_record, write_record
 
@@ -132,11 +132,11 @@ class ReducedHousing:
         # Coordinates are meters, radians and amplitudes: only scaled to ones on the diagonal can eigenvalues
         # tell whether the mass matrix is regular.
         if np.linalg.eigvalsh(scale[:, None] * self.mass * scale)[0] > SINGULAR:
-            square, shape = eigh(self.stiffness, self.mass)
+            square, shape = linalg.eigh(self.stiffness, self.mass)
             return np.sqrt(np.maximum(square, 0.0)), shape
         # A singular mass matrix: 1/omega^2 are the eigenvalues, and 0 for motions without mass. These are
         # left out; the reversal makes the frequencies rise. `SINGULAR` in `max` is for a mass of zero.
-        inverse, shape = eigh(self.mass, self.stiffness)
+        inverse, shape = linalg.eigh(self.mass, self.stiffness)
         moving = np.flatnonzero(inverse > SINGULAR * max(inverse[-1], SINGULAR))[::-1]
         return 1.0 / np.sqrt(inverse[moving]), shape[:, moving] / np.sqrt(inverse[moving])
 
@@ -245,7 +245,9 @@ def scene_axes(housing: ReducedHousing) -> FloatArray:
     The motions of the seats in y are along the scene's axes; amplitudes of modes are the same in both.
     """
     amplitudes = len(housing.stiffness) - housing.motions
-    return np.asarray(block_diag(*(_seat_rotation(seat) for seat in housing.seats), np.eye(amplitudes)))
+    return np.asarray(
+        linalg.block_diag(*(_seat_rotation(seat) for seat in housing.seats), np.eye(amplitudes))
+    )
 
 
 def _seat_rotation(seat: SeatFrame) -> FloatArray:

@@ -8,7 +8,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import eigh, null_space
 
 from dynamics.errors import InputError, SolveError
 from dynamics.housings.assembled_housing import AssembledHousing, assemble
@@ -19,6 +18,7 @@ from dynamics.housings.reduced_housing import PointMotion, ReducedHousing, Reduc
 from dynamics.housings.rigid_body import rigid_motions
 from dynamics.housings.supports import in_axes
 from dynamics.types import FloatArray, IntArray
+from host.deferred import linalg
 
 INDEPENDENT = 1e-12
 """Least share of the modal mass of a deflection that lies outside the natural modes and the other
@@ -110,13 +110,13 @@ def _craig_bampton(housing: AssembledHousing, space: FloatArray) -> _Coordinates
     """Return coordinates in a space of motions (f, r), of which the first are the motions of the seats."""
     mass, stiffness = (_symmetric(space.T @ (matrix @ space)) for matrix in (housing.mass, housing.stiffness))
     seats = housing.seats @ space
-    fixed_space = null_space(seats)  # motions that leave the seats at rest
+    fixed_space = linalg.null_space(seats)  # motions that leave the seats at rest
     inside = fixed_space.T @ stiffness @ fixed_space
     # a unit motion of each seat, in static equilibrium
     static = np.linalg.pinv(seats)
     unbalanced = fixed_space.T @ stiffness @ static
     static = static - fixed_space @ (np.linalg.pinv(inside, SINGULAR, hermitian=True) @ unbalanced)
-    _, shape = eigh(inside, fixed_space.T @ mass @ fixed_space)
+    _, shape = linalg.eigh(inside, fixed_space.T @ mass @ fixed_space)
     basis = np.hstack([static, fixed_space @ shape])
     return _Coordinates(
         mass=_symmetric(basis.T @ mass @ basis),
@@ -132,7 +132,7 @@ def _material_damping(
 
     The material damps the part of a mode's energy that is not in the `springs` (r, r) of the mounts.
     """
-    square, shape = eigh(coordinates.stiffness, coordinates.mass)  # squares of the angular frequencies
+    square, shape = linalg.eigh(coordinates.stiffness, coordinates.mass)  # squares of the angular frequencies
     square[: assembled.loose.shape[1]] = 0.0  # rigid motions, which have rounding alone
     energy = np.einsum("rm,rs,sm->m", shape, springs, shape, optimize=True)  # of mode m in the springs
     share = np.where(square > 0.0, 1.0 - energy / np.where(square > 0.0, square, 1.0), 0.0)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse as sp
 
 from dynamics.types import FloatArray
+from host.deferred import sparse as sp
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse as sp
 
 from dynamics.bearings.matrix import Matrix, check_matrix
 from dynamics.errors import InputError
@@ -14,6 +13,7 @@ from dynamics.housings.quadrature import over_surface, triangle
 from dynamics.housings.tetrahedral_mesh import TetrahedralMesh
 from dynamics.solid_housing import Ring
 from dynamics.types import FloatArray
+from host.deferred import sparse as sp
 
 MOTIONS = ("x", "y", "z", "tilt_x", "tilt_y", "rotation_z")
 """Directions of motion in the seat's own axes, z along the bore."""

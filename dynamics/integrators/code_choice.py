@@ -16,7 +16,7 @@ from typing import Any, cast
 
 from dynamics.integrators.advance import advance
 from dynamics.structure_code.arithmetic import Unsupported
-from dynamics.structure_code.arrays import Known
+from dynamics.structure_code.known_parts import Known
 from dynamics.structure_code.machine_code import CodeStore, MachineCode
 from dynamics.structure_code.module import Module
 from dynamics.structure_code.structure import structure_key

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -17,7 +17,6 @@ from dynamics.arrays.arrays import SystemArrays
 from dynamics.assembly.assemble import System
 from dynamics.forces.elements import FLANK, SPATIAL_FLANK, Elements, potential
 from dynamics.integrators.advance import Control, prepare_samples, prepare_steps
-from dynamics.integrators.code_choice import StructureCode
 from dynamics.integrators.method_choice import choose_method
 from dynamics.integrators.sampler import (
     Sampler,
@@ -37,9 +36,12 @@ from dynamics.motion.motion import SPEED
 from dynamics.motion.observation import local_state, observe_laws
 from dynamics.motion.sampled_states import Widths
 from dynamics.scene import Integration
-from dynamics.structure_code.arrays import Known
+from dynamics.structure_code.known_parts import Known
 from dynamics.types import FloatArray, IntArray, Json, RunStatus
 from model_studies.stage_clock import TimeTaken
+
+if TYPE_CHECKING:
+    from dynamics.integrators.code_choice import StructureCode
 
 Progress = Callable[[float, str], None]
 Cancel = Callable[[], bool]
@@ -310,6 +312,8 @@ def march_on(
     after_block: Callable[[], None] | None = None,
 ) -> RunStatus:
     """Integrate to the end of the run, block by block; after each block `cancel` says whether to stop."""
+    from dynamics.integrators.code_choice import StructureCode  # noqa: PLC0415 (a result is read without it)
+
     duration, rate = march.system.scene.duration, march.system.sampling.rate
     # least work of a block, samples times freedoms
     work = BLOCK_WORK if progress is None and cancel is None else 0

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-import scipy
 
 from dynamics.assembly.assemble import System
 from dynamics.linearize.linear_system import LinearSystem
@@ -19,6 +18,7 @@ from dynamics.linearize.mode_energy import kinetic_shares, strain_shares
 from dynamics.linearize.operating_speeds import law_speeds
 from dynamics.linearize.whirl_modes import SAME, WhirlModes, terms_at, whirl_modes_with, whirl_sense
 from dynamics.types import ComplexArray, FloatArray, IntArray
+from host.deferred import scipy
 
 TIE = 0.05  # weight of frequencies against shapes: it decides between modes of equal shape
 INTERVALS, FINEST = 8, 32

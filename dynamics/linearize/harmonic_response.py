@@ -16,7 +16,6 @@ from fractions import Fraction
 from functools import lru_cache
 
 import numpy as np
-from scipy.fft import next_fast_len
 
 from dynamics.assembly.assemble import System
 from dynamics.checks import integer, one_of, positive
@@ -38,6 +37,7 @@ from dynamics.linearize.strongest_lines import Lines, strongest_lines
 from dynamics.motion.force_balance import block_diagonal
 from dynamics.results.array_file import stored
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
+from host.deferred import fft
 
 GRID = ("speed", "order")
 MAX_SAMPLES, MAX_PER_LINE, MAX_PARTED = 16_384, 1_000, 300
@@ -337,7 +337,7 @@ def extremes(amplitude: ComplexArray, order: FloatArray) -> tuple[FloatArray, Fl
         )
         return parts[0][0] + parts[1][0], parts[0][1] + parts[1][1]
     if samples > MAX_SAMPLES:
-        samples = next_fast_len(samples, real=True)
+        samples = fft.next_fast_len(samples, real=True)
     minimum, maximum = np.empty(amplitude.shape[:2]), np.empty(amplitude.shape[:2])
     for part in speed_blocks((amplitude.shape[1], samples), amplitude.shape[0]):
         few = amplitude[:, part]

@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import eigh, null_space
 
 from bounds import engineering
 from dynamics.assembly.assemble import System
@@ -14,6 +13,7 @@ from dynamics.errors import SolveError
 from dynamics.linearize.linear_system import LinearSystem, linearize
 from dynamics.linearize.mode_energy import strain_shares
 from dynamics.types import ComplexArray, FloatArray
+from host.deferred import linalg
 
 
 @dataclass(frozen=True)
@@ -74,11 +74,11 @@ def _solve(linear: LinearSystem) -> tuple[FloatArray, FloatArray]:
     mass, stiffness = (per_meter[:, None] * a * per_meter for a in (linear.mass, linear.stiffness))
     rigid = linear.rigid * linear.scale
     if rigid.shape[0] == 0:
-        square, vectors = eigh(stiffness, mass)
+        square, vectors = linalg.eigh(stiffness, mass)
         return square, np.asarray(vectors.T * per_meter)
     still = np.linalg.solve(np.linalg.cholesky(rigid @ mass @ rigid.T), rigid)
-    rest = null_space(still @ mass)
-    square, vectors = eigh(rest.T @ stiffness @ rest, rest.T @ mass @ rest)
+    rest = linalg.null_space(still @ mass)
+    square, vectors = linalg.eigh(rest.T @ stiffness @ rest, rest.T @ mass @ rest)
     shapes = np.concatenate([still, (rest @ vectors).T])
     return np.concatenate([np.zeros(still.shape[0]), square]), np.asarray(shapes * per_meter)
 

@@ -10,8 +10,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.fft import next_fast_len
-from scipy.sparse.linalg import LinearOperator, gmres
 
 from dynamics.errors import SolveError
 from dynamics.linearize.flank_cycles import FlankCycle
@@ -26,6 +24,7 @@ from dynamics.linearize.steady_vibration import (
     with_blocked,
 )
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
+from host.deferred import fft, sparse_linalg
 
 CONVERGED = 1e-9
 """Residual of the balance, over the displacements that make force with the mean stiffness."""
@@ -279,7 +278,7 @@ def _varying(at: Excited, index: int, harmonics: IntArray) -> list[_Varying]:
         return []
     line = harmonics[coupled] // turns
     highest = 2 * int(line[-1])
-    samples = next_fast_len(2 * highest + 2, real=True)
+    samples = fft.next_fast_len(2 * highest + 2, real=True)
     p = cycle.tangent.shape[0]
     spectrum, multiples = np.zeros((samples // 2 + 1, p, p), dtype=complex), np.arange(1, highest + 1)
     for i, j in np.ndindex(p, p):
@@ -326,8 +325,10 @@ def _solved(
 
     right = _real(source)
     size = float(np.linalg.norm(right))
-    operator = LinearOperator((right.size, right.size), matvec=balance, dtype=float)
-    solution, _ = gmres(operator, right, x0=right, rtol=CONVERGED, restart=RESTART, maxiter=CYCLES)
+    operator = sparse_linalg.LinearOperator((right.size, right.size), matvec=balance, dtype=float)
+    solution, _ = sparse_linalg.gmres(
+        operator, right, x0=right, rtol=CONVERGED, restart=RESTART, maxiter=CYCLES
+    )
     left = float(np.linalg.norm(right - balance(solution)))
     return pressed(_complex(solution, harmonics, rows)), left / max(size, 1e-300)
 

@@ -8,13 +8,13 @@ from functools import cached_property
 from typing import overload
 
 import numpy as np
-from scipy.linalg import eigh
 
 from dynamics.bearings.seat import SEAT
 from dynamics.identity_cache import identity_cached
 from dynamics.joints import Housing
 from dynamics.mechanism.rotor import Rotor
 from dynamics.types import FloatArray
+from host.deferred import linalg
 
 ROUNDING = 1e-9
 """Coupling of two modes over the damping of both, below which it is rounding."""
@@ -65,7 +65,7 @@ def modal_housing(housing: Housing) -> _ModalHousing:
     """
     mass, stiffness = _symmetric(housing.mass), _symmetric(housing.stiffness)
     unit = 1.0 / np.sqrt(np.diag(stiffness))
-    theta, shape = eigh(unit[:, None] * mass * unit, unit[:, None] * stiffness * unit)
+    theta, shape = linalg.eigh(unit[:, None] * mass * unit, unit[:, None] * stiffness * unit)
     theta, shape = theta[::-1], (unit[:, None] * shape / np.sqrt(theta))[:, ::-1]
     square = 1.0 / theta
     damping = np.diag(2.0 * housing.damping_ratio * np.sqrt(square))

@@ -11,13 +11,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array, csr_array
-from scipy.sparse.csgraph import dijkstra
 
 from dynamics.acoustics import Hull, OuterHull
 from dynamics.acoustics.hull import PANELS_PER_WAVELENGTH, ROUNDED_DOWN, flat_triangles
 from dynamics.identity_cache import identity_cached
 from dynamics.types import BoolArray, FloatArray, IntArray
+from host.deferred import csgraph, sparse
 
 STEPS = 6
 """Times that seeds move to the middle of their cells; further steps change the longest edge by below 5 %."""
@@ -98,7 +97,7 @@ def settled_cells(hull: Hull, seeds: IntArray, steps: int) -> IntArray:
     starts, ends = hull.triangles.ravel(), np.roll(hull.triangles, -1, axis=1).ravel()
     pairs = np.unique(np.sort(np.stack([starts, ends], axis=1), axis=1), axis=0)
     length = np.linalg.norm(hull.nodes[pairs[:, 0]] - hull.nodes[pairs[:, 1]], axis=1)
-    edges = coo_array((length, (pairs[:, 0], pairs[:, 1])), shape=(len(hull.nodes),) * 2).tocsr()
+    edges = sparse.coo_array((length, (pairs[:, 0], pairs[:, 1])), shape=(len(hull.nodes),) * 2).tocsr()
     share = _node_areas(hull)
     for _ in range(steps):
         cell = _next_seed(edges, seeds)
@@ -106,9 +105,11 @@ def settled_cells(hull: Hull, seeds: IntArray, steps: int) -> IntArray:
     return np.unique(_next_seed(edges, seeds), return_inverse=True)[1]
 
 
-def _next_seed(edges: csr_array, seeds: IntArray) -> IntArray:
+def _next_seed(edges: sparse.csr_array, seeds: IntArray) -> IntArray:
     """Return the number of the nearest seed of every node; surfaces without a seed are one cell."""
-    _, _, source = dijkstra(edges, directed=False, indices=seeds, min_only=True, return_predecessors=True)
+    _, _, source = csgraph.dijkstra(
+        edges, directed=False, indices=seeds, min_only=True, return_predecessors=True
+    )
     number = np.full(edges.shape[0], len(seeds))
     number[seeds] = np.arange(len(seeds))
     reached = source >= 0  # scipy marks a node that is connected with no seed by a negative number

@@ -8,8 +8,6 @@ from pathlib import Path
 from typing import cast
 
 import numpy as np
-from scipy import sparse
-from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
 
 from bounds import at_least
 from dynamics.acoustics import (
@@ -35,6 +33,7 @@ from dynamics.types import ComplexArray, FloatArray
 from dynamics.vibration import MotionQuantity, finer_seat_forces, point_signal
 from dynamics.vibration.housing_motion import modal_amplitudes
 from dynamics.vibration.time_signal import PIECE, motion_pieces
+from host.deferred import fft, sparse
 from model_studies.progress import Progress, silent
 
 NEAREST = 2.0
@@ -208,7 +207,7 @@ def pressure_signal(
     response, first = paths.impulse_response(rate)
     if estimate is not None:
         taps = 2 ** int(np.ceil(np.log2(rate / RESOLUTION)))
-        gains = estimate.gains(housing, rfftfreq(taps, 1.0 / rate))
+        gains = estimate.gains(housing, fft.rfftfreq(taps, 1.0 / rate))
         response, first = _amplified(response, gains, taps), first - taps // 2
     return _convolved(acceleration, response, first, times.size)
 
@@ -216,11 +215,11 @@ def pressure_signal(
 def _amplified(response: FloatArray, gains: FloatArray, taps: int) -> FloatArray:
     """Return responses (L, m) with real gains (taps/2 + 1, m) over frequency, delayed by half of the taps."""
     window = 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(taps) / taps)
-    kernel = window[:, None] * np.roll(irfft(gains, taps, axis=0), taps // 2, axis=0)
+    kernel = window[:, None] * np.roll(fft.irfft(gains, taps, axis=0), taps // 2, axis=0)
     length = len(response) + taps - 1
-    count = next_fast_len(length, real=True)
+    count = fft.next_fast_len(length, real=True)
     return np.asarray(
-        irfft(rfft(response, count, axis=0) * rfft(kernel, count, axis=0), count, axis=0)[:length]
+        fft.irfft(fft.rfft(response, count, axis=0) * fft.rfft(kernel, count, axis=0), count, axis=0)[:length]
     )
 
 
@@ -244,11 +243,13 @@ def _convolved(pieces: Iterator[FloatArray], response: FloatArray, first: int, s
 
     `first` is the sample of the first value of the responses.
     """
-    count = next_fast_len(PIECE + len(response) - 1, real=True)
-    filters = rfft(response, count, axis=0)
+    count = fft.next_fast_len(PIECE + len(response) - 1, real=True)
+    filters = fft.rfft(response, count, axis=0)
     total, begin = np.zeros(samples + count), 0
     for piece in pieces:
-        total[begin : begin + count] += irfft(np.sum(rfft(piece, count, axis=0) * filters, axis=1), count)
+        total[begin : begin + count] += fft.irfft(
+            np.sum(fft.rfft(piece, count, axis=0) * filters, axis=1), count
+        )
         begin += len(piece)
     signal = total[max(-first, 0) :][: max(samples - max(first, 0), 0)]
     return np.concatenate([np.zeros(samples - signal.size), signal])

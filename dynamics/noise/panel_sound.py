@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from dynamics.acoustics import (
     Air,
@@ -27,6 +25,7 @@ from dynamics.noise.coarse_hull import RadiatingHull, radiating_hull
 from dynamics.noise.housing_radiation import HousingRadiation
 from dynamics.types import ComplexArray, FloatArray, IntArray
 from dynamics.vibration import BearingHarmonics, housing_motion, seat_forces
+from host.deferred import csgraph, sparse
 from model_studies.progress import Progress, silent
 
 SMALL = 0.02
@@ -185,8 +184,8 @@ def _region_numbers(hull: Hull) -> IntArray:
     length = np.linalg.norm(hull.nodes[nodes[:, 0]] - hull.nodes[nodes[:, 1]], axis=1)
     faces = _facing(hull.normals)
     same = faces[first] == faces[second]
-    adjacent = coo_array((np.ones(same.sum()), (first[same], second[same])), shape=(len(faces),) * 2)
-    number = connected_components(adjacent, directed=False)[1]
+    adjacent = sparse.coo_array((np.ones(same.sum()), (first[same], second[same])), shape=(len(faces),) * 2)
+    number = csgraph.connected_components(adjacent, directed=False)[1]
     return _without_small(number.astype(int), hull.areas, first, second, length)
 
 

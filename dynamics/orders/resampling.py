@@ -9,6 +9,7 @@ import numpy as np
 from bounds import at_most
 from dynamics.checks import integer, one_of
 from dynamics.errors import InputError
+from dynamics.orders.plain_filters import plain_resampled
 from dynamics.results import RunResult
 from dynamics.results.run_result import OVER_TIME
 from dynamics.types import FloatArray, IntArray
@@ -91,10 +92,12 @@ def resampled(values: FloatArray, up: int, down: int, half_length: int) -> Float
     within 3e-6; those as far above it are removed by 112 dB. `half_length`: of the filter, in samples of the
     lower rate.
     """
-    from scipy.signal import firwin, resample_poly  # noqa: PLC0415 (start-up time)
-
     if up == down:
         return np.array(values, dtype=float)
+    try:
+        from scipy.signal import firwin, resample_poly  # noqa: PLC0415 (start-up time)
+    except ModuleNotFoundError:
+        return plain_resampled(values, up, down, half_length, KAISER)
     steps = max(up, down)
     taps = firwin(2 * half_length * steps + 1, 1.0 / steps, window=("kaiser", KAISER))
     return np.asarray(resample_poly(values, up, down, window=taps))  # type: ignore[call-overload]  # its stubs know none

@@ -12,7 +12,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-import scipy
 
 from bounds.brief import brief
 from bounds.plottable import Plottable
@@ -28,6 +27,7 @@ from dynamics.results.array_file import ArrayFile, stored
 from dynamics.results.run_checks import checked_ledger
 from dynamics.types import ComplexArray, FloatArray, IntArray, Json
 from host import cpu_seconds
+from host.deferred import scipy
 from model_studies.record import under_key
 from model_studies.workers import InProcess, Workers, pays, spent
 

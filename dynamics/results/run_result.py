@@ -22,7 +22,7 @@ from dynamics.results.energy_audit import EnergyAudit
 from dynamics.results.headlines import headlines
 from dynamics.types import FloatArray, Json, RunStatus
 from model_studies.array_file import Stored
-from model_studies.netcdf import DAMAGE, UnreadableFile, read_dataset
+from model_studies.netcdf import DAMAGE, UnreadableFile, opened_netcdf
 from model_studies.netcdf_content import describe, make_dimension
 
 if TYPE_CHECKING:
@@ -208,7 +208,7 @@ class RunResult(Plottable):
 
     def to_xarray(self) -> xarray.Dataset:
         """Return the series as a dataset with units, the rest as JSON attributes."""
-        import xarray  # noqa: PLC0415 - a second, and not needed to run a scene
+        from host.deferred import xarray  # noqa: PLC0415 (named above for types)
 
         coordinates: dict[str, Any] = {
             name: (name, np.array(getattr(self, name), dtype=object)) for name in NAMED if getattr(self, name)
@@ -240,14 +240,17 @@ class RunResult(Plottable):
         """
         path = Path(path)
         try:
-            dataset = read_dataset(path, decode_times=False)
+            with opened_netcdf(path, decode_vlen_strings=True) as file:
+                attributes = dict(file.attrs)
+                arrays = {str(name): np.asarray(variable[...]) for name, variable in file.variables.items()}
+                sizes = {str(name): dimension.size for name, dimension in file.dimensions.items()}
         except UnreadableFile as error:
             raise ResultError(str(error)) from error
-        if dataset.attrs.get("schema") != SCHEMA or dataset.attrs.get("schema_version") != SCHEMA_VERSION:
-            schema = f"{dataset.attrs.get('schema')} {dataset.attrs.get('schema_version')}"
+        if attributes.get("schema") != SCHEMA or attributes.get("schema_version") != SCHEMA_VERSION:
+            schema = f"{attributes.get('schema')} {attributes.get('schema_version')}"
             raise ResultError(f"{path.name}: schema is {schema}, expected {SCHEMA} {SCHEMA_VERSION}")
         try:
-            return _from_dataset(dataset)
+            return _run(attributes, arrays, sizes)
         except DAMAGE as error:
             raise ResultError(f"{path.name}: damaged, its fields are not those of a run") from error
 
@@ -363,25 +366,25 @@ def attributes(fields: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def _from_dataset(dataset: xarray.Dataset) -> RunResult:
+def _run(attributes: Mapping[str, Any], arrays: Mapping[str, Any], sizes: Mapping[str, int]) -> RunResult:
+    """Return the run of a file by its attributes, its variables and the sizes of its dimensions."""
     fields: dict[str, Any] = {
-        name: tuple(str(item) for item in dataset[name].values) if name in dataset.coords else ()
-        for name in NAMED
+        name: tuple(str(item) for item in arrays[name]) if name in arrays else () for name in NAMED
     }
-    sizes = {"direction": len(DIRECTIONS), **{str(key): size for key, size in dataset.sizes.items()}}
+    sizes = {"direction": len(DIRECTIONS), **sizes}
     for name, series in SERIES.items():
-        if name in dataset:
-            fields[name] = np.asarray(dataset[name].values, dtype=float)
+        if name in arrays:
+            fields[name] = np.asarray(arrays[name], dtype=float)
         else:
             fields[name] = np.empty([0, *(sizes.get(dimension, 0) for dimension in series.dimensions[1:])])
-    energy = json.loads(dataset.attrs["energy"])
+    energy = json.loads(attributes["energy"])
     return RunResult(
-        time=np.asarray(dataset["time"].values, dtype=float),
+        time=np.asarray(arrays["time"], dtype=float),
         **fields,
-        status=RunStatus[dataset.attrs["status"]],
-        statistics=StepStatistics(**json.loads(dataset.attrs["statistics"])),
+        status=RunStatus[attributes["status"]],
+        statistics=StepStatistics(**json.loads(attributes["statistics"])),
         energy=EnergyAudit.from_json(energy) if energy else None,
-        **{name: json.loads(dataset.attrs.get(name, absent)) for name, absent in DOCUMENTS.items()},
+        **{name: json.loads(attributes.get(name, absent)) for name, absent in DOCUMENTS.items()},
     )
 
 

@@ -14,7 +14,6 @@ from dynamics.assembly.assemble import System, assemble
 from dynamics.assembly.varied import starting_at, with_static_reference
 from dynamics.errors import SolveError
 from dynamics.integrators import static_equilibrium
-from dynamics.integrators.code_choice import StructureCode
 from dynamics.integrators.march import March, advance_to, start_march
 from dynamics.integrators.method_choice import choose_method
 from dynamics.integrators.workspace import Count
@@ -117,6 +116,8 @@ def _probe(system: System, time: float) -> _Probe:
     It has `MIN_STEPS` steps and `ENOUGH` CPU seconds, or is as long as the run. The first stretch never
     counts, since it may load code.
     """
+    from dynamics.integrators.code_choice import StructureCode  # noqa: PLC0415 (a result is read without it)
+
     began = cpu_seconds()
     no_revolutions = np.zeros(len(system.scene.references), dtype=np.int64)  # of trains without a drive
     later = starting_at(system, time, no_revolutions)

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from llvmlite import ir
 
-from dynamics.kernels.by_address import WORD
+from dynamics.kernels.tuple_addresses import WORD
 
 FLOAT, FLAG, BYTE = ir.DoubleType(), ir.IntType(1), ir.IntType(8)
 TYPES: dict[type, Any] = {float: FLOAT, int: WORD, bool: FLAG}

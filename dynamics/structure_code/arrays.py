@@ -5,26 +5,18 @@ from __future__ import annotations
 import ast
 from collections.abc import Callable
 from dataclasses import dataclass
-from enum import Enum
 from typing import Any
 
 import numpy as np
 from llvmlite import ir
 
-from dynamics.kernels.by_address import WORD, by_value
+from dynamics.kernels.tuple_addresses import WORD, by_value
 from dynamics.structure_code.arithmetic import BYTE, FLOAT, Arithmetic, Unsupported, Value
+from dynamics.structure_code.known_parts import Known
 
 ITEMS = {"d": FLOAT, "l": WORD, "q": WORD, "?": BYTE}
 LONGEST = 256
 """Dimensions, and arrays of integers, up to which they are part of the structure."""
-
-
-class Known(Enum):
-    """Part of a tuple that belongs to the structure of a run."""
-
-    ALL = "integers and dimensions"
-    DIMENSIONS = "all dimensions"
-    WIDTHS = "dimensions but the first"
 
 
 @dataclass(frozen=True)

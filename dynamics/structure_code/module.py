@@ -9,10 +9,11 @@ from typing import Any, get_args, get_type_hints
 
 from llvmlite import ir
 
-from dynamics.kernels.by_address import WORD, by_value
-from dynamics.kernels.routine import Routine
+from dynamics.kernels.compiled_routine import Routine
+from dynamics.kernels.tuple_addresses import WORD, by_value
 from dynamics.structure_code.arithmetic import TYPES, Unsupported, Value
-from dynamics.structure_code.arrays import Group, Known
+from dynamics.structure_code.arrays import Group
+from dynamics.structure_code.known_parts import Known
 from dynamics.structure_code.statements import Statements
 
 POINTER = WORD.as_pointer()

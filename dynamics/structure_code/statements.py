@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 from llvmlite import ir
 
-from dynamics.kernels.by_address import WORD
-from dynamics.kernels.routine import Routine
+from dynamics.kernels.compiled_routine import Routine
+from dynamics.kernels.tuple_addresses import WORD
 from dynamics.structure_code.arithmetic import CALLS, FLAG, FLOAT, TYPES, Scalar, Unsupported, Value
 from dynamics.structure_code.arrays import ITEMS, Array, ArrayAccess, Group
 from dynamics.structure_code.function import (

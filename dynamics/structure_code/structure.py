@@ -13,7 +13,8 @@ import llvmlite
 import llvmlite.binding as llvm
 import numpy as np
 
-from dynamics.structure_code.arrays import LONGEST, Known
+from dynamics.structure_code.arrays import LONGEST
+from dynamics.structure_code.known_parts import Known
 from dynamics.types import BoolArray, IntArray
 
 MAX_AXES = 3  # most axes of an array

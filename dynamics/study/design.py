@@ -9,12 +9,12 @@ from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
-from scipy.special import ndtr, ndtri
 
 from bounds import above, at_least, at_most
 from dynamics.checks import finite, integer, positive
 from dynamics.errors import InputError
 from dynamics.types import FloatArray
+from host.deferred import special
 
 MAX_POINTS = 1_000_000  # most points of a design
 
@@ -61,8 +61,10 @@ class Normal:
 
     def quantile(self, fraction: FloatArray) -> FloatArray:
         """Return the values below which the `fraction` of all lies."""
-        low, high = (ndtr((end - self.mean) / self.standard_deviation) for end in (self.low, self.high))
-        inside = self.mean + self.standard_deviation * ndtri(low + (high - low) * fraction)
+        low, high = (
+            special.ndtr((end - self.mean) / self.standard_deviation) for end in (self.low, self.high)
+        )
+        inside = self.mean + self.standard_deviation * special.ndtri(low + (high - low) * fraction)
         return np.asarray(np.clip(inside, self.low, self.high))
 
 

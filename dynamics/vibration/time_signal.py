@@ -12,7 +12,6 @@ from math import factorial
 from typing import Protocol
 
 import numpy as np
-from scipy.linalg import expm
 
 from bounds import Quantity, Text
 from dynamics.errors import InputError
@@ -21,6 +20,7 @@ from dynamics.kernels.compiled import compiled
 from dynamics.types import FloatArray
 from dynamics.vibration.housing_motion import ROUNDING
 from dynamics.vibration.housing_vibration import MotionQuantity, named_points
+from host.deferred import linalg
 
 UNIFORM = 1e-6
 """Largest deviation of a sample's time from a uniform grid, in steps."""
@@ -79,7 +79,7 @@ class _CoupledModes:
         system[modes : 2 * modes, modes : 2 * modes] = -step * damping
         system[modes : 2 * modes, 2 * modes : 2 * modes + forces] = step**2 * push
         system[2 * modes : -forces, 2 * modes + forces :] = np.eye((CUBIC - 1) * forces)
-        exponential = expm(system)[: 2 * modes]
+        exponential = linalg.expm(system)[: 2 * modes]
         gain = exponential[:, 2 * modes :].reshape(2 * modes, CUBIC, forces)
         return cls(exponential[:, : 2 * modes], np.ascontiguousarray(np.moveaxis(gain, 1, 0)), scale)
 
@@ -116,7 +116,7 @@ class _SeparateModes:
         systems[:, 0, 1], systems[:, 1, 0], systems[:, 1, 1] = scale, -(angle**2) / scale, -step * damping
         systems[:, 1, 2] = step**2
         systems[:, 2:-1, 3:] = np.eye(CUBIC - 1)
-        exponential = np.ascontiguousarray(np.moveaxis(expm(systems)[:, :2], 0, 2))
+        exponential = np.ascontiguousarray(np.moveaxis(linalg.expm(systems)[:, :2], 0, 2))
         return cls(exponential[:, :2].copy(), exponential[:, 2:].copy(), push, scale)
 
     def advance(self, derivatives: FloatArray, state: FloatArray) -> tuple[FloatArray, FloatArray]:

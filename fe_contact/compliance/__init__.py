@@ -1,6 +1,5 @@
 """Flank compliance by finite elements: assembly, condensation to the flanks, checks, disk cache."""
 
-import host.analysis  # noqa: F401 (says what to install)
 from fe_contact.compliance.cache_coverage import free_ends_cached, section_cached, solid_cached
 from fe_contact.compliance.condensation_cost import predict_cost
 from fe_contact.compliance.cyclic_compliance import flank_compliance_3d, flank_compliances_3d

@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import blas
 
 from fe_contact.compliance.elimination_tree import EliminationTree, sector_tree
 from fe_contact.compliance.tooth_reach import usual_reach
@@ -23,6 +22,7 @@ from fe_contact.mesh.sector_outline import sector_outline
 from fe_contact.mesh.sector_recipe import SectorRecipe
 from fe_contact.mesh.swept_sector import swept_sector
 from host import cpu_seconds
+from host.deferred import linalg
 from model_studies.host_speed import cached_speed
 
 RANK_SHARE = 0.23  # most flank loads that the ring is solved for, over flank freedoms; measured 0.22 to 0.24
@@ -170,6 +170,6 @@ def _dense_rate() -> float:
     times = []
     for _ in range(5):
         start = cpu_seconds()
-        blas.dsyrk(1.0, panel, lower=1)
+        linalg.blas.dsyrk(1.0, panel, lower=1)
         times.append(cpu_seconds() - start)
     return 0.5 * count * (count + 1) * depth / max(float(np.median(times)), 1e-6)

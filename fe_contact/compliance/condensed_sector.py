@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse as sp
 
 from fe_contact.compliance.factorization import Solve, factorise
 from fe_contact.mesh.gear_mesh import GearMesh
 from fe_contact.types import FloatArray, IntArray
+from host.deferred import sparse as sp
 
 
 @dataclass(frozen=True)

@@ -10,10 +10,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import blas, lapack
 
 from fe_contact.errors import SolveError
 from fe_contact.types import ComplexArray, FloatArray
+from host.deferred import linalg
 
 
 @dataclass(frozen=True)
@@ -44,12 +44,12 @@ class TurningLoads:
         matrix.imag = phase.imag * (self.across.T - self.across)
         if number == 0 and self.spring is not None:
             matrix.real += self.spring @ self.spring.T
-        factor, info = lapack.zpotrf(matrix, lower=1, clean=0, overwrite_a=1)
+        factor, info = linalg.lapack.zpotrf(matrix, lower=1, clean=0, overwrite_a=1)
         if info:
             raise SolveError(f"ring of teeth: harmonic {number} is not positive definite (pivot {info})")
         left, right = np.split(self.loads, 2)
-        x = blas.ztrsm(1.0, factor, np.asfortranarray(left + phase * right), lower=1, overwrite_b=1)
-        return np.asarray(blas.ztrsm(1.0, factor, x, lower=1, trans_a=2, overwrite_b=1))
+        x = linalg.blas.ztrsm(1.0, factor, np.asfortranarray(left + phase * right), lower=1, overwrite_b=1)
+        return np.asarray(linalg.blas.ztrsm(1.0, factor, x, lower=1, trans_a=2, overwrite_b=1))
 
     def within(self, basis: FloatArray) -> TurningLoads:
         """Return the ring whose cuts move in the space of orthonormal columns `basis` (nc, k) only."""

@@ -32,12 +32,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.linalg import blas, lapack
 
 from fe_contact.compliance.cyclic_harmonics import LeftCuts, TurningLoads, left_cuts
 from fe_contact.compliance.reduced_harmonics import SOFTENED, least_passed, row_space, solve_few
 from fe_contact.errors import SolveError
 from fe_contact.types import FloatArray, IntArray
+from host.deferred import linalg
 from model_studies.progress import Report, unreported
 
 STRIP = 256
@@ -76,11 +76,11 @@ class EvenSector:
 
     def force(self, forces: FloatArray) -> FloatArray:
         """Return scaled forces L^-1 f of forces (nc, p) on a cut."""
-        return np.asarray(blas.dtrsm(1.0, self.scale, np.asfortranarray(forces), lower=1))
+        return np.asarray(linalg.blas.dtrsm(1.0, self.scale, np.asfortranarray(forces), lower=1))
 
     def displacement(self, scaled: FloatArray) -> FloatArray:
         """Return the displacement L^-T x of a cut from the scaled one, (nc, p)."""
-        return np.asarray(blas.dtrsm(1.0, self.scale, np.asfortranarray(scaled), lower=1, trans_a=1))
+        return np.asarray(linalg.blas.dtrsm(1.0, self.scale, np.asfortranarray(scaled), lower=1, trans_a=1))
 
 
 @dataclass(frozen=True)
@@ -142,16 +142,16 @@ def hold_sector(matrix: FloatArray, flank: int) -> HeldSector:
 
     Raises `SolveError`: the flank block is not positive definite.
     """
-    factor, info = lapack.dpotrf(np.asfortranarray(matrix[:flank, :flank]), lower=1, clean=1)
+    factor, info = linalg.lapack.dpotrf(np.asfortranarray(matrix[:flank, :flank]), lower=1, clean=1)
     if info:
         raise SolveError(f"tooth sector: flank stiffness is not positive definite (pivot {info})")
     coupling = np.asfortranarray(matrix[flank:, :flank])
-    blas.dtrsm(1.0, factor, coupling, side=1, lower=1, trans_a=1, overwrite_b=1)
+    linalg.blas.dtrsm(1.0, factor, coupling, side=1, lower=1, trans_a=1, overwrite_b=1)
     rest = np.asfortranarray(matrix[flank:, flank:])
-    cuts = blas.dsyrk(-1.0, coupling, beta=1.0, c=rest, lower=1, overwrite_c=1)
+    cuts = linalg.blas.dsyrk(-1.0, coupling, beta=1.0, c=rest, lower=1, overwrite_c=1)
     # Minus: a force on the flank and the force it needs on held cuts point the other way.
-    transmitted = blas.dtrsm(-1.0, factor, coupling, side=1, lower=1, overwrite_b=1)
-    inverse, _ = lapack.dpotri(factor, lower=1, overwrite_c=1)
+    transmitted = linalg.blas.dtrsm(-1.0, factor, coupling, side=1, lower=1, overwrite_b=1)
+    inverse, _ = linalg.lapack.dpotri(factor, lower=1, overwrite_c=1)
     return HeldSector(_full(inverse), transmitted, _full(cuts))
 
 
@@ -159,11 +159,11 @@ def even_sector(sector: HeldSector) -> EvenSector:
     """Scale the cuts of a sector; SolveError if one between two held ones is not stiff in all directions."""
     size = sector.cut_size
     diagonal = sector.cuts[:size, :size] + sector.cuts[size:, size:]
-    scale, info = lapack.dpotrf(np.asfortranarray(diagonal), lower=1, clean=1, overwrite_a=1)
+    scale, info = linalg.lapack.dpotrf(np.asfortranarray(diagonal), lower=1, clean=1, overwrite_a=1)
     if info:
         raise SolveError(f"ring of teeth: the stiffness of a cut is not positive definite (pivot {info})")
     even = EvenSector(sector.transmitted, sector.cuts[:size, size:], scale)
-    across = blas.dtrsm(1.0, scale, even.force(even.across), side=1, lower=1, trans_a=1, overwrite_b=1)
+    across = linalg.blas.dtrsm(1.0, scale, even.force(even.across), side=1, lower=1, trans_a=1, overwrite_b=1)
     transmitted = np.concatenate([even.force(part) for part in np.split(sector.transmitted, 2)])
     return EvenSector(transmitted, across, scale)
 

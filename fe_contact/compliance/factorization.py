@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-import scipy.sparse as sp
-from scipy.sparse.linalg import splu
 
 from fe_contact.errors import SolveError
 from fe_contact.types import FloatArray, IntArray
+from host.deferred import sparse as sp
+from host.deferred import sparse_linalg
 from host.graph_order import ORDERING, graph_order
 
 Solve = Callable[[FloatArray], FloatArray]
@@ -28,7 +28,9 @@ def factorise(matrix: sp.csc_array, block: int) -> Solve:
     order = fill_reducing_order(matrix, block)
     permuted = sp.csc_array(matrix[order][:, order])
     try:
-        factor = splu(permuted, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+        factor = sparse_linalg.splu(
+            permuted, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+        )
     except RuntimeError as error:
         raise SolveError(f"{FACTORIZATION}: {error}") from error
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
 
 from fe_contact.compliance.condensed_gear import CondensedGear
 from fe_contact.compliance.flank import ComplianceChecks
@@ -13,6 +12,7 @@ from fe_contact.compliance.rounding import left_by_rounding
 from fe_contact.compliance.sector_stiffness import ElementStiffness
 from fe_contact.mesh.swept_sector import SweptSector
 from fe_contact.types import FloatArray
+from host.deferred import linalg
 
 INVERSE_ITERATIONS = 60
 
@@ -132,14 +132,14 @@ def least_eigenvalue(matrix: FloatArray) -> float:
     The result is minus the norm of the matrix if it is not positive definite.
     """
     try:
-        factor = cho_factor(matrix, lower=True)
+        factor = linalg.cho_factor(matrix, lower=True)
     except np.linalg.LinAlgError:
         return -float(np.linalg.norm(matrix))
     vector = np.cos(np.arange(len(matrix), dtype=float))  # an arbitrary start, the same every time
     value = np.inf
     for _ in range(INVERSE_ITERATIONS):
         vector /= np.linalg.norm(vector)
-        vector = cho_solve(factor, vector)
+        vector = linalg.cho_solve(factor, vector)
         last, value = value, 1.0 / float(np.linalg.norm(vector))
         if abs(last - value) <= 1e-3 * value:
             break

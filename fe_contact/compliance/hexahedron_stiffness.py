@@ -6,13 +6,14 @@ and a top, copies of one eight-node quadrilateral of the plane section.
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
-from skfem import Basis, ElementHexS2, MeshHex
-from skfem.quadrature import get_quadrature
 
 from fe_contact.compliance.plane_elasticity import element_stiffness
 from fe_contact.errors import MeshError
-from fe_contact.types import FloatArray
+from fe_contact.types import FloatArray, IntArray
+from host.deferred import skfem
 
 # Reference coordinates of the nodes: bottom corners, top corners, bottom middles, top middles, uprights.
 _RING = [(-1, -1), (1, -1), (1, 1), (-1, 1)]
@@ -29,10 +30,15 @@ SECTION = np.array([0, 1, 2, 3, 0, 1, 2, 3, 4, 5, 6, 7, 4, 5, 6, 7, 0, 1, 2, 3])
 
 QUADRATURE_ORDER = 5  # three Gauss points each way
 
-_NODE_DISTANCE = np.abs(ElementHexS2.doflocs[:, None] - 0.5 * (REFERENCE + 1.0)).sum(axis=2)
 
-# VTK's node of each of scikit-fem's functions, and the reverse; reference cubes go from 0 to 1 and -1 to 1
-_NODE, _FUNCTION = _NODE_DISTANCE.argmin(axis=1), _NODE_DISTANCE.argmin(axis=0)
+@cache
+def _numbering() -> tuple[IntArray, IntArray]:
+    """Return VTK's node of each of scikit-fem's functions, and the reverse.
+
+    Reference cubes go from 0 to 1 and from -1 to 1.
+    """
+    distance = np.abs(skfem.ElementHexS2.doflocs[:, None] - 0.5 * (REFERENCE + 1.0)).sum(axis=2)
+    return distance.argmin(axis=1), distance.argmin(axis=0)
 
 
 def layer_nodes(section: FloatArray, thickness: float, angle: float) -> FloatArray:
@@ -54,22 +60,25 @@ def above(points: FloatArray, level: FloatArray, thickness: float, angle: float)
     return np.stack([c * x - s * y, s * x + c * y, np.broadcast_to(thickness * level, x.shape)], axis=-1)
 
 
-def hexahedra(nodes: FloatArray) -> MeshHex:
+def hexahedra(nodes: FloatArray) -> skfem.MeshHex:
     """Return scikit-fem's mesh of unconnected hexahedra with `nodes` (m, 20, 3) in m."""
     numbers = np.arange(20 * len(nodes)).reshape(-1, 20)
-    return MeshHex(nodes.reshape(-1, 3).T, numbers[:, _NODE].T, elem=ElementHexS2)
+    nodes_of_functions, _ = _numbering()
+    return skfem.MeshHex(nodes.reshape(-1, 3).T, numbers[:, nodes_of_functions].T, elem=skfem.ElementHexS2)
 
 
-def determinants(mesh: MeshHex, at: FloatArray) -> FloatArray:
+def determinants(mesh: skfem.MeshHex, at: FloatArray) -> FloatArray:
     """Return the determinants (m, q) of the map from scikit-fem's cube, 0 to 1 each way, at points (3, q)."""
     rows = mesh.mapping().DF(at)
     return np.asarray(np.sum(rows[0] * np.cross(rows[1], rows[2], axis=0), axis=0))
 
 
-def gradients(mesh: MeshHex, at: FloatArray) -> FloatArray:
+def gradients(mesh: skfem.MeshHex, at: FloatArray) -> FloatArray:
     """Return the gradients (m, q, 20, 3), 1/m, of the shape functions at points (3, q) of that cube."""
-    basis = Basis(mesh, ElementHexS2(), quadrature=(at, np.ones(at.shape[1])), disable_doflocs=True)
-    return np.stack([basis.basis[i][0].grad for i in _FUNCTION]).transpose(2, 3, 0, 1)
+    basis = skfem.Basis(
+        mesh, skfem.ElementHexS2(), quadrature=(at, np.ones(at.shape[1])), disable_doflocs=True
+    )
+    return np.stack([basis.basis[i][0].grad for i in _numbering()[1]]).transpose(2, 3, 0, 1)
 
 
 def stiffness_of(nodes: FloatArray, lame: tuple[float, float]) -> FloatArray:
@@ -79,7 +88,9 @@ def stiffness_of(nodes: FloatArray, lame: tuple[float, float]) -> FloatArray:
     an element is folded.
     """
     mesh = hexahedra(nodes)
-    minimum = determinants(mesh, get_quadrature(ElementHexS2, QUADRATURE_ORDER)[0]).min(axis=1)
+    minimum = determinants(
+        mesh, skfem.quadrature.get_quadrature(skfem.ElementHexS2, QUADRATURE_ORDER)[0]
+    ).min(axis=1)
     if not minimum.min() > 0.0:
         worst = int(minimum.argmin())
         x, y = 1e3 * nodes[worst, :, :2].mean(axis=0)
@@ -87,7 +98,7 @@ def stiffness_of(nodes: FloatArray, lame: tuple[float, float]) -> FloatArray:
             f"tooth sector: element {worst} at ({x:.4g}, {y:.4g}) mm is folded. "
             "Try other element sizes in the sector recipe."
         )
-    freedoms = (3 * _FUNCTION[:, None] + np.arange(3)).ravel()
+    freedoms = (3 * _numbering()[1][:, None] + np.arange(3)).ravel()
     return element_stiffness(mesh, QUADRATURE_ORDER, lame)[:, freedoms[:, None], freedoms]
 
 

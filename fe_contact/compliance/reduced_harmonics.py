@@ -15,10 +15,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import blas, lapack
 
 from fe_contact.compliance.cyclic_harmonics import TurningLoads, weights
 from fe_contact.types import ComplexArray, FloatArray
+from host.deferred import linalg
 from model_studies.progress import Report
 
 MIN_SIGNIFICANT = 1e-12
@@ -172,7 +172,7 @@ def row_space(matrix: FloatArray, minimum: float) -> FloatArray:
 
 def _gram(columns: FloatArray) -> FloatArray:
     """Return X'X, lower triangle."""
-    return np.asarray(blas.dsyrk(1.0, np.asfortranarray(columns), trans=1, lower=1))
+    return np.asarray(linalg.blas.dsyrk(1.0, np.asfortranarray(columns), trans=1, lower=1))
 
 
 def _whitening(gram: FloatArray, minimum: float) -> tuple[FloatArray, FloatArray]:
@@ -181,7 +181,7 @@ def _whitening(gram: FloatArray, minimum: float) -> tuple[FloatArray, FloatArray
     The eigenvalues are computed from its pivoted Cholesky factor, which ends when no diagonal entry above
     `minimum` is left.
     """
-    factor, pivots, rank, _ = lapack.dpstrf(np.asfortranarray(gram), lower=1, tol=minimum)
+    factor, pivots, rank, _ = linalg.lapack.dpstrf(np.asfortranarray(gram), lower=1, tol=minimum)
     lower = np.tril(factor[:, :rank])
     values, vectors = np.linalg.eigh(lower.T @ lower)
     significant = values > minimum

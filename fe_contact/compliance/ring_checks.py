@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse as sp
-from scipy.linalg import eigh
 
 from fe_contact.compliance.flank import ComplianceChecks
 from fe_contact.compliance.ring_2d import Ring, rotation
 from fe_contact.compliance.rounding import left_by_rounding
 from fe_contact.types import FloatArray
+from host.deferred import linalg
+from host.deferred import sparse as sp
 
 
 @dataclass(frozen=True)
@@ -129,7 +129,7 @@ def ring_checks(ring: Ring, tooth_index: int, load: _FlankLoad, matrix: FloatArr
         reciprocity=float(np.abs(matrix - matrix.T).max() / np.abs(matrix).max()),
         bore_moment=abs(moment + load.moment) / load.moment,
         energy=float(np.ptp(works) / works[0]),
-        least_eigenvalue=float(eigh(matrix, subset_by_index=[0, 0], eigvals_only=True)[0]),
+        least_eigenvalue=float(linalg.eigh(matrix, subset_by_index=[0, 0], eigvals_only=True)[0]),
         residual_rounding=unbalanced,
         energy_rounding=energy,
     )

@@ -12,8 +12,6 @@ and u_c on every sector follows from the harmonics of the ring.
 from __future__ import annotations
 
 import numpy as np
-import scipy.sparse as sp
-from scipy.linalg import blas
 
 from fe_contact.compliance.condensed_gear import CondensedGear, CondensedTooth, condensed_tooth
 from fe_contact.compliance.cyclic_compliance import SOLVER
@@ -38,6 +36,8 @@ from fe_contact.mesh.quad_sector import QuadSector, quad_sector
 from fe_contact.mesh.sector_recipe import SectorRecipe
 from fe_contact.mesh.swept_sector import SweptSector
 from fe_contact.types import FloatArray
+from host.deferred import linalg
+from host.deferred import sparse as sp
 from model_studies.stage_clock import StageClock
 
 ROWS_AT_ONCE = 256  # stresses passed up the tree together: bounds the memory
@@ -142,7 +142,7 @@ def _on_retained(condensation: Condensation, rows: sp.csr_array) -> FloatArray:
             inner = part[front.front.inner]
             used = np.flatnonzero(inner.any(axis=0))
             if used.size:
-                solved = blas.dtrsm(1.0, front.factor, np.asfortranarray(inner[:, used]), lower=1)
+                solved = linalg.blas.dtrsm(1.0, front.factor, np.asfortranarray(inner[:, used]), lower=1)
                 part[np.ix_(front.front.border, used)] -= front.coupling @ solved
         functionals[start : start + ROWS_AT_ONCE] = part[condensation.retained].T
     return functionals

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import blas, lapack
 
 from fe_contact.compliance.elimination_tree import EliminationTree, Front
 from fe_contact.compliance.front_assembly import add_elements, add_updates
@@ -20,6 +19,7 @@ from fe_contact.compliance.front_memory import FrontBlocks, FrontMemory
 from fe_contact.compliance.sector_stiffness import ElementStiffness
 from fe_contact.errors import SolveError
 from fe_contact.types import FloatArray, IntArray
+from host.deferred import linalg
 from model_studies.progress import Report, unreported
 
 NOTHING, NO_ROWS = np.zeros(0), np.zeros(0, dtype=np.int64)
@@ -54,7 +54,7 @@ class Condensation:
         u[self.retained] = values
         for part in self.factors:
             right = np.asfortranarray(part.coupling.T @ u[part.front.border])
-            u[part.front.inner] = -blas.dtrsm(1.0, part.factor, right, lower=1, trans_a=1)
+            u[part.front.inner] = -linalg.blas.dtrsm(1.0, part.factor, right, lower=1, trans_a=1)
         return u
 
 
@@ -140,13 +140,15 @@ def _eliminated(front: Front, blocks: FrontBlocks) -> _FrontFactor:
     """Factorise the inner freedoms of a front in place; the update is then in the block `rest`."""
     inner, border = len(front.inner), len(front.border)
     # LAPACK leaves the upper triangle as it was: rubbish that every later call must be told to ignore.
-    factor, info = lapack.dpotrf(_by_columns(blocks.within, inner, inner), lower=1, overwrite_a=1, clean=0)
+    factor, info = linalg.lapack.dpotrf(
+        _by_columns(blocks.within, inner, inner), lower=1, overwrite_a=1, clean=0
+    )
     if info:
         raise SolveError(f"tooth sector: stiffness is not positive definite (pivot {info})")
     below = _by_columns(blocks.below, border, inner)
     rest = _by_columns(blocks.rest, border, border)
-    coupling = blas.dtrsm(1.0, factor, below, side=1, lower=1, trans_a=1, overwrite_b=1)
-    blas.dsyrk(-1.0, coupling, beta=1.0, c=rest, lower=1, overwrite_c=1)
+    coupling = linalg.blas.dtrsm(1.0, factor, below, side=1, lower=1, trans_a=1, overwrite_b=1)
+    linalg.blas.dsyrk(-1.0, coupling, beta=1.0, c=rest, lower=1, overwrite_c=1)
     return _FrontFactor(front, factor, coupling)
 
 

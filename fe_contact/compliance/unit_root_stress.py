@@ -16,7 +16,6 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
-import scipy.sparse as sp
 
 from fe_contact.compliance.cache import cached_or_computed, cached_size, computed_once, content_hash
 from fe_contact.compliance.condensed_sector import freedoms
@@ -56,6 +55,7 @@ from fe_contact.mesh.bore_support import BoreSupport, bore_support
 from fe_contact.mesh.quadratic_mesh import SIDES
 from fe_contact.mesh.tooth_sector import ToothSector
 from fe_contact.types import FloatArray, IntArray
+from host.deferred import sparse as sp
 from model_studies.stage_clock import StageClock
 
 MODEL_VERSION = 1  # raise it whenever the same input gives another result: old cache files are then not found

@@ -1,6 +1,5 @@
 """Loaded contact of gear teeth: points of contact, forces on them, and lag of the driven gear."""
 
-import host.analysis  # noqa: F401 (says what to install)
 from fe_contact.contact.adjoint import adjoint, force_changes, load_arm
 from fe_contact.contact.assembly import contact_problem
 from fe_contact.contact.candidates import PatchRule, contact_candidates, teeth_in_reach, with_gaps

@@ -86,7 +86,6 @@ class FlankGrid:
 
     def material_removed(self, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:
         """Return the material removed in m at roll lengths and face positions in m, arrays of equal shape."""
-        import host.analysis  # noqa: F401, PLC0415 (says what to install)
         from fe_contact.flank.bicubic import bicubic  # noqa: PLC0415 (loads the compiler)
 
         points = (np.ascontiguousarray(axis, dtype=float).ravel() for axis in (roll_length, face_position))

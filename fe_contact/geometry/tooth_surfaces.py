@@ -93,7 +93,6 @@ class ToothSurfaces:
         roll_length, face : ndarray
             Points of these flanks, m; `face` from mid-face. All arrays broadcast.
         """
-        import host.analysis  # noqa: F401, PLC0415 (says what to install)
         from fe_contact.geometry.tooth_surface_loops import surfaces_excess  # noqa: PLC0415 (loads the compiler)
 
         shape = np.broadcast_shapes(tooth.shape, roll_length.shape, face.shape)

@@ -1,6 +1,5 @@
 """Meshes on exact tooth profiles, made by gmsh in a child process, checked for quality."""
 
-import host.analysis  # noqa: F401 (says what to install)
 from fe_contact.mesh.bore_support import ClampedBore, PlaneStrain, bore_support
 from fe_contact.mesh.gear_mesh import GearMesh, mesh_ahead, mesh_gear
 from fe_contact.mesh.quad_sector import QuadSector, quad_sector

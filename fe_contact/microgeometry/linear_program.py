@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy
-from scipy.sparse import coo_array
 
 from fe_contact.microgeometry.objective import Rows
 from fe_contact.types import FloatArray, IntArray
+from host.deferred import scipy, sparse
 
 
 @dataclass(frozen=True)
@@ -95,7 +94,7 @@ class LinearProgram:
         cost = np.zeros(len(self._minimum))
         cost[objective], cost[exceeded] = 1.0, penalty
         value, row, column = (np.concatenate(parts) for parts in (self._value, self._row, self._column))
-        matrix = coo_array((value, (row, column)), shape=(self._rows, cost.size)).tocsr()
+        matrix = sparse.coo_array((value, (row, column)), shape=(self._rows, cost.size)).tocsr()
         minimum, maximum = np.array(self._minimum), np.full(cost.size, np.inf)
         minimum[: low.size], maximum[: high.size] = low, high
         rows = scipy.optimize.LinearConstraint(matrix, ub=np.concatenate(self._right))

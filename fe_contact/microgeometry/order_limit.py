@@ -12,12 +12,12 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.special import ndtri
 
 from fe_contact.errors import InputError, integer, positive
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.microgeometry.tangent_model import TangentModel, highest_order, order_amplitude
 from fe_contact.types import BoolArray, FloatArray
+from host.deferred import special
 from model_studies import in_unit
 
 TIGHTENED = 1.0 / math.sqrt(2.0)
@@ -211,7 +211,7 @@ def _share_error(beyond: BoolArray, confidence: float) -> FloatArray:
     """
     count = len(beyond)
     part = (beyond.sum(axis=0) + 1.0) / (count + 2.0)
-    return np.asarray(ndtri(0.5 + 0.5 * confidence) * np.sqrt(part / count))
+    return np.asarray(special.ndtri(0.5 + 0.5 * confidence) * np.sqrt(part / count))
 
 
 def mesh_order_above(

@@ -11,12 +11,12 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
-from scipy.special import ndtri, roots_hermitenorm
 
 from bounds import SiNote, at_least
 from fe_contact.errors import InputError, finite, integer, positive
 from fe_contact.microgeometry.variables import gear_and_quantity
 from fe_contact.types import FloatArray, Json
+from host.deferred import special
 from model_studies import in_unit
 
 MISALIGNMENT = "misalignment"
@@ -59,7 +59,7 @@ class GaussHermite:
         if self.points**dimensions > MAX_NODES:
             remedy = "Take fewer points, or a SobolSample."
             raise InputError("scatter.rule.points", self.points, f"at most {MAX_NODES} nodes in all", remedy)
-        point, weight = roots_hermitenorm(self.points)
+        point, weight = special.roots_hermitenorm(self.points)
         grid = np.meshgrid(*[point] * dimensions, indexing="ij")
         weights = np.meshgrid(*[weight / weight.sum()] * dimensions, indexing="ij")
         return np.stack([axis.ravel() for axis in grid], axis=1), np.prod(weights, axis=0).ravel()
@@ -99,7 +99,7 @@ class SobolSample:
 
         size = 2**self.log2_size
         uniform = qmc.Sobol(dimensions, rng=self.seed).random_base2(self.log2_size)
-        return np.asarray(ndtri(uniform)), np.full(size, 1.0 / size)
+        return np.asarray(special.ndtri(uniform)), np.full(size, 1.0 / size)
 
     def finer(self, dimensions: int) -> SobolSample:
         """Return the sample of four times the size, of the same sequence."""

@@ -14,12 +14,12 @@ from itertools import count
 from typing import Protocol
 
 import numpy as np
-from scipy.optimize import Bounds, differential_evolution, minimize
 
 from fe_contact.errors import integer
 from fe_contact.microgeometry.counted_merit import Budget, BudgetUsed, CountedMerit, Design
 from fe_contact.microgeometry.design_problem import Merit, SearchProblem
 from fe_contact.types import FloatArray, Json
+from host.deferred import optimize
 from model_studies.progress import unreported
 
 SIMPLEX_SIZE, SIMPLEX_MERIT = 1e-3, 1e-4
@@ -90,11 +90,11 @@ class NelderMead:
     ) -> None:
         """Search by the merit alone; `rough` and `seed` are not used."""
         edges = np.diag(np.where(start < 0.5, EDGE, -EDGE))
-        minimize(
+        optimize.minimize(
             merit,
             start,
             method="Nelder-Mead",
-            bounds=Bounds(np.zeros(start.size), np.ones(start.size)),
+            bounds=optimize.Bounds(np.zeros(start.size), np.ones(start.size)),
             options={
                 "initial_simplex": np.vstack([start, start + edges]),
                 "xatol": SIMPLEX_SIZE,
@@ -313,9 +313,9 @@ class DifferentialEvolution:
         """Search from a population to which the start belongs."""
         merit(start)
         with suppress(BudgetUsed):
-            differential_evolution(
+            optimize.differential_evolution(
                 rough,
-                Bounds(np.zeros(start.size), np.ones(start.size)),
+                optimize.Bounds(np.zeros(start.size), np.ones(start.size)),
                 x0=start,
                 rng=np.random.default_rng(seed),
                 popsize=self.population,

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 import numpy as np
-from scipy.special import ndtr, ndtri
 
 from bounds import SiNote
 from fe_contact.errors import InputError, integer, positive
@@ -22,6 +21,7 @@ from fe_contact.geometry.flank_tolerances import (
 from fe_contact.microgeometry.scatter import MISALIGNMENT
 from fe_contact.microgeometry.variables import ACROSS_FACE, GEARS, gear_and_quantity
 from fe_contact.types import FloatArray, Json
+from host.deferred import special
 
 Distribution = Literal["normal", "uniform"]
 PROCESS_SPREAD = 3.0
@@ -130,8 +130,8 @@ def spread_within(width: float | FloatArray, uniform: FloatArray, distribution: 
     """Return deviations, m, within half widths, m, from uniform numbers between 0 and 1."""
     if distribution == "uniform":
         return np.asarray(width * (2.0 * uniform - 1.0))
-    low = ndtr(-PROCESS_SPREAD)
-    return np.asarray(width * ndtri(low + (1.0 - 2.0 * low) * uniform) / PROCESS_SPREAD)
+    low = special.ndtr(-PROCESS_SPREAD)
+    return np.asarray(width * special.ndtri(low + (1.0 - 2.0 * low) * uniform) / PROCESS_SPREAD)
 
 
 def iso1328_tolerances(

@@ -6,11 +6,11 @@ from dataclasses import asdict, dataclass, replace
 from typing import TypeVar
 
 import numpy as np
-import scipy
 
 from fe_contact.errors import SolveError
 from fe_contact.ste.fields import GRID, SteFields
 from fe_contact.types import BoolArray, FloatArray, IntArray
+from host.deferred import scipy
 
 Table = TypeVar("Table", bound=SteFields)
 

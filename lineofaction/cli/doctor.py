@@ -21,7 +21,7 @@ from lineofaction.cli.output import console, print_json, table
 from lineofaction.gearbox.program_version import solver_version
 from lineofaction.report.drawing.printing import browser
 
-BASE = ("new", "open", "ste", "submit", "jobs", "fetch", "dismiss", "cache", "doctor")
+BASE = ("new", "open", "ste", "report", "submit", "jobs", "fetch", "dismiss", "cache", "doctor")
 """Verbs of an installation without extras."""
 OF_SERVICE = ("serve", "keys", "database", "store")
 """Verbs that need the extra service; all others but `BASE` need the extra analysis."""

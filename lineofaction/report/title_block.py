@@ -12,10 +12,10 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from datetime import date
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from fe_contact.solver_version import software_versions
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.reading import read_table, validated
 from lineofaction.gearbox.schemas.report import ReportInput, Requirement
@@ -46,7 +46,7 @@ def titled(page: Page, about: ReportInput | None) -> Page:
     fields = {"project": about.project, "drawing": about.number, "revision": about.revision}
     fields |= {"author": about.author, "date": date.today().isoformat()}
     rows = {name: text for name, text in fields.items() if text}
-    rows["made with"] = f"lineofaction {software_versions()['lineofaction']}"
+    rows["made with"] = f"lineofaction {version('lineofaction')}"
     if page.records:
         rows["hash"] = hash_of(page.records)
     parsed = (Requirement.of(line) for line in about.requirements)

@@ -135,6 +135,7 @@ def test_a_scene_is_opened_where_cases_are(visit):
     expect(page.get_by_label("Scene, TOML")).to_have_value(EXAMPLE.read_text(encoding="utf-8"))
     expect(page.locator("#scene-tables")).to_be_visible()
     expect(page.get_by_text("This case cannot be computed")).to_have_count(0)
+    tab(page, "TOML")
 
 
 def test_files_chosen_with_a_scene_go_with_it(visit):

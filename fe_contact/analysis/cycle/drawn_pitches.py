@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import scipy
 
 from fe_contact.ste.curve_quantities import (
     FIRST_HARMONIC,
@@ -18,6 +17,7 @@ from fe_contact.ste.curve_quantities import (
 )
 from fe_contact.ste.interpolation import Axis
 from fe_contact.types import FloatArray
+from host.deferred import scipy
 
 CONFIDENCE = 0.99
 """Confidence of Student's distribution for means over drawn pitches. A few pitches have much larger errors

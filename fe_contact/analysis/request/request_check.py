@@ -17,6 +17,7 @@ from fe_contact.mesh import SectorRecipe
 from fe_contact.options import AnalysisOptions, OperatingPoint, TableAxes
 from fe_contact.planning.cycle_cost import CycleCost
 from fe_contact.planning.plan import make_plan
+from host import require
 
 
 def check_request(
@@ -73,6 +74,7 @@ def checked_request(request: Request, *, check_size: bool = True, neglect: bool 
 
     With a tolerance, automatic effects that it does not need are then neglected.
     """
+    require("analysis")
     composed, ledger = _composed(request)
     refuse_beyond_plane(request.scene, composed, ledger)
     if neglect:

@@ -177,9 +177,9 @@ def panel_axes(sheet: Sheet, panels: tuple[Panel, ...], across: int = 1, *, half
     handles = draw_panels(panels, axes, {row[0] for row in rows if len(row) == 1 and not half})
     if len(handles) > 1:
         look: dict[str, Any] = {"loc": "outside lower left", "frameon": False, "fontsize": 9}
-        columns = _legend_columns(list(handles), _LEGEND_CHARACTERS // shares)
-        sheet.legend(handles.values(), handles.keys(), ncols=columns, **look)
-        further = math.ceil(len(handles) / columns) - 1
+        across_legend = _legend_columns(list(handles), _LEGEND_CHARACTERS // shares)
+        sheet.legend(handles.values(), handles.keys(), ncols=across_legend, **look)
+        further = math.ceil(len(handles) / across_legend) - 1
         sheet.set_figheight(sheet.get_figheight() + _ROW_HEIGHT * further)
     return axes
 

@@ -12,8 +12,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from bounds.types import FloatArray, IntArray
 from dynamics.vibration import SurfaceShape
@@ -236,11 +234,27 @@ def _folds(points: FloatArray, triangles: IntArray) -> IntArray:
     size = len(triangles)
     normal = _evened(across, first, second)
     sharp = np.sum(normal[first] * normal[second], axis=1) < np.cos(np.radians(FOLD))
-    flat = coo_array((np.ones(np.count_nonzero(~sharp)), (first[~sharp], second[~sharp])), shape=(size, size))
-    _, side = connected_components(flat, directed=False)
+    side = _connected(size, first[~sharp], second[~sharp])
     area = np.bincount(side, np.linalg.norm(across, axis=1))
     large = area > SIDE * area.sum()
     return np.asarray(edges[(side[first] != side[second]) & large[side[first]] & large[side[second]]])
+
+
+def _connected(size: int, first: IntArray, second: IntArray) -> IntArray:
+    """Return a number (n,) of the connected part of each of `size` nodes, by the ends of edges (e,).
+
+    The number is that of the first node of the part: the lower number of an edge passes to the node that
+    stands for the other end, and from there to all that it stands for.
+    """
+    least, number = np.arange(size), np.full(size, -1)
+    while not np.array_equal(least, number):
+        number = least.copy()
+        lower = np.minimum(number[first], number[second])
+        np.minimum.at(least, number[first], lower)
+        np.minimum.at(least, number[second], lower)
+        while not np.array_equal(least, least[least]):
+            least = least[least]
+    return number
 
 
 def _outline(view: _View, points: FloatArray, triangles: IntArray, depth: FloatArray) -> IntArray:

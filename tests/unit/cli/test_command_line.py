@@ -298,7 +298,7 @@ def drawn(*arguments: str) -> str:
 
     @app.command()
     @grouped
-    def draw(*, name, size, bold=False):
+    def draw(*, name: str, size: Size, bold: bool = False) -> None:
         typer.echo(f"{name} {size.length} {size.width} {bold}")
 
     return CliRunner().invoke(app, arguments).output
@@ -326,6 +326,6 @@ def test_an_option_of_a_group_has_its_own_faults(arguments, named):
 
 def test_options_stand_where_their_group_stood():
     @grouped
-    def verb(*, name, size, bold=False): ...
+    def verb(*, name: str, size: Size, bold: bool = False) -> None: ...
 
     assert [part.name for part in parameters_of(verb)] == ["name", "length", "width", "bold"]

@@ -352,7 +352,6 @@ def check_findings(database: SteDatabase, drawn: dict[str, Figure]) -> None:
         CHECKS[key](figure, database)
         assert not re.search(r"\de[-+]\d|nan|none", f"{figure.caption} {figure.alternative}")
     ripple = drawn["ste"].content[0]
-    assert ripple.y.limits is not None
     values = np.concatenate([line.y for line in ripple.lines])
     low, high = ripple.y.limits
     assert low < values.min() and values.max() < high

@@ -44,7 +44,6 @@ def test_a_run_backwards_travels_as_far(run):
 
 def test_dynamic_and_static_error_are_drawn_at_three_speeds(run):
     panels = dynamic_error(run).content
-    assert isinstance(panels, tuple)
     assert [panel.title.split(" rpm")[0] for panel in panels] == ["90.0", "400", "800"]
     for panel in panels:
         dynamic, static = panel.lines

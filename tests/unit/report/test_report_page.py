@@ -249,7 +249,6 @@ def test_effects_of_contact_and_run_stand_in_one_table(database, run):
 
 def test_the_data_sheet_begins_with_what_speaks_against_the_pair(database):
     pair = pair_of(database)
-    assert pair is not None
     messages = [remark["message"] for remark in pair_remarks(pair)]
     assert any("no backlash" in message for message in messages)
     assert data_sheet_section(pair).text == " ".join(f"Warning: {message}" for message in messages)

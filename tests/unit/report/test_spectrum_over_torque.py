@@ -18,7 +18,6 @@ Tables = Callable[..., SteDatabase]
 
 def shade_of(database: SteDatabase) -> HeatMap:
     (panel,) = ste_waterfall(database).content
-    assert isinstance(panel.shade, HeatMap)
     return panel.shade
 
 

@@ -138,7 +138,6 @@ def test_the_housing_of_a_scene_is_in_its_picture_and_stays_small():
     for unit_parts in (parts, bodies(ROTOR)):
         (section, *_) = with_picture(Page("Title", "", (), ()), unit_parts).sections
         (figure,) = section.figures
-        assert figure.picture is not None
         captions.append((figure.caption, figure.picture()))
     (housed, first), (unhoused, second) = captions
     assert housed.endswith(HOUSED) and unhoused.endswith(UNHOUSED)

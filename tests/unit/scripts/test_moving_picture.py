@@ -4,7 +4,6 @@ import moving_picture
 import numpy as np
 import pytest
 from PIL import Image
-from PIL.GifImagePlugin import GifImageFile
 from repository import ROOT
 from scipy.io import wavfile
 
@@ -17,7 +16,6 @@ def test_the_readme_shows_a_picture_that_moves_in_less_than_a_megabyte():
     assert "docs/images/relief.gif" in (ROOT / "README.md").read_text("utf-8")
     assert PICTURE.stat().st_size < 1_000_000
     with Image.open(PICTURE) as shown:
-        assert isinstance(shown, GifImageFile)
         assert shown.n_frames == 2 * len(moving_picture.RELIEFS) - 2
         assert shown.info["loop"] == 0
 
@@ -30,7 +28,6 @@ def test_frames_run_there_and_back_and_rest_at_the_ends(tmp_path):
     drawn = [moving_picture.frame((panel,)) for panel in panels]
     moving_picture.moving(drawn, tmp_path / "moving.gif")
     with Image.open(tmp_path / "moving.gif") as shown:
-        assert isinstance(shown, GifImageFile)
         seen = []
         for index in range(shown.n_frames):
             shown.seek(index)

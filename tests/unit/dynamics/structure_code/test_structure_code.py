@@ -19,7 +19,7 @@ from dynamics.kernels.by_address import by_address
 from dynamics.kernels.compiled import compiled
 from dynamics.loads import AppliedForce, Unbalance
 from dynamics.structure_code.arithmetic import CALLS
-from dynamics.structure_code.arrays import Known
+from dynamics.structure_code.known_parts import Known
 from dynamics.structure_code.machine_code import CodeStore
 from dynamics.structure_code.module import Module
 from dynamics.structure_code.structure import structure_key

@@ -9,7 +9,7 @@ from dynamics.kernels.by_address import by_address
 from dynamics.kernels.compiled import compiled, inner_sums
 from dynamics.kernels.routine import routine
 from dynamics.structure_code.arithmetic import Unsupported
-from dynamics.structure_code.arrays import Known
+from dynamics.structure_code.known_parts import Known
 from dynamics.structure_code.machine_code import MachineCode
 from dynamics.structure_code.machine_code import compiled as machine_code
 from dynamics.structure_code.module import Module

@@ -99,6 +99,16 @@ def family(seed, count=17, curves=6):
     )
 
 
+@pytest.mark.parametrize("seed", range(20))
+def test_a_family_keeps_its_order_and_does_not_overshoot(seed):
+    axis, levels = family(seed)
+    curves = with_slopes(axis, levels, ordered_slopes(axis, levels))
+    assert np.all(np.diff(curves, axis=1) > 0.0)
+    at = axis.stencil(FINE)
+    assert np.all(curves >= np.minimum(levels[at.left], levels[at.right]) - 1e-14)
+    assert np.all(curves <= np.maximum(levels[at.left], levels[at.right]) + 1e-14)
+
+
 def test_independent_slopes_would_break_the_order():
     """What `ordered_slopes` is for: with single-curve slopes the same families cross."""
     crossings = 0
