@@ -113,9 +113,8 @@ def _sweep(
 
     Forces of a much smaller load press on too few points: where no solution is found from them, the search
     begins again from zero forces, for which `solve_point` guesses a start, and then rises to the load by
-    steps. Positions p, p + rows, p + 2 rows
-    and so on have the same compliance of the bodies; they are solved one after another, so that it is
-    prepared once.
+    steps. Positions p, p + rows, p + 2 rows and so on have the same compliance of the bodies; they are solved
+    one after another, so that it is prepared once.
     """
     rows = every.bodies.shape[0]
     for row in range(rows):

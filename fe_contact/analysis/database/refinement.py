@@ -186,8 +186,8 @@ def next_pass(choice: Decision, shares: FloatArray) -> Refinement | str:
 def finer_mesh(choice: Decision, failed: int) -> Refinement | str:
     """Return the pass on the next mesh, or why there is none, where `failed` points had no solution.
 
-    A coarse mesh may not resolve a narrow contact at the end of a face, whose strip is wider than the load
-    patches: forces that alternate along the face then have no stable solution.
+    On a coarse mesh strips may be wider than the load patches, where the compliance of the bodies is not
+    positive for all forces and Newton's method may find no way.
     """
     plan, count = choice.plan, len(AT_NODES)
     initial = _Resolution(
