@@ -60,6 +60,12 @@ class Deferred:
         return value
 
 
+def load_numerics() -> None:
+    """Load the modules of SciPy, for a warm process whose forks shall find them."""
+    for address in _ADDRESSES.values():
+        import_module(address)
+
+
 def __getattr__(name: str) -> Any:
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -20,6 +20,7 @@ from dynamics.scene import Scene
 from dynamics.simulation import simulate_to_file
 from fe_contact.options import Run
 from fe_contact.ste import SteDatabase
+from host.deferred import load_numerics
 from lineofaction.gearbox.convert.answers import draft_line, headline_json
 from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.checked_case import CheckedCase
@@ -70,6 +71,7 @@ class DraftedProgress:
 
 def warm_up() -> None:
     """Analyze the smallest pair into a temporary file, so that all that an analysis needs is loaded."""
+    load_numerics()
     gear = {"teeth": 20, "face_width_mm": 2.0, "bore_diameter_mm": 10.0}
     pair = {"normal_module_mm": 1.0, "center_distance_mm": 20.0, "pinion": gear, "wheel": gear}
     accuracy = {"level": "draft", "positions": 8}

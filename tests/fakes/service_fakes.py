@@ -36,6 +36,8 @@ class Wish(BoundaryModel):
 
 
 class FakeInputs(BoundaryModel):
+    """Inputs of the fake."""
+
     wish: Wish
 
 
