@@ -14,9 +14,8 @@ import numpy as np
 from dynamics.errors import InputError
 from dynamics.mechanism.kinematics import Kinematics, proportional_speeds
 from dynamics.meshes.gear_mesh import GearMesh
-from dynamics.scene.scene import Scene
+from dynamics.scene.scene import Scene, on_axis
 from dynamics.shafts.rigid_bodies import GearBody
-from dynamics.shafts.shaft import on_axis
 from dynamics.types import FloatArray
 
 MESH, SIDEBAND, SHAFT, BEARING = "mesh", "sideband", "shaft", "bearing"

@@ -14,9 +14,8 @@ from dynamics.errors import InputError
 from dynamics.forces.laws import BEARING_PARTS
 from dynamics.mechanism.kinematics import Kinematics, solve_kinematics
 from dynamics.meshes import GearMesh
-from dynamics.scene.scene import Scene
+from dynamics.scene.scene import Scene, on_axis
 from dynamics.shafts import DiscBody, GearBody, Shaft
-from dynamics.shafts.shaft import on_axis
 
 TOOTH_FIT = 1e-6  # in teeth: largest misfit of a planet's teeth in all central gears by its angle
 

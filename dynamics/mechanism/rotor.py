@@ -15,9 +15,9 @@ import numpy as np
 
 from dynamics.bearings import Bushing, PlanetBearing
 from dynamics.bearings.matrix import matrix_rows
-from dynamics.scene.scene import Scene
+from dynamics.scene.scene import Scene, on_axis
 from dynamics.shafts import ElasticShaft, Inertia, Shaft
-from dynamics.shafts.shaft import nearest_on, on_axis
+from dynamics.shafts.shaft import nearest_on
 from dynamics.types import FloatArray
 
 Support = TypeVar("Support", Bushing, PlanetBearing)

@@ -19,9 +19,6 @@ SAME_POSITION = 1e-9
 eps of their sum.
 """
 
-AXIS_AGREEMENT = 1e-9
-"""Distance of two axes over the length of a shaft, below which they coincide."""
-
 PLACED = ("gears", "discs", "bushings", "rolling_bearings", "planet_bearings", "forces", "unbalances")
 """Kinds of parts of a scene that lie within the length of their shaft."""
 
@@ -49,12 +46,6 @@ class OnShaft(Protocol):
 def on_length(position: float, length: float) -> bool:
     """Whether `position` (m from the left end) is on a shaft of `length`, m, but for rounding."""
     return -SAME_POSITION * length <= position <= (1.0 + SAME_POSITION) * length
-
-
-def on_axis(shaft: Shaft, carrier: Shaft) -> bool:
-    """Whether `shaft` lies on the axis of `carrier`."""
-    distance = math.dist(shaft.origin[:2], carrier.origin[:2])
-    return distance <= AXIS_AGREEMENT * max(shaft.length, carrier.length)
 
 
 def nearest_on(position: float, length: float) -> float:
