@@ -105,7 +105,7 @@ class ByDask:
         """Return names of stored results, the oldest first, and the keys of their tasks."""
         names: tuple[str, ...] = ()
         with suppress(Exception):  # where the scheduler is gone, the tasks raise it
-            names = self.client.list_datasets()  # type: ignore[no-untyped-call]
+            names = self.client.list_datasets()
         return [(name, name.partition(" ")[2]) for name in sorted(names) if name.startswith(_PREFIX)]
 
     def _publish(self, futures: Mapping[str, Any]) -> None:
@@ -149,7 +149,7 @@ class ByDask:
         """Return the result of the first future and those of the next ones that are ready, by one message."""
         ready = list(takewhile(lambda future: future.status == "finished", futures)) or [futures[0]]
         gather = partial(self.client.gather, asynchronous=True)
-        results: list[Any] = self.client.sync(gather, ready, callback_timeout=self.patience)  # type: ignore[no-untyped-call]
+        results: list[Any] = self.client.sync(gather, ready, callback_timeout=self.patience)
         return results
 
     def _ended(self, future: Any) -> bool:
@@ -158,7 +158,7 @@ class ByDask:
 
         try:
             with self.client.as_current():
-                wait([future], timeout=_LOOK_S)  # type: ignore[no-untyped-call]
+                wait([future], timeout=_LOOK_S)
         except TimeoutError:
             return False
         return True
@@ -166,7 +166,7 @@ class ByDask:
     def _workers(self) -> bool:
         """Whether the cluster has a worker; False where the scheduler does not answer."""
         try:
-            return bool(self.client.nthreads())  # type: ignore[no-untyped-call]
+            return bool(self.client.nthreads())
         except (OSError, TimeoutError):
             return False
 
@@ -210,14 +210,14 @@ def connection(address: str, *, asynchronous: bool = False) -> Client:
     require("dask")
     from distributed import Client, Security  # noqa: PLC0415 (an extra)
 
-    security = Security().get_connection_args("client")  # type: ignore[no-untyped-call]
+    security = Security().get_connection_args("client")
     if address.startswith(("tls://", "wss://")) and security["ssl_context"] is None:
         files = "CA_FILE, DASK_DISTRIBUTED__COMM__TLS__CLIENT__CERT and ...CLIENT__KEY"
         raise OSError(f"it wants certificates: name their files in DASK_DISTRIBUTED__COMM__TLS__{files}")
     if security["require_encryption"] and not address.startswith(("tls://", "wss://")):
         raise OSError("DASK_DISTRIBUTED__COMM__REQUIRE_ENCRYPTION is set: its address begins with tls://")
     options: dict[str, Any] = {"asynchronous": asynchronous, "timeout": CONNECT_S, "set_as_default": False}
-    return Client(address, **options)  # type: ignore[no-untyped-call]
+    return Client(address, **options)
 
 
 def _address_in(file: Path) -> str:

@@ -179,7 +179,7 @@ class Cluster:
         The fault is worded as the bound of a `BadInput`: "that of a scheduler with workers". It is empty if
         there is none; the remedy is then without meaning.
         """
-        threads = await client.nthreads()  # type: ignore[no-untyped-call]
+        threads = await client.nthreads()
         self._known &= threads.keys()
         start = f"dask worker {self._address} --nthreads 1 --nworkers 4"
         fault = "" if threads else "that of a scheduler with workers"
@@ -245,7 +245,7 @@ class Cluster:
     async def _serve(self, client: Client) -> None:
         """Submit wanted tasks and cancel others, until the connection is lost or `close` is called."""
         following: dict[Task, asyncio.Task[None]] = {}
-        names = map(str, await client.list_datasets())  # type: ignore[no-untyped-call]
+        names = map(str, await client.list_datasets())
         stored = {name for name in names if name.startswith(self._name)}  # by an earlier run of the server
         checked = 0.0  # monotonic time of the last check of the workers, s
         try:
@@ -278,7 +278,7 @@ class Cluster:
         """Cancel a task that nobody wants, or whose result is stored."""
         from distributed import Future  # noqa: PLC0415 (an extra)
 
-        await client.cancel([Future(name, client)], force=True)  # type: ignore[no-untyped-call]
+        await client.cancel([Future(name, client)], force=True)
         await client.unpublish_dataset(name)
 
     async def _follow(self, client: Client, task: Task) -> None:

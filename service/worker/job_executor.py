@@ -58,7 +58,7 @@ def cluster_of(order: WorkOrder) -> Iterator[Workers]:
         yield LocalFallback(cluster, partial(logger.warning, "cluster away, the job goes on here: %s"))
     finally:
         for connected in cluster.connected:
-            connected.client.close()  # type: ignore[no-untyped-call]
+            connected.client.close()
 
 
 @dataclass(frozen=True)

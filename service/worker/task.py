@@ -146,7 +146,7 @@ def _awaited(child: Worker, order: WorkOrder, worker: distributed.Worker, topic:
             return False
         if not seceded and (order.workspace / PARTS).exists():
             # the job is split into tasks: its thread is free to do some of them, or others
-            secede()  # type: ignore[no-untyped-call]
+            secede()
             seceded = True
 
 
