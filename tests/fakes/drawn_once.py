@@ -29,11 +29,12 @@ def drawn_once(condensed_bodies: Path) -> Iterator[None]:
 
 def _kept(draw: Callable[..., bytes], folder: Path) -> Callable[..., bytes]:
     @wraps(draw)
-    def found(figure: Figure, across: int = 1) -> bytes:
-        file = folder / hashlib.sha256(pickle.dumps((figure, across))).hexdigest()
+    def found(figure: Figure, *arguments: object, **options: object) -> bytes:
+        drawn = figure, arguments, sorted(options.items())
+        file = folder / hashlib.sha256(pickle.dumps(drawn)).hexdigest()
         if not file.exists():
             draft = file.with_suffix(f".{os.getpid()}")
-            draft.write_bytes(draw(figure, across))
+            draft.write_bytes(draw(figure, *arguments, **options))
             draft.replace(file)
         return file.read_bytes()
 
