@@ -157,7 +157,7 @@ def read_png(_runs: StudyRuns, file: Path, _printed: str) -> None:
     content = file.read_bytes()
     assert content[:8] == b"\x89PNG\r\n\x1a\n"
     width, height = struct.unpack(">II", content[16:24])
-    assert width > 1000 and height > 400
+    assert width > 1000 and height > 300
 
 
 def read_html(runs: StudyRuns, file: Path, printed: str) -> None:
