@@ -14,10 +14,10 @@ import numpy as np
 from pytest import approx
 from small_inputs import small_inputs
 
+from bounds.error_digits import error_text, to_error
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.study import Study
-from lineofaction.report.drawing.figure import number
 
 Json = dict[str, Any]
 Pairs = Iterator[tuple[Any, Any]]
@@ -316,13 +316,14 @@ def _sensitivity_columns(figures: Json) -> dict[str, Sequence[Any]]:
         for told in pair["curves"]
         for curve in (told["misalignment"], told["center_distance"])
     ]
+    ripples = [
+        ripple
+        for curve in curves
+        for ripple in zip(curve["peak_to_peak_um"], curve["peak_to_peak_error_um"], strict=True)
+    ]
     return {
-        name: [write(value) for curve in curves for value in curve[field]]
-        for name, field, write in (
-            ("peak to peak, µm", "peak_to_peak_um", number),
-            ("error, µm", "peak_to_peak_error_um", lambda value: number(value, 2)),
-            ("change, %", "change_percent", "{:+.1f}".format),
-        )
+        "peak to peak, µm": [to_error(*ripple) for ripple in ripples],
+        "error, µm": [error_text(*ripple) for ripple in ripples],
     }
 
 

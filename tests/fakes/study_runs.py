@@ -32,6 +32,9 @@ _MEASURED = re.compile(r"(cpu|wall)_seconds|(peak_memory_|predicted_)?bytes|stag
 """Names of times and of what follows from them."""
 _OF_FILE = ("hash", "sha256", "size", "written", "file", "warnings")
 
+ANNOUNCED = r"(?m)^(loa {}: about|\d+ Hz at \d+ rpm of) .*\n"
+"""What a verb says before it computes: its cost, and the order that is complained of."""
+
 
 def unmeasured(value: Any, own: tuple[str, ...] = ()) -> Any:
     """Return figures without the values of times, which differ from run to run, and of `own`."""
@@ -150,7 +153,7 @@ class StudyRuns:
         if ending not in self._files:
             output = self.folder / ("out" if self.study.folder else f"result{ending}")
             done = self.verb("-o", output)
-            said = re.sub(rf"loa {self.study.name}: about .*\n", "", done.stderr)  # an announced cost
+            said = re.sub(ANNOUNCED.format(self.study.name), "", done.stderr)
             assert (done.exit_code, said) == (0, ""), done.output
             for each in self.study.endings if self.study.folder else (ending,):
                 file = output / f"{self.study.folder}{each}" if self.study.folder else output
