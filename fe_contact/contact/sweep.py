@@ -131,16 +131,12 @@ def _sweep(
                     part = (loads[k] - loads[k - 1]) / (loads[k - 1] - before)
                     start, last = start + part * (start - last), start
                     below = loads[k - 1] if last.any() else 0.0
-                guessed = not start.any()
                 # `solve_point` overwrites `start` with the forces of the solution, and fills the residuals
                 d, t, code, count, over = solve_point(point, loads[k], start, residuals[p, k])
-                if code != CONVERGED and not guessed:
-                    start = np.zeros(touching.size)
-                    d, t, code, further, over = solve_point(point, loads[k], start, residuals[p, k])
-                    count += further
                 if code != CONVERGED:
-                    start = last.copy()
-                    d, t, code, further, over = _by_steps(point, below, loads[k], start, residuals[p, k])
+                    d, t, code, further, over = _by_steps(
+                        point, below, last, loads[k], start, residuals[p, k]
+                    )
                     count += further
                 status[p, k], iterations[p, k], beyond[p, k] = code, count, over
                 if code == CONVERGED:
@@ -152,17 +148,25 @@ def _sweep(
 
 @inner(error_model="numpy")
 def _by_steps(
-    point: PointProblem, below: float, load: float, force: FloatArray, residual: FloatArray
+    point: PointProblem,
+    below: float,
+    last: FloatArray,
+    load: float,
+    force: FloatArray,
+    residual: FloatArray,
 ) -> tuple[float, float, int, int, bool]:
-    """Solve a point by steps from the load `below`, whose forces (m,) are in `force`, to `load`, in N.
+    """Solve a point at `load` in N at once from a guess, else by steps from the load `below`.
 
-    At zero load all forces are zero. The forces of each step are the start of the next one; steps are
-    halved until all converge, up to `MOST_STEPS`. Returns what `solve_point` does, with all iterations.
+    `last` are the forces (m,) at that load, zeros at zero load. The forces of each step are the start of the
+    next one; there are 2 steps, then 4 and so on, until all converge. Fills `force` with the solution;
+    returns what `solve_point` does, with all iterations.
     """
-    first, iterations, steps = force.copy(), 0, 2
+    iterations, steps = 0, 1
     d, t, code, over = math.nan, math.nan, ITERATION_LIMIT, False
     while code != CONVERGED and steps <= MOST_STEPS:
-        force[:] = first
+        force[:] = 0.0
+        if steps > 1:
+            force[:] = last
         for step in range(1, steps + 1):
             level = load if step == steps else below + (load - below) * step / steps
             d, t, code, count, over = solve_point(point, level, force, residual)
