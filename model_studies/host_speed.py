@@ -18,8 +18,8 @@ from pathlib import Path
 
 import numpy as np
 
-from host.deferred import sparse, sparse_linalg
 from host.directories import atomic_file
+from host.optional_modules import sparse, sparse_linalg
 
 VERSION = 1  # raise it with every change of the benchmark or its reference
 FILE = "host-speed.json"

@@ -74,7 +74,7 @@ def opened_netcdf(path: Path, **decoding: Any) -> Iterator[Any]:
 
 def read_dataset(path: Path, **decoding: Any) -> xarray.Dataset:
     """Return a file as a dataset of xarray in memory; raises as `opened`."""
-    from host.deferred import xarray  # noqa: PLC0415 (named above for types)
+    from host.optional_modules import xarray  # noqa: PLC0415 (named above for types)
 
     with opened_netcdf(path, decode_vlen_strings=True) as file:
         return xarray.load_dataset(xarray.backends.H5NetCDFStore(file), **decoding)

@@ -42,7 +42,7 @@ class NetcdfContent:
 
     def to_xarray(self) -> xarray.Dataset:
         """Return the same as a dataset of xarray."""
-        from host.deferred import xarray  # noqa: PLC0415 (named above for types)
+        from host.optional_modules import xarray  # noqa: PLC0415 (named above for types)
 
         content = xarray.Dataset(dict(self.variables), attrs=dict(self.attributes))
         return content.set_coords(self.coordinates)

@@ -11,7 +11,7 @@ from bounds import at_most
 from dynamics.checks import positive
 from dynamics.errors import InputError
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
-from host.deferred import sparse
+from host.optional_modules import sparse
 
 PANELS_PER_WAVELENGTH = 6.0
 """Least number of longest edges in a wavelength with which a model resolves the waves on the hull."""

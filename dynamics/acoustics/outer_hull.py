@@ -16,7 +16,7 @@ from dynamics.housings.reduced_housing import ReducedHousing
 from dynamics.identity_cache import identity_cached
 from dynamics.kernels.compiled import compiled
 from dynamics.types import BoolArray, FloatArray, IntArray
-from host.deferred import csgraph, sparse
+from host.optional_modules import csgraph, sparse
 
 ORDER = 8
 """Order of the views, which come from 2 ORDER^2 = 128 directions."""

@@ -17,7 +17,7 @@ from dynamics.checks import integer, positive
 from dynamics.errors import InputError
 from dynamics.types import ComplexArray, FloatArray
 from dynamics.work_cost import Cost
-from host.deferred import special
+from host.optional_modules import special
 
 PRODUCT = 0.1e-9
 """CPU seconds for a panel and a pair of shapes."""

@@ -36,7 +36,7 @@ from dynamics.mechanism.train_phases import TrainPhases
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray, IntArray, Json
 from host import require
-from host.deferred import linalg
+from host.optional_modules import linalg
 
 MESH_SHARE = 0.01
 """Least share of a mode's strain energy in the meshes with which they excite it."""

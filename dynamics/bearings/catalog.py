@@ -20,7 +20,7 @@ import numpy as np
 from bounds import from_to
 from dynamics.bearings.rolling_bearing import BallBearing, CatalogLine
 from dynamics.errors import InputError
-from host.deferred import scipy
+from host.optional_modules import scipy
 
 SLENDERNESS = (0.0, 0.09, 0.1, 0.11, 0.12, 0.15, 0.2, 0.25, 0.3)
 """Ball diameter over pitch diameter, at which `RATING` has values."""

@@ -18,7 +18,7 @@ from dynamics.bearings.loaded_bearing import LoadedBearing, Reaction
 from dynamics.bearings.roller_elements import EXPONENT, RollerElements
 from dynamics.bearings.rolling_bearing import RollingBearing
 from dynamics.types import FloatArray
-from host.deferred import scipy
+from host.optional_modules import scipy
 
 AVERAGED = 64
 """Least number of elements, copies included, at which the force hardly varies as the cage turns.

@@ -20,7 +20,7 @@ from dynamics.kernels.cubics import Cubics, area, piece_at, value_and_slope
 from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine
 from dynamics.types import FloatArray
-from host.deferred import scipy
+from host.optional_modules import scipy
 
 DIRECTIONS = ("x", "y", "z", "tilt_x", "tilt_y")
 """Directions of a curve, in the order of the five motions of a bearing."""

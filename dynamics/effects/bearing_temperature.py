@@ -15,7 +15,7 @@ from dynamics.effects.loaded_parts import LoadedRotor
 from dynamics.mechanism.thermal_expansion import warmed_bearings
 from dynamics.scene.scene import Scene
 from dynamics.temperatures import WarmBearing
-from host.deferred import scipy
+from host.optional_modules import scipy
 
 MIN_CHANGE = 1e-12  # m
 UNLOADED = 1e-9  # m; within it rows of a pair just touch

@@ -18,7 +18,7 @@ from dynamics.housings.supports import Foot, SeatBore, SeatFrame, in_axes, mean_
 from dynamics.housings.tetrahedral_mesh import TetrahedralMesh
 from dynamics.solid_housing import Material, Ring
 from dynamics.types import FloatArray, IntArray
-from host.deferred import sparse as sp
+from host.optional_modules import sparse as sp
 
 LOOSE_STIFFNESS = 1e-12
 """Stiffness against a rigid motion below which mounts leave it free, relative to the stiffest motion."""

@@ -20,7 +20,7 @@ from dynamics.housings.tetrahedral_mesh import FACES
 from dynamics.mesh_content import mesh_text
 from dynamics.solid_housing import MESH_FORMATS, MESH_SUFFIXES
 from dynamics.types import FloatArray, IntArray
-from host.deferred import fast_simplification, sparse, spatial
+from host.optional_modules import fast_simplification, sparse, spatial
 
 MAX_TRIANGLES = 20_000  # largest number of triangles of a drawn surface
 WANTED_TRIANGLES = 6_000

@@ -16,8 +16,8 @@ import numpy as np
 from dynamics.errors import SolveError
 from dynamics.housings.assembled_housing import BLOCK, AssembledHousing
 from dynamics.types import FloatArray, IntArray
-from host.deferred import sparse as sp
 from host.graph_order import graph_order
+from host.optional_modules import sparse as sp
 
 Solve = Callable[[FloatArray], FloatArray]
 """The solution of a linear system of equations, from its right side."""

@@ -18,8 +18,8 @@ from dynamics.mesh_content import check_mesh_content, mesh_text
 from dynamics.solid_housing import MESH_FORMATS, MESH_SUFFIXES
 from dynamics.types import FloatArray, IntArray
 from host import READING, ChildFailed, ask_child
-from host.deferred import csgraph
-from host.deferred import sparse as sp
+from host.optional_modules import csgraph
+from host.optional_modules import sparse as sp
 
 MIN_SHAPE = 0.02
 """Least `element_shape`, below which an element is a sliver: its volume over that of a regular tetrahedron

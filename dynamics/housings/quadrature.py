@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dynamics.types import FloatArray, IntArray
-from host.deferred import sparse as sp
+from host.optional_modules import sparse as sp
 
 ORDER = 4
 """Degree that is integrated exactly: products of two quadratic shape functions on straight elements."""

@@ -24,7 +24,7 @@ from dynamics.housings.supports import SeatFrame
 from dynamics.joints import Housing
 from dynamics.types import FloatArray, IntArray
 from dynamics.work_cost import WorkCost
-from host.deferred import linalg
+from host.optional_modules import linalg
 from model_studies.netcdf import UnreadableFile
 from model_studies.record_file import read_record, write_record
 

@@ -18,7 +18,7 @@ from dynamics.housings.reduced_housing import PointMotion, ReducedHousing, Reduc
 from dynamics.housings.rigid_body import rigid_motions
 from dynamics.housings.supports import in_axes
 from dynamics.types import FloatArray, IntArray
-from host.deferred import linalg
+from host.optional_modules import linalg
 
 INDEPENDENT = 1e-12
 """Least share of the modal mass of a deflection that lies outside the natural modes and the other

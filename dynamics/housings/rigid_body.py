@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.types import FloatArray
-from host.deferred import sparse as sp
+from host.optional_modules import sparse as sp
 
 
 @dataclass(frozen=True)

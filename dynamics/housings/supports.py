@@ -13,7 +13,7 @@ from dynamics.housings.quadrature import over_surface, triangle
 from dynamics.housings.tetrahedral_mesh import TetrahedralMesh
 from dynamics.solid_housing import Ring
 from dynamics.types import FloatArray
-from host.deferred import sparse as sp
+from host.optional_modules import sparse as sp
 
 MOTIONS = ("x", "y", "z", "tilt_x", "tilt_y", "rotation_z")
 """Directions of motion in the seat's own axes, z along the bore."""

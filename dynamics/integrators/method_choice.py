@@ -15,7 +15,7 @@ from dynamics.assembly.assemble import System
 from dynamics.motion.force_balance import force_balance
 from dynamics.scene import Integration
 from dynamics.types import FloatArray, Json
-from host.deferred import scipy
+from host.optional_modules import scipy
 
 LIMIT = 2.0
 """Fastest rate, rad/s, times step for accuracy, s, above which stability shortens explicit steps."""

@@ -18,7 +18,7 @@ from dynamics.linearize.mode_energy import kinetic_shares, strain_shares
 from dynamics.linearize.operating_speeds import law_speeds
 from dynamics.linearize.whirl_modes import SAME, WhirlModes, terms_at, whirl_modes_with, whirl_sense
 from dynamics.types import ComplexArray, FloatArray, IntArray
-from host.deferred import scipy
+from host.optional_modules import scipy
 
 TIE = 0.05  # weight of frequencies against shapes: it decides between modes of equal shape
 INTERVALS, FINEST = 8, 32

@@ -37,7 +37,7 @@ from dynamics.linearize.strongest_lines import Lines, strongest_lines
 from dynamics.motion.force_balance import block_diagonal
 from dynamics.results.array_file import stored
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
-from host.deferred import fft
+from host.optional_modules import fft
 
 GRID = ("speed", "order")
 MAX_SAMPLES, MAX_PER_LINE, MAX_PARTED = 16_384, 1_000, 300

@@ -13,7 +13,7 @@ from dynamics.errors import SolveError
 from dynamics.linearize.linear_system import LinearSystem, linearize
 from dynamics.linearize.mode_energy import strain_shares
 from dynamics.types import ComplexArray, FloatArray
-from host.deferred import linalg
+from host.optional_modules import linalg
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ from dynamics.linearize.steady_vibration import (
     with_blocked,
 )
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
-from host.deferred import fft, sparse_linalg
+from host.optional_modules import fft, sparse_linalg
 
 CONVERGED = 1e-9
 """Residual of the balance, over the displacements that make force with the mean stiffness."""

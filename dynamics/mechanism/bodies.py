@@ -14,7 +14,7 @@ from dynamics.identity_cache import identity_cached
 from dynamics.joints import Housing
 from dynamics.mechanism.rotor import Rotor
 from dynamics.types import FloatArray
-from host.deferred import linalg
+from host.optional_modules import linalg
 
 ROUNDING = 1e-9
 """Coupling of two modes over the damping of both, below which it is rounding."""

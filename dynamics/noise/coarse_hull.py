@@ -16,7 +16,7 @@ from dynamics.acoustics import Hull, OuterHull
 from dynamics.acoustics.hull import PANELS_PER_WAVELENGTH, ROUNDED_DOWN, flat_triangles
 from dynamics.identity_cache import identity_cached
 from dynamics.types import BoolArray, FloatArray, IntArray
-from host.deferred import csgraph, sparse
+from host.optional_modules import csgraph, sparse
 
 STEPS = 6
 """Times that seeds move to the middle of their cells; further steps change the longest edge by below 5 %."""

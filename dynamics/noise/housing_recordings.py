@@ -33,7 +33,7 @@ from dynamics.types import ComplexArray, FloatArray
 from dynamics.vibration import MotionQuantity, finer_seat_forces, point_signal
 from dynamics.vibration.housing_motion import modal_amplitudes
 from dynamics.vibration.time_signal import PIECE, motion_pieces
-from host.deferred import fft, sparse
+from host.optional_modules import fft, sparse
 from model_studies.progress import Progress, silent
 
 NEAREST = 2.0

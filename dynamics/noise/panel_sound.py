@@ -25,7 +25,7 @@ from dynamics.noise.coarse_hull import RadiatingHull, radiating_hull
 from dynamics.noise.housing_radiation import HousingRadiation
 from dynamics.types import ComplexArray, FloatArray, IntArray
 from dynamics.vibration import BearingHarmonics, housing_motion, seat_forces
-from host.deferred import csgraph, sparse
+from host.optional_modules import csgraph, sparse
 from model_studies.progress import Progress, silent
 
 SMALL = 0.02

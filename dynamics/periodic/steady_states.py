@@ -27,7 +27,7 @@ from dynamics.results.array_file import ArrayFile, stored
 from dynamics.results.run_checks import checked_ledger
 from dynamics.types import ComplexArray, FloatArray, IntArray, Json
 from host import cpu_seconds
-from host.deferred import scipy
+from host.optional_modules import scipy
 from model_studies.record import under_key
 from model_studies.workers import InProcess, Workers, pays, spent
 

@@ -208,7 +208,7 @@ class RunResult(Plottable):
 
     def to_xarray(self) -> xarray.Dataset:
         """Return the series as a dataset with units, the rest as JSON attributes."""
-        from host.deferred import xarray  # noqa: PLC0415 (named above for types)
+        from host.optional_modules import xarray  # noqa: PLC0415 (named above for types)
 
         coordinates: dict[str, Any] = {
             name: (name, np.array(getattr(self, name), dtype=object)) for name in NAMED if getattr(self, name)

@@ -14,7 +14,7 @@ from bounds import above, at_least, at_most
 from dynamics.checks import finite, integer, positive
 from dynamics.errors import InputError
 from dynamics.types import FloatArray
-from host.deferred import special
+from host.optional_modules import special
 
 MAX_POINTS = 1_000_000  # most points of a design
 

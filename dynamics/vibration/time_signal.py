@@ -20,7 +20,7 @@ from dynamics.kernels.compiled import compiled
 from dynamics.types import FloatArray
 from dynamics.vibration.housing_motion import ROUNDING
 from dynamics.vibration.housing_vibration import MotionQuantity, named_points
-from host.deferred import linalg
+from host.optional_modules import linalg
 
 UNIFORM = 1e-6
 """Largest deviation of a sample's time from a uniform grid, in steps."""

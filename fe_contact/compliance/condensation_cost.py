@@ -22,7 +22,7 @@ from fe_contact.mesh.sector_outline import sector_outline
 from fe_contact.mesh.sector_recipe import SectorRecipe
 from fe_contact.mesh.swept_sector import swept_sector
 from host import cpu_seconds
-from host.deferred import linalg
+from host.optional_modules import linalg
 from model_studies.host_speed import cached_speed
 
 RANK_SHARE = 0.23  # most flank loads that the ring is solved for, over flank freedoms; measured 0.22 to 0.24

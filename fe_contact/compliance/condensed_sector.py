@@ -9,7 +9,7 @@ import numpy as np
 from fe_contact.compliance.factorization import Solve, factorise
 from fe_contact.mesh.gear_mesh import GearMesh
 from fe_contact.types import FloatArray, IntArray
-from host.deferred import sparse as sp
+from host.optional_modules import sparse as sp
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ import numpy as np
 
 from fe_contact.errors import SolveError
 from fe_contact.types import ComplexArray, FloatArray
-from host.deferred import linalg
+from host.optional_modules import linalg
 
 
 @dataclass(frozen=True)

@@ -37,7 +37,7 @@ from fe_contact.compliance.cyclic_harmonics import LeftCuts, TurningLoads, left_
 from fe_contact.compliance.reduced_harmonics import SOFTENED, least_passed, row_space, solve_few
 from fe_contact.errors import SolveError
 from fe_contact.types import FloatArray, IntArray
-from host.deferred import linalg
+from host.optional_modules import linalg
 from model_studies.progress import Report, unreported
 
 STRIP = 256

@@ -8,9 +8,9 @@ import numpy as np
 
 from fe_contact.errors import SolveError
 from fe_contact.types import FloatArray, IntArray
-from host.deferred import sparse as sp
-from host.deferred import sparse_linalg
 from host.graph_order import ORDERING, graph_order
+from host.optional_modules import sparse as sp
+from host.optional_modules import sparse_linalg
 
 Solve = Callable[[FloatArray], FloatArray]
 

@@ -12,7 +12,7 @@ from fe_contact.compliance.rounding import left_by_rounding
 from fe_contact.compliance.sector_stiffness import ElementStiffness
 from fe_contact.mesh.swept_sector import SweptSector
 from fe_contact.types import FloatArray
-from host.deferred import linalg
+from host.optional_modules import linalg
 
 INVERSE_ITERATIONS = 60
 

@@ -13,7 +13,7 @@ import numpy as np
 from fe_contact.compliance.plane_elasticity import element_stiffness
 from fe_contact.errors import MeshError
 from fe_contact.types import FloatArray, IntArray
-from host.deferred import skfem
+from host.optional_modules import skfem
 
 # Reference coordinates of the nodes: bottom corners, top corners, bottom middles, top middles, uprights.
 _RING = [(-1, -1), (1, -1), (1, 1), (-1, 1)]

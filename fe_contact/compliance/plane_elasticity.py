@@ -7,8 +7,8 @@ from itertools import combinations_with_replacement
 import numpy as np
 
 from fe_contact.types import FloatArray, IntArray
-from host.deferred import skfem
-from host.deferred import sparse as sp
+from host.optional_modules import skfem
+from host.optional_modules import sparse as sp
 
 QUADRATURE_ORDER = 4  # exact on straight sides (order 2); curved sides need more
 

@@ -18,7 +18,7 @@ import numpy as np
 
 from fe_contact.compliance.cyclic_harmonics import TurningLoads, weights
 from fe_contact.types import ComplexArray, FloatArray
-from host.deferred import linalg
+from host.optional_modules import linalg
 from model_studies.progress import Report
 
 MIN_SIGNIFICANT = 1e-12

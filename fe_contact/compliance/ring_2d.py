@@ -10,7 +10,7 @@ from fe_contact.compliance.condensed_sector import CondensedSector, freedoms
 from fe_contact.compliance.factorization import Solve, factorise
 from fe_contact.mesh.gear_mesh import GearMesh
 from fe_contact.types import FloatArray, IntArray
-from host.deferred import sparse as sp
+from host.optional_modules import sparse as sp
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,8 @@ from fe_contact.compliance.flank import ComplianceChecks
 from fe_contact.compliance.ring_2d import Ring, rotation
 from fe_contact.compliance.rounding import left_by_rounding
 from fe_contact.types import FloatArray
-from host.deferred import linalg
-from host.deferred import sparse as sp
+from host.optional_modules import linalg
+from host.optional_modules import sparse as sp
 
 
 @dataclass(frozen=True)

@@ -36,8 +36,8 @@ from fe_contact.mesh.quad_sector import QuadSector, quad_sector
 from fe_contact.mesh.sector_recipe import SectorRecipe
 from fe_contact.mesh.swept_sector import SweptSector
 from fe_contact.types import FloatArray
-from host.deferred import linalg
-from host.deferred import sparse as sp
+from host.optional_modules import linalg
+from host.optional_modules import sparse as sp
 from model_studies.stage_clock import StageClock
 
 ROWS_AT_ONCE = 256  # stresses passed up the tree together: bounds the memory

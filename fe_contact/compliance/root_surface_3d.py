@@ -18,7 +18,7 @@ from fe_contact.material import Material
 from fe_contact.mesh.quad_sector import QuadSector
 from fe_contact.mesh.swept_sector import SweptSector
 from fe_contact.types import FloatArray, IntArray
-from host.deferred import sparse as sp
+from host.optional_modules import sparse as sp
 
 # Nodes of a surface element over profile (-1 .. 1) and layer (-1 .. 1): corners, then middles.
 ALONG = np.array([-1.0, 1.0, 1.0, -1.0, 0.0, 1.0, 0.0, -1.0])

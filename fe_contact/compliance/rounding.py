@@ -9,7 +9,7 @@ import numpy as np
 from fe_contact.geometry import Toothing
 from fe_contact.material import Material
 from fe_contact.types import FloatArray
-from host.deferred import scipy
+from host.optional_modules import scipy
 
 LARGEST_ROUNDING = 1e-6
 """Largest part of the strain energy that rounding may change: a thousandth of the discretization error of

@@ -19,7 +19,7 @@ from fe_contact.compliance.front_memory import FrontBlocks, FrontMemory
 from fe_contact.compliance.sector_stiffness import ElementStiffness
 from fe_contact.errors import SolveError
 from fe_contact.types import FloatArray, IntArray
-from host.deferred import linalg
+from host.optional_modules import linalg
 from model_studies.progress import Report, unreported
 
 NOTHING, NO_ROWS = np.zeros(0), np.zeros(0, dtype=np.int64)

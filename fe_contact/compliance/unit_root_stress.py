@@ -55,7 +55,7 @@ from fe_contact.mesh.bore_support import BoreSupport, bore_support
 from fe_contact.mesh.quadratic_mesh import SIDES
 from fe_contact.mesh.tooth_sector import ToothSector
 from fe_contact.types import FloatArray, IntArray
-from host.deferred import sparse as sp
+from host.optional_modules import sparse as sp
 from model_studies.stage_clock import StageClock
 
 MODEL_VERSION = 1  # raise it whenever the same input gives another result: old cache files are then not found

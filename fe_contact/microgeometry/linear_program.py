@@ -8,7 +8,7 @@ import numpy as np
 
 from fe_contact.microgeometry.objective import Rows
 from fe_contact.types import FloatArray, IntArray
-from host.deferred import scipy, sparse
+from host.optional_modules import scipy, sparse
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from fe_contact.errors import InputError, integer, positive
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.microgeometry.tangent_model import TangentModel, highest_order, order_amplitude
 from fe_contact.types import BoolArray, FloatArray
-from host.deferred import special
+from host.optional_modules import special
 from model_studies import in_unit
 
 TIGHTENED = 1.0 / math.sqrt(2.0)

@@ -16,7 +16,7 @@ from bounds import SiNote, at_least
 from fe_contact.errors import InputError, finite, integer, positive
 from fe_contact.microgeometry.variables import gear_and_quantity
 from fe_contact.types import FloatArray, Json
-from host.deferred import special
+from host.optional_modules import special
 from model_studies import in_unit
 
 MISALIGNMENT = "misalignment"

@@ -19,7 +19,7 @@ from fe_contact.errors import integer
 from fe_contact.microgeometry.counted_merit import Budget, BudgetUsed, CountedMerit, Design
 from fe_contact.microgeometry.design_problem import Merit, SearchProblem
 from fe_contact.types import FloatArray, Json
-from host.deferred import optimize
+from host.optional_modules import optimize
 from model_studies.progress import unreported
 
 SIMPLEX_SIZE, SIMPLEX_MERIT = 1e-3, 1e-4

@@ -21,7 +21,7 @@ from fe_contact.geometry.flank_tolerances import (
 from fe_contact.microgeometry.scatter import MISALIGNMENT
 from fe_contact.microgeometry.variables import ACROSS_FACE, GEARS, gear_and_quantity
 from fe_contact.types import FloatArray, Json
-from host.deferred import special
+from host.optional_modules import special
 
 Distribution = Literal["normal", "uniform"]
 PROCESS_SPREAD = 3.0

@@ -10,7 +10,7 @@ import numpy as np
 from fe_contact.errors import SolveError
 from fe_contact.ste.fields import GRID, SteFields
 from fe_contact.types import BoolArray, FloatArray, IntArray
-from host.deferred import scipy
+from host.optional_modules import scipy
 
 Table = TypeVar("Table", bound=SteFields)
 

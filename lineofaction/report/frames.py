@@ -22,7 +22,7 @@ def dataframe(result: Any, view: str = "") -> pandas.DataFrame:
 
     Raises `BadInput`: no figure has this name, or the figure is a picture without axes.
     """
-    from host.deferred import pandas  # noqa: PLC0415 (named above for types)
+    from host.optional_modules import pandas  # noqa: PLC0415 (named above for types)
 
     figure = figure_of(result, view, with_axes=True)
     parts = [

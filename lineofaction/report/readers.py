@@ -85,7 +85,7 @@ def _read_csv(path: Path) -> Any:
         raise BadInput.of("file", str(path), "a readable file", "Check the path.")
     if begins_with_time(path):
         return _read_signals(path)
-    from host.deferred import pandas  # noqa: PLC0415 (read_csv alone needs it)
+    from host.optional_modules import pandas  # noqa: PLC0415 (read_csv alone needs it)
 
     try:
         first = pandas.read_csv(path, nrows=1, header=None, dtype=str).iloc[0]

@@ -20,7 +20,7 @@ from dynamics.scene import Scene
 from dynamics.simulation import simulate_to_file
 from fe_contact.options import Run
 from fe_contact.ste import SteDatabase
-from host.deferred import load_numerics
+from host.optional_modules import load_numerics
 from lineofaction.gearbox.convert.answers import draft_line, headline_json
 from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.checked_case import CheckedCase

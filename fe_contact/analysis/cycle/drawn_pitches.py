@@ -17,7 +17,7 @@ from fe_contact.ste.curve_quantities import (
 )
 from fe_contact.ste.interpolation import Axis
 from fe_contact.types import FloatArray
-from host.deferred import scipy
+from host.optional_modules import scipy
 
 CONFIDENCE = 0.99
 """Confidence of Student's distribution for means over drawn pitches. A few pitches have much larger errors

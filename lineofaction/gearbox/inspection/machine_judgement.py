@@ -47,7 +47,7 @@ class Judgement:
     differences: tuple[str, ...]
 
 
-def judged(file: MachineFile, gear: Toothing, printed: Iterable[Printed] = ()) -> Judgement:
+def judgement_of(file: MachineFile, gear: Toothing, printed: Iterable[Printed] = ()) -> Judgement:
     """Judge the reading of a file by the results that the machine printed of the same gear.
 
     Raises `ValueError`: nothing is printed of its profiles, and the tips show that their sign is wrong.

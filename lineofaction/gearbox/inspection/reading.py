@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from fe_contact.geometry import Toothing
 from lineofaction.gearbox.inspection.machine_file import is_machine_file, machine_file, machine_sheet
-from lineofaction.gearbox.inspection.machine_judgement import judged
+from lineofaction.gearbox.inspection.machine_judgement import judgement_of
 from lineofaction.gearbox.inspection.machine_values import identity, value_file
 from lineofaction.gearbox.inspection.sheet import Point, Sheet, csv_sheet
 from lineofaction.gearbox.problems import BadInput
@@ -36,7 +36,7 @@ def _machine_sheet(text: str, gear: Toothing, values: str | None) -> Sheet:
     if results is not None and results.identity != identity(text.splitlines()):
         raise ValueError("a curve file whose value file is of the same gear; date, time or number differ")
     sheet = machine_sheet(file, gear)
-    judgement = judged(file, gear, () if results is None else results.printed)
+    judgement = judgement_of(file, gear, () if results is None else results.printed)
     return replace(sheet, recomputed=judgement.recomputed, differences=judgement.differences)
 
 

@@ -14,7 +14,7 @@ from spur_case import spur_case
 
 from fe_contact.geometry import Gear
 from lineofaction.gearbox.inspection.machine_file import MachineFile, machine_file, machine_sheet
-from lineofaction.gearbox.inspection.machine_judgement import judged
+from lineofaction.gearbox.inspection.machine_judgement import judgement_of
 from lineofaction.gearbox.inspection.machine_values import value_file
 from lineofaction.gearbox.inspection.reading import read_sheet
 from lineofaction.gearbox.problems import EXIT_WARNINGS, BadInput
@@ -165,9 +165,11 @@ def reference(name: str) -> str:
 @pytest.mark.parametrize(("curves", "values", "gear", "number"), FILES, ids=["wheel", "pinion"])
 def test_all_results_of_measured_gears_are_recomputed(curves, values, gear, number):
     file = machine_file(reference(curves), gear)
-    judgement = judged(file, gear, value_file(reference(values)).printed)
+    judgement = judgement_of(file, gear, value_file(reference(values)).printed)
     assert (judgement.recomputed, judgement.differences) == (number, ())
-    assert judged(file, gear).differences == ()  # both tips fall off: without printed values it is the same
+    assert (
+        judgement_of(file, gear).differences == ()
+    )  # both tips fall off: without printed values it is the same
 
 
 def touched(text: str, side: str, teeth: int) -> list[float]:

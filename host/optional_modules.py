@@ -44,7 +44,7 @@ _ADDRESSES = {
 """Address of each module that is not at the top."""
 
 
-class Deferred:
+class OptionalModule:
     """A module that is loaded when its first name is read."""
 
     def __init__(self, address: str) -> None:
@@ -69,5 +69,5 @@ def load_numerics() -> None:
 def __getattr__(name: str) -> Any:
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    module = globals()[name] = Deferred(_ADDRESSES.get(name, name))
+    module = globals()[name] = OptionalModule(_ADDRESSES.get(name, name))
     return module
