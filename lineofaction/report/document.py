@@ -274,11 +274,14 @@ def _marked_table(results: tuple[Section, ...], read: Inputs) -> tuple[Section, 
 
 def headlines_of(read: Inputs) -> tuple[Headline, ...]:
     """Return the main figures of the table, of the studies, and of the run."""
+    of_studies = [headline for study in read.pages.values() for headline in study.headlines]
     headlines: list[Headline] = []
     if read.database is not None:
         headlines += static_headlines(read.database, nominal_force(read))
-    for study in read.pages.values():
-        headlines += study.headlines
+        # flank results have the pressure with its error
+        flank = {line.name.replace("flank pressure", "pressure") for line in of_studies}
+        headlines = [line for line in headlines if line.name not in flank]
+    headlines += of_studies
     if read.run is not None:
         headlines += dynamic_headlines(read.run)
     return tuple(headlines)

@@ -11,7 +11,7 @@ import pytest
 
 from fe_contact import Gear, GearPair
 from lineofaction.gearbox.units import boundary_ledger
-from lineofaction.report.document import Inputs, page_of, read_inputs
+from lineofaction.report.document import Inputs, headlines_of, page_of, read_inputs
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Table
 from lineofaction.report.drawing.page import Headline, Page, Part, Section, html, is_number
@@ -184,6 +184,17 @@ def test_headlines_are_those_of_the_load_asked_for(database):
     assert names == ["mean STE at 400 N m", "peak-to-peak STE at 400 N m", "largest pressure at 400 N m"]
     mean = static_headlines(database)[0]
     assert (mean.name, mean.value, mean.remark) == ("mean STE at 100 N m", "5.978 µm", "± 0.012 µm")
+
+
+@pytest.mark.law
+def test_one_load_has_one_largest_pressure(database):
+    at = "at 100 N m"
+    flank = Page("", "", (Headline(f"largest flank pressure {at}", "702 MPa", "± 9 MPa"),), ())
+    bound = {line.name: line.value for line in headlines_of(Inputs(database, pages={"flank": flank}))}
+    assert f"largest pressure {at}" not in bound and bound[f"largest flank pressure {at}"] == "702 MPa"
+    other = replace(flank, headlines=(replace(flank.headlines[0], name="largest flank pressure at 7 N m"),))
+    names = [line.name for line in headlines_of(Inputs(database, pages={"flank": other}))]
+    assert f"largest pressure {at}" in names  # of another load
 
 
 def test_failed_points_are_said_loudly(database, damaged):
