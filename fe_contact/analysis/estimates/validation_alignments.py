@@ -22,14 +22,15 @@ from fe_contact.analysis.estimates.inserted_places import (
     with_inserted_nodes,
 )
 from fe_contact.analysis.estimates.interval_goal import GoalOf
+from fe_contact.analysis.estimates.interval_halving import curve_differences, halved
 from fe_contact.analysis.estimates.tolerance_shares import allowed_errors
-from fe_contact.analysis.estimates.validation_loads import AWAY, halvings_reached
+from fe_contact.analysis.estimates.validation_loads import AWAY
 from fe_contact.analysis.pairs.contact_lines import deflected_operating_points
 from fe_contact.analysis.tables import SolvedTable
 from fe_contact.contact import Start
 from fe_contact.sampled import LOADS, sample_of, sampled_positions, spread
 from fe_contact.ste import SteDatabase
-from fe_contact.ste.curve_quantities import FIRST_HARMONIC, MEAN, OFF_MESH, PEAK_TO_PEAK, quantity_changes
+from fe_contact.ste.curve_quantities import MEAN, PEAK_TO_PEAK
 from fe_contact.ste.fields import CENTER_DISTANCE, GRID, MISALIGNMENT
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
@@ -75,16 +76,13 @@ class ValidationAlignments:
     def errors(self, made: SolvedTable) -> AlignmentErrors:
         """Measure the error of every interval of a table; with a goal insert nodes until it is met."""
         truths: dict[float, FloatArray] = {}
-        limit, halvings = "", 0
-        while (middles := self._middles_beyond(made, truths)).size:
-            if halvings == MAX_HALVINGS:
-                limit = halvings_reached(MAX_HALVINGS)
-                break
-            refined = with_inserted_nodes(made, self.axis, middles)
-            if refined is None:
-                limit = "a point between them has no solution"
-                break
-            made, halvings = refined, halvings + 1
+        made, limit = halved(
+            made,
+            lambda table: self._middles_beyond(table, truths),
+            lambda table, middles: with_inserted_nodes(table, self.axis, middles),
+            MAX_HALVINGS,
+            "a point between them has no solution",
+        )
         self._solve(made, self._missing(made, truths, self._last_probes), truths)
         error, change = self._spread(made, *self._errors(made, truths))
         return AlignmentErrors(made, error, change, limit)
@@ -184,11 +182,7 @@ class ValidationAlignments:
         alignment = (probes[:, None], other) if self.axis == MISALIGNMENT else (other, probes[:, None])
         curves = table.ste(position[:, None, None], table.force[loads], *alignment)  # (R, probes, l)
         truth = np.stack([truths[value] for value in probes.tolist()], axis=1)
-        error = AWAY * np.abs(curves - truth).max(axis=0)
-        columns = curves.reshape(len(curves), -1), truth.reshape(len(truth), -1)
-        change = AWAY * quantity_changes(position, *columns, 1).reshape(-1, *truth.shape[1:])
-        # one pitch has no orders beside the mesh: they count as the harmonic that changes most
-        change[OFF_MESH] = change[FIRST_HARMONIC:].max(axis=0)
+        error, change = (AWAY * difference for difference in curve_differences(position, curves, truth))
         nodes = getattr(table, self.axis)
         inside = [(probes > low) & (probes < high) for low, high in pairwise(nodes.tolist())]
         return (

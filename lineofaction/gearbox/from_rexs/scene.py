@@ -21,9 +21,8 @@ from lineofaction.gearbox.from_rexs.scene_gears import scene_discs, scene_gears
 from lineofaction.gearbox.from_rexs.scene_parts import SceneParts, scene_parts
 from lineofaction.gearbox.from_rexs.scene_shafts import SceneShafts
 from lineofaction.gearbox.from_rexs.stage_case import StageCase
+from lineofaction.gearbox.units import STANDARD_GRAVITY
 
-STANDARD_GRAVITY = 9.80665
-"""Standard gravity, m/s^2."""
 PERIODS = 10
 """Number of periods of the slowest mesh in the run of the scene."""
 
