@@ -15,7 +15,7 @@ from sphinx.pycode import ModuleAnalyzer
 
 sys.path.append(str(Path(__file__).parent))  # notebook_pages
 sys.path.append(str(Path(__file__).parents[1] / "scripts"))
-import service_pages  # noqa: E402 (it lies in a folder of scripts)
+import service_pages
 
 EXTRA = Path(__file__).parents[1] / "out" / "site"  # pages that scripts write: docs/lab/index.md
 

@@ -356,9 +356,9 @@ def sound_band(
     others = {"mode_number": fewer, **(alternatives or {})}
     count, done = 1 + len(others) + 2 * len(ranges) + cases, 0
 
-    def powers(varied: SoundModel) -> tuple[FloatArray, OrderPower]:
+    def powers(model: SoundModel) -> tuple[FloatArray, OrderPower]:
         nonlocal done
-        result = forced_power(varied, speed, orders)
+        result = forced_power(model, speed, orders)
         done += 1
         progress("band", min(done / count, 1.0))
         return result

@@ -83,12 +83,12 @@ def key_update(gear: Toothing, solved: CondensedGear, twist: float, span: int) -
     return _compressed(rows, matrix)
 
 
-def _unit_motion(solved: CondensedGear, distances: IntArray) -> FloatArray:
+def _unit_motion(gear: CondensedGear, distances: IntArray) -> FloatArray:
     """Return the displacements of flank and bore of the sectors `distances` under unit forces on bore 0.
 
     (m, nf + p, p): flank, bore between the cuts, bore on the left cut; p loads on the latter two.
     """
-    clamped, sector, left = solved.condensed, solved.sector, solved.ring.bore
+    clamped, sector, left = gear.condensed, gear.sector, gear.ring.bore
     inner = len(sector.key_bore)
     both = np.concatenate([left[distances], left[distances - 1]], axis=1)
     inside = clamped.transmitted.T @ both

@@ -341,23 +341,23 @@ class Envelope:
 
 
 def chosen(
-    contact: CycleContact, allowed: AllowedError, part: float = 1.0, keep: Keep = keep_nothing
+    contact: CycleContact, tolerance: AllowedError, part: float = 1.0, keep: Keep = keep_nothing
 ) -> Envelope | None:
     """Solve as many pitches as a part of the error allowed needs; None where that is one in `DIVISOR`."""
     envelope = Envelope.of(contact, keep)
     envelope = envelope.about(envelope.next)
-    while not _within(allowed, part, envelope):
+    while not _within(tolerance, part, envelope):
         if DIVISOR * envelope.pitches.size > contact.pitches:
             return None
         envelope = envelope.about(envelope.next)
     return envelope
 
 
-def _within(allowed: AllowedError, part: float, envelope: Envelope) -> bool:
+def _within(tolerance: AllowedError, part: float, envelope: Envelope) -> bool:
     """Whether derivatives give mean and peak-to-peak within a part of the tolerance, at all loads.
 
     The mean is that of nominal gears: deviations turn the gears, and it may be zero.
     """
     ste, errors = envelope.ste, envelope.quantity_errors
     values = np.stack([envelope.nominal, np.ptp(ste, axis=(0, 1))])
-    return bool(np.all(errors[[MEAN, PEAK_TO_PEAK]] <= part * allowed.of(values)))
+    return bool(np.all(errors[[MEAN, PEAK_TO_PEAK]] <= part * tolerance.of(values)))

@@ -138,11 +138,11 @@ def _next_refinement(table: SteDatabase, last: Pass) -> Refinement | str:
     return measured
 
 
-def _behind_trial(behind: Decision, trial: Pass) -> Refinement:
+def _behind_trial(decision: Decision, trial: Pass) -> Refinement:
     """Return the pass that was expected to follow a trial, where one step from the trial is not enough."""
-    expected = behind.mesh.option.error.reducible / behind.checked.request.options.allowed.relative
-    name = f"{behind.checked.model_name}, {behind.mesh.option.name}"
-    return Refinement(behind, "trial", (f"{trial.name} -> {name}",), expected)
+    expected = decision.mesh.option.error.reducible / decision.checked.request.options.allowed.relative
+    name = f"{decision.checked.model_name}, {decision.mesh.option.name}"
+    return Refinement(decision, "trial", (f"{trial.name} -> {name}",), expected)
 
 
 def _interval_reason(table: SteDatabase) -> str:

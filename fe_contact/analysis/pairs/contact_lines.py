@@ -257,7 +257,7 @@ def deflected_operating_points(
     load: FloatArray,
     pitches: IntArray | None,
     workers: Workers,
-    known: Sequence[Candidates] | None = None,
+    candidates: Sequence[Candidates] | None = None,
     starts: Sequence[Start] | None = None,
 ) -> list[FloatArray]:
     """Return transmission error and load arm (T P, L, 2) in m of operating points.
@@ -276,9 +276,9 @@ def deflected_operating_points(
         Forces near the solution at each point; without `pitches`.
     """
     derived = pitches is not None and any(point.derived is not None for point in points)
-    lines = {} if derived else _sent_lines(workers, points, position, (load,), pitches, known)
+    lines = {} if derived else _sent_lines(workers, points, position, (load,), pitches, candidates)
     if not lines:
-        return list(_deflected_locally(points, position, load, pitches, known, starts))
+        return list(_deflected_locally(points, position, load, pitches, candidates, starts))
     if starts is not None:
         for key, (line, numbers) in lines.items():
             forces = tuple(starts[k].on(line.block.candidates) for k in numbers)
@@ -291,13 +291,13 @@ def _deflected_locally(
     position: Sequence[FloatArray],
     load: FloatArray,
     pitches: IntArray | None,
-    known: Sequence[Candidates] | None,
+    candidates: Sequence[Candidates] | None,
     starts: Sequence[Start] | None,
 ) -> Iterator[FloatArray]:
     """Yield the curves of points, solved in this process; parameters of `deflected_operating_points`."""
     for k, point in enumerate(points):
-        if known is not None:
-            point.contact.assemble(point.model, known[k])
+        if candidates is not None:
+            point.contact.assemble(point.model, candidates[k])
         if point.derived is not None and pitches is not None:
             yield point.derived.on(point, position[k], load)
         else:

@@ -32,13 +32,13 @@ class EstimatedInfluence:
     """
 
 
-def largest_part(extent: Extent, mean: FloatArray, ripple: FloatArray, allowed: AllowedError) -> float:
+def largest_part(extent: Extent, mean: FloatArray, ripple: FloatArray, tolerance: AllowedError) -> float:
     """Return the bound of the changes of mean and peak-to-peak by gaps that are left out.
 
     In parts of the sizes that a tolerance counts by: means and ripples (L, ...) in m.
     """
-    of_mean = np.max(extent.reach / allowed.scale(mean))
-    return float(max(of_mean, np.max(extent.span / allowed.scale(ripple))))
+    of_mean = np.max(extent.reach / tolerance.scale(mean))
+    return float(max(of_mean, np.max(extent.span / tolerance.scale(ripple))))
 
 
 def estimate_influence(

@@ -89,11 +89,11 @@ def _by_stage(cases: Sequence[StageCase]) -> dict[int, StageCase]:
 
 
 def _say_without_mesh(
-    layout: Layout, cases: Sequence[StageCase], computed: Sequence[GearStage], shafts: SceneShafts
+    layout: Layout, cases: Sequence[StageCase], stages: Sequence[GearStage], shafts: SceneShafts
 ) -> None:
     """State the stages with a case but without a mesh in the scene, except stages of equal planets."""
     meshed = {stage.stage.id for stage in shafts.stages}
-    meshed |= {s.stage.id for s in computed} & {equal for case in cases for equal in case.equal}
+    meshed |= {s.stage.id for s in stages} & {equal for case in cases for equal in case.equal}
     on_shafts = {stage.stage.id for stage in layout.stages}
     for number in _by_stage(cases).keys() - meshed:
         text = "it has a case and no mesh: its shafts are not parallel to those of the first stage, nothing "

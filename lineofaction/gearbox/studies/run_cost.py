@@ -61,9 +61,9 @@ def run_cost(scene: SceneInput, runs: int = 1, receipt: Receipt | None = None) -
 
 
 @lru_cache(1)
-def _probed(written: SceneText) -> ProbedRun:
+def _probed(text: SceneText) -> ProbedRun:
     from dynamics.simulation.run_cost import probe_run  # noqa: PLC0415 (start-up time)
 
-    before = scene_in_motion(written)
+    before = scene_in_motion(text)
     assert before is not None  # checked by the caller
     return probe_run(before)

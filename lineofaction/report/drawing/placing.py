@@ -93,11 +93,11 @@ def _text(text: str, x: float, y: float, row: int, left: bool) -> _Box:
     return _Box(left=start, right=start + width, low=low, high=low + _HEIGHT)
 
 
-def _is_free(box: _Box, taken: Sequence[_Box], lowest: float) -> bool:
+def _is_free(box: _Box, boxes: Sequence[_Box], lowest: float) -> bool:
     """Whether a text lies in the panel and covers nothing."""
     across = box.left >= 0.0 and box.right <= 1.0
     along = box.low >= lowest and box.high <= 1.0 + _MARGIN
-    return across and along and not any(box.covers(other) for other in taken)
+    return across and along and not any(box.covers(other) for other in boxes)
 
 
 class _LineLabel(NamedTuple):

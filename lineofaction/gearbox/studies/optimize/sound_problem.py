@@ -62,12 +62,12 @@ class HeardAt:
         """Return the counted power of a table at each speed (S,)."""
         return np.asarray(self.case.power(self.case.with_table(table).excitation) @ self.counted)
 
-    def powers(self, tabled: TabledLoads) -> Powers:
+    def powers(self, loads: TabledLoads) -> Powers:
         """Return the counted powers of designs about a table, to first order of the excitation."""
         transfer, form = self.case.transfer, self.case.form
-        largest = np.abs(tabled.by["static_transmission_error"]).max(axis=(1, 2))
+        largest = np.abs(loads.by["static_transmission_error"]).max(axis=(1, 2))
         steps = STEP / np.where(largest > 0.0, largest, 1.0)
-        nominal, *shifted = tabled.force_tables(np.vstack([np.zeros(steps.size), np.diag(steps)]))
+        nominal, *shifted = loads.force_tables(np.vstack([np.zeros(steps.size), np.diag(steps)]))
         flanks = self.case.others.with_table(nominal)
         excitation = flanks.excitation
         inputs = transfer.inputs(excitation)

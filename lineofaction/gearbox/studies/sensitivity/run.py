@@ -165,31 +165,31 @@ class _TableByTable:
         self._report("tables", min(done / TABLES, 1.0))
 
 
-def _changes(checked: CheckedCase, inputs: Inputs) -> tuple[float, ...]:
+def _changes(case: CheckedCase, inputs: Inputs) -> tuple[float, ...]:
     """Return the changes of the center distance in per cent: the named ones, or usual ones that mesh."""
 
     def meshes(changes: tuple[float, ...]) -> bool:
         with suppress(InputError):
-            return bool(_at_changes(checked, inputs, changes))
+            return bool(_at_changes(case, inputs, changes))
         return False
 
     return tuple(inputs.center_distance_change_percent) or next(filter(meshes, _USUAL), _USUAL[0])
 
 
-def _tables(checked: CheckedCase, inputs: Inputs) -> Checked:
+def _tables(case: CheckedCase, inputs: Inputs) -> Checked:
     """Return the request at the highest load of the case over both deviations."""
-    return _at_changes(checked, inputs, _changes(checked, inputs))
+    return _at_changes(case, inputs, _changes(case, inputs))
 
 
-def _at_changes(checked: CheckedCase, inputs: Inputs, percent: tuple[float, ...]) -> Checked:
-    pair, load = checked.pair, checked.case.load
+def _at_changes(case: CheckedCase, inputs: Inputs, percent: tuple[float, ...]) -> Checked:
+    pair, load = case.pair, case.case.load
     forces = load.normal_force_n or [float(pair.normal_force((load.torque_n_m or ())[-1]))]
     axes = TableAxes(
         normal_forces=[forces[-1]],
         misalignments=[value * UM for value in inputs.misalignment_um],
         center_distance_changes=[0.01 * value * pair.center_distance for value in percent],
     )
-    return Sensitivity.request(pair, axes, study_options(checked.options))
+    return Sensitivity.request(pair, axes, study_options(case.options))
 
 
 def _curves(study: PairStudy) -> Iterator[tuple[Any, ...]]:
