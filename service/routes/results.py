@@ -120,9 +120,6 @@ def known_result(context: Context, key: str, kind: str | None = None) -> StoredR
     stored = context.store.verified(key, kind)
     if stored.kind not in RESULT_KINDS:
         raise NotFound(f"Result {key!r} is of a kind that this version does not know: {stored.kind}.")
-    if stored.path.suffix != SUFFIX:
-        reason = "Version 0.1 stored it as JSON; results are netCDF"
-        raise NotFound(f"Result {key!r} cannot be read. {reason}. Submit its case again to compute it.")
     return stored
 
 
