@@ -15,7 +15,7 @@ from bounds import above, at_least, at_most
 from bounds.brief import brief
 from dynamics.checks import increasing, integer, one_of, positive
 from dynamics.errors import InputError
-from dynamics.orders.plain_filters import plain_high_passed
+from dynamics.orders.plain_high_pass import plain_high_passed
 from dynamics.orders.resampling import resampled
 from dynamics.results import RunResult
 from dynamics.types import ComplexArray, FloatArray
