@@ -116,6 +116,7 @@ def _lifespan(context: Context, lock: DirectoryLock | None) -> Callable[[FastAPI
     async def lifespan(_app: FastAPI) -> AsyncIterator[None]:
         if lock is not None:
             lock.acquire()
+        context.start_waiting()
         if context.scheduler is not None:
             context.scheduler.start()
         deliverer = callbacks.deliverer_of(context)
