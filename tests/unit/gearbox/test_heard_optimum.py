@@ -249,6 +249,14 @@ def test_a_quantile_of_the_pairs_is_minimized():
     assert levels[1] < levels[0]
 
 
+def test_the_level_that_is_stated_is_that_of_all_orders_in_the_table():
+    """Whatever the positions of the search: 8 of them alone are off by more than a decibel."""
+    few: Json = {"search": FEW | {"positions": 8}, "heard": HEARD | {"load_cases": [{"name": "whole"}]}}
+    own = searched({"variables": FREE, **few})
+    for design in (own.start, own.optimum):
+        assert design.objective.value == pytest.approx(design.level[0, 0], abs=1e-9)
+
+
 def test_a_mesh_that_states_its_misalignment_is_heard_at_it():
     """It would be deflected twice: the misalignment stated is part of what a deflection finds."""
     study, subject = Inputs.model_validate(inputs()), tabled(scene())

@@ -124,10 +124,16 @@ def sound_optimum(
     designs = start, problem.values(runs[best].coordinates)
     with clock.stage("confirmation"):
         searched = replace(setup, problem=problem)
-        before, after = (_confirmed(searched, values, run.cache) for values in designs)
+        (before, nominal_before), (after, nominal_after) = (
+            _confirmed(searched, values, run.cache) for values in designs
+        )
     with clock.stage("pairs"):
         rough = None if sample is None or cancel() else sample.at(request.search.exploration)
-        pairs = [np.zeros(0) if rough is None else rough.levels(values, means.workers) for values in designs]
+        nominal = nominal_before, nominal_after
+        pairs = [
+            np.zeros(0) if rough is None else _pair_levels(rough, values, level, means)
+            for values, level in zip(designs, nominal, strict=True)
+        ]
     run.progress("confirmation", 1.0)
     spent = {"evaluations": sum(part.evaluations for part in runs), "search_expected_cpu_seconds": expected}
     quantity = quantity_of(subject, question)
@@ -333,8 +339,21 @@ def _evaluator(
     return replace(study.evaluator, load=load, misalignment=alignment)
 
 
-def _confirmed(setup: SoundSearch, values: dict[str, float], cache: Path | None) -> HeardDesign:
-    """Return a design with errors: changes by rougher contacts, which have fewer slices or coarser meshes."""
+def _pair_levels(problem: HeardProblem, values: dict[str, float], nominal: float, means: Means) -> FloatArray:
+    """Return the levels of pairs within tolerances (N,), dB, about the `nominal` level of their design.
+
+    They differ from it by as much as at the positions of the problem.
+    """
+    return problem.levels(values, means.workers) + nominal - problem.without_scatter().evaluated(values)[0]
+
+
+def _confirmed(setup: SoundSearch, values: dict[str, float], cache: Path | None) -> tuple[HeardDesign, float]:
+    """Return a design with errors, and its level without scatter, dB.
+
+    That level is the one of tables at all their positions; scatter changes it by as much as at the equally
+    spaced positions of the search. Errors are changes by rougher contacts, which have fewer slices or coarser
+    meshes.
+    """
     problem = setup.problem
     pair = modified(setup.bodies.checked.request.pair, values)
     points = list(zip(np.outer(setup.torque, LOAD_FACTORS), setup.misalignment, strict=True))
@@ -343,11 +362,14 @@ def _confirmed(setup: SoundSearch, values: dict[str, float], cache: Path | None)
     contacts = [_levels(problem, contact) for contact in (tables, *rougher)]
     levels = np.stack([contact.level for contact in contacts])
     objectives = np.array([contact.objective for contact in contacts])
-    objective, violation = problem.evaluated(values)
+    searched, violation = problem.evaluated(values)
+    unscattered = problem.without_scatter().evaluated(values)[0]
+    nominal = float(objectives[0])
+    objective = nominal + (searched - unscattered) if math.isfinite(searched) else searched
     figures = confirmed_figures(problem.evaluator, values, cache)
     nominal_loads = slice(1, None, LOAD_FACTORS.size)  # the load case itself, the second of its loads
     ripple = [table.peak_to_peak(force=float(table.force[1])) for table in tables]
-    return HeardDesign(
+    design = HeardDesign(
         values=dict(values),
         objective=Estimate(objective, float(np.linalg.norm(objectives[1:] - objectives[0])), "dB"),
         level=levels[0],
@@ -364,6 +386,7 @@ def _confirmed(setup: SoundSearch, values: dict[str, float], cache: Path | None)
         pressure_error=figures.pressure_error.max(axis=0)[nominal_loads],
         face_load_factor_error=figures.face_load_factor_error.max(axis=0)[nominal_loads],
     )
+    return design, nominal
 
 
 class _Levels(NamedTuple):
