@@ -76,7 +76,7 @@ class _Subject(NamedTuple):
 def run_study(study: Study, options: Json) -> None:
     """Run a study as its verb was called; `options` holds argument and options by their names."""
     files = options[study.argument] if study.several else [options[study.argument]]
-    sources = [_read(study, file) for file in files]
+    sources = [_subject_of(study, file) for file in files]
     run = None if options.get("run") is None else read_run(options["run"], "run")
     inputs = _inputs(study, options, sources[0].content, files[0].project)
     subjects = []
@@ -180,7 +180,7 @@ def _fields(study: Study, options: Json) -> Json:
     return fields
 
 
-def _read(study: Study, file: InputFile) -> _Subject:
+def _subject_of(study: Study, file: InputFile) -> _Subject:
     if study.takes.subject == "scene" or (study.takes.subject != "case" and "shafts" in read_table(file)):
         return _Subject(*assessed_scene(file))
     return _Subject(CheckedCase(read_model(Case, file)), file.folder)

@@ -82,7 +82,7 @@ def _solved_lines(lines: Sequence[_Line], workers: Workers, report: Report = unr
     """Solve lines; their contacts keep the assembled compliances. `report` is called after each line."""
     solved: list[SolvedBlock] = []
     for line, blocks in zip(lines, _by_line(lines, workers, solve_block), strict=True):
-        joined = _joined(line, blocks)
+        joined = _joined_block(line, blocks)
         plain = replace(joined.contacts[0][0].problem, candidates=line.block.candidates)
         line.contact.take(line.block.models[0], plain)
         solved.append(joined)
@@ -110,7 +110,7 @@ def _by_line(
             yield [next(results) for _ in blocks]
 
 
-def _joined(line: _Line, blocks: list[SolvedBlock]) -> SolvedBlock:
+def _joined_block(line: _Line, blocks: list[SolvedBlock]) -> SolvedBlock:
     """Put the blocks of a line together; all models share one compliance."""
     # the same problem for all sets of loads: (blocks, models), and by model
     problems = [[contacts[0].problem for contacts in block.contacts] for block in blocks]

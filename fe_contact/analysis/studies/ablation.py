@@ -153,7 +153,7 @@ def ablate(
     seconds = checked.predicted(checked.planned(run.cache), run.cache, with_errors=False).cpu_seconds
     by_blocks = pays(run.workers, seconds)
     single_run, workers = (run, InProcess()) if by_blocks else (Run(cache=run.cache), run.workers)
-    toggle = partial(_toggled, checked, nominal, estimates, single_run)
+    toggle = partial(_toggled_ablation, checked, nominal, estimates, single_run)
     seconds *= sum(not entry.verdict.neutral for entry in ledger.values())
     effects, omitted = run_variants("ablation", ledger, toggle, FAILURES, run.progress, workers, seconds)
     request = checked.request
@@ -190,7 +190,7 @@ def predicted_ablation(checked: Checked, only: Sequence[str] | None, cache: Path
     return PredictedTables(sum(bodies.values()), tuple(contacts), memory)
 
 
-def _toggled(
+def _toggled_ablation(
     checked: Checked,
     nominal: Figures,
     estimates: Mapping[str, Influence | None],

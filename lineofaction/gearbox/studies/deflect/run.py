@@ -105,7 +105,7 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
 
     def motions(self, result: GearboxDeflection) -> list[OfferedMotion]:
         """Return the deflection under every load case."""
-        return [_offered(result.outline.shafts, case) for case in result.deflection.cases]
+        return [_offered_motion(result.outline.shafts, case) for case in result.deflection.cases]
 
     def failure(self, result: GearboxDeflection) -> str:
         """Say which load cases have no equilibrium, or how far meshes and bodies disagree."""
@@ -123,7 +123,7 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
         return ""
 
 
-def _offered(shafts: tuple[str, ...], case: CaseDeflection) -> OfferedMotion:
+def _offered_motion(shafts: tuple[str, ...], case: CaseDeflection) -> OfferedMotion:
     lines = case.shafts
     state = "" if case.status == "converged" else f", {case.status.replace('_', ' ')}"
     name = f"{case.name}, {engineering(case.torque, 4)} N m{state}"

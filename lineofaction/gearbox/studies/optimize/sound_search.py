@@ -114,7 +114,9 @@ def sound_optimum(
     with clock.stage("search"):
         start = dict(zip(setup.problem.names, request.start_design, strict=True))
         sample = setup.sample
-        problem = _scaled(setup.problem if question.quantile is None or sample is None else sample, start)
+        problem = _scaled_problem(
+            setup.problem if question.quantile is None or sample is None else sample, start
+        )
         expected = _expected_seconds(problem, start, request.search)
         cancel = means.cancel or never
         announce(means.report, "search", expected)
@@ -124,7 +126,7 @@ def sound_optimum(
     designs = start, problem.values(runs[best].coordinates)
     with clock.stage("confirmation"):
         searched = replace(setup, problem=problem)
-        before, after = (_confirmed(searched, values, run.cache) for values in designs)
+        before, after = (_confirmed_design(searched, values, run.cache) for values in designs)
     with clock.stage("pairs"):
         rough = None if sample is None or cancel() else sample.at(request.search.exploration)
         pairs = [np.zeros(0) if rough is None else rough.levels(values, means.workers) for values in designs]
@@ -154,7 +156,7 @@ def sound_optimum(
     )
 
 
-def _scaled(problem: HeardProblem, start: dict[str, float]) -> HeardProblem:
+def _scaled_problem(problem: HeardProblem, start: dict[str, float]) -> HeardProblem:
     """Return a problem whose objective is relative to the level of the start, dB.
 
     Raises `SolveError`: the contact of the start has no solution.
@@ -277,10 +279,10 @@ def sound_problem(
     )
     objective = HeardObjective(at, question.over_speeds == "worst", question.over_loads == "worst")
     problem = HeardProblem(evaluator, request.variables, request.limits, 0.0, sound=objective)
-    return SoundSearch(problem, _sampled(problem, mesh.case, question), bodies, torque, misalignment)
+    return SoundSearch(problem, _sampled_problem(problem, mesh.case, question), bodies, torque, misalignment)
 
 
-def _sampled(problem: HeardProblem, case: Case, question: HeardObjectiveInput) -> HeardProblem | None:
+def _sampled_problem(problem: HeardProblem, case: Case, question: HeardObjectiveInput) -> HeardProblem | None:
     """Return the problem with a sample of pairs within tolerances as nodes, to count by a quantile of them.
 
     None: the standard has no tolerances for these gears. Deviations whose effect is off in the case are 0.
@@ -333,7 +335,7 @@ def _evaluator(
     return replace(study.evaluator, load=load, misalignment=alignment)
 
 
-def _confirmed(setup: SoundSearch, values: dict[str, float], cache: Path | None) -> HeardDesign:
+def _confirmed_design(setup: SoundSearch, values: dict[str, float], cache: Path | None) -> HeardDesign:
     """Return a design with errors: changes by rougher contacts, which have fewer slices or coarser meshes."""
     problem = setup.problem
     pair = modified(setup.bodies.checked.request.pair, values)

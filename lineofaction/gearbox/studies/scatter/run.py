@@ -131,10 +131,10 @@ def scatter_request(case: CheckedCase, inputs: Inputs) -> ToleranceRequest:
     limit = None if inputs.limit is None else order_limit(inputs.limit)
     teeth = None if limit is None or not limit.gear else _teeth(case, inputs, limit.gear)
     request = replace(request, sampling=sampling, limit=limit, teeth=teeth)
-    return _measured(request, case, inputs.population) if inputs.population else request
+    return _measured_request(request, case, inputs.population) if inputs.population else request
 
 
-def _measured(request: ToleranceRequest, case: CheckedCase, rows: Row[Drawn]) -> ToleranceRequest:
+def _measured_request(request: ToleranceRequest, case: CheckedCase, rows: Row[Drawn]) -> ToleranceRequest:
     """Return the request with figures of measured gears; in the plane helices do not deviate."""
     mean: dict[str, float] = {}
     deviation: dict[str, float] = {}

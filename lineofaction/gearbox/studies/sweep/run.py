@@ -111,14 +111,14 @@ def axis_of_text(case: CheckedCase, text: str) -> SweepAxis:
     Raises `BadInput`: an unknown name, or values that are invalid or do not increase.
     """
     typed, equals, values = text.partition("=")
-    swept = _named(text, typed.strip())
+    swept = _named_variable(text, typed.strip())
     numbers = number_list(f"over {typed.strip()}", values) if equals else _usual(case, swept)
     if any(later <= earlier for earlier, later in pairwise(numbers)):
         raise BadInput.of("over", text, "over increasing values", "For example torque=50:300:50.")
     return SweepAxis(swept.name, tuple(value * swept.factor for value in numbers))
 
 
-def _named(text: str, name: str) -> _Swept:
+def _named_variable(text: str, name: str) -> _Swept:
     for swept in SWEEPABLE.values():
         if name in swept.spellings:
             return swept
