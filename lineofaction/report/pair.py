@@ -235,7 +235,7 @@ def _gear_line(name: str, gear: Json, across: float) -> Line:
     """Draw the teeth of a gear near the mesh; the drawing reaches `across`, mm, to either side."""
     tooth = np.array(gear["tooth_mm"])
     pitch = -2.0 * math.pi / gear["teeth"]  # teeth follow each other from left to right
-    angles = math.radians(gear["angle_deg"]) + pitch * _near(gear, across)
+    angles = math.radians(gear["angle_deg"]) + pitch * _near_teeth(gear, across)
     x = np.cos(angles)[:, None] * tooth[:, 0] - np.sin(angles)[:, None] * tooth[:, 1]
     y = np.sin(angles)[:, None] * tooth[:, 0] + np.cos(angles)[:, None] * tooth[:, 1]
     is_complete = len(angles) == gear["teeth"]
@@ -246,7 +246,7 @@ def _gear_line(name: str, gear: Json, across: float) -> Line:
     return replace(outline, filled=gear["radius_mm"]["tip"] > gear["radius_mm"]["root"])  # not a ring gear
 
 
-def _near(gear: Json, across: float) -> IntArray:
+def _near_teeth(gear: Json, across: float) -> IntArray:
     """Return the numbers of the teeth within twice the drawn distance of the mesh, or of all teeth."""
     count = gear["teeth"]
     reach = 2.0 * across / gear["radius_mm"]["root"]  # rad, about

@@ -278,7 +278,7 @@ def deflected_operating_points(
     derived = pitches is not None and any(point.derived is not None for point in points)
     lines = {} if derived else _sent_lines(workers, points, position, (load,), pitches, candidates)
     if not lines:
-        return list(_deflected_locally(points, position, load, pitches, candidates, starts))
+        return list(_local_curves(points, position, load, pitches, candidates, starts))
     if starts is not None:
         for key, (line, numbers) in lines.items():
             forces = tuple(starts[k].on(line.block.candidates) for k in numbers)
@@ -286,7 +286,7 @@ def deflected_operating_points(
     return _by_point(lines, _deflections([line for line, _ in lines.values()], workers))
 
 
-def _deflected_locally(
+def _local_curves(
     points: Sequence[OperatingPoint],
     position: Sequence[FloatArray],
     load: FloatArray,

@@ -138,21 +138,23 @@ def _usual(checked: CheckedCase, swept: _Swept) -> list[float]:
         reference_value = max(abs(figure(pair, name)) for name in variables) or float(declared.example)
         size = swept.what.boundary_value(reference_value)
         if declared.kind is Kind.LENGTH:
-            return _evenly(0.5 * size, 1.5 * size)
-        return _evenly(-2.0 * size if declared.kind is Kind.DEVIATION else 0.0, 2.0 * size)
+            return _even_values(0.5 * size, 1.5 * size)
+        return _even_values(-2.0 * size if declared.kind is Kind.DEVIATION else 0.0, 2.0 * size)
     if swept.name == TORQUE:
         forces = case.load.normal_force_n or ()
         loads = case.load.torque_n_m or [float(pair.torque(force)) for force in forces]
-        return list(loads) if len(loads) >= _MIN_TORQUES else _evenly(_LEAST_TORQUE * loads[-1], loads[-1])
+        return (
+            list(loads) if len(loads) >= _MIN_TORQUES else _even_values(_LEAST_TORQUE * loads[-1], loads[-1])
+        )
     if swept.name == CENTER_DISTANCE:
         changes = case.errors.center_distance_change_mm
         maximum = _DISTANCE * pair.center_distance / swept.factor
-        return list(changes) if len(changes) > 1 else _evenly(0.0, maximum)
+        return list(changes) if len(changes) > 1 else _even_values(0.0, maximum)
     maximum = max(map(abs, case.errors.misalignment_um)) or _SKEW_UM
-    return _evenly(-maximum, maximum)
+    return _even_values(-maximum, maximum)
 
 
-def _evenly(first: float, last: float) -> list[float]:
+def _even_values(first: float, last: float) -> list[float]:
     """Return `STEPS` evenly spaced values, rounded to six digits."""
     return [float(f"{value:.6g}") for value in np.linspace(first, last, STEPS)]
 
