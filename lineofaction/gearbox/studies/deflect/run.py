@@ -61,18 +61,19 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
         """
         count = len(inputs.load_cases)
         deflections = count * (1 + USUAL_PASSES)
-        cost = StudyCost((Work("deflections", CASE_SECONDS * host_slowness(cache), deflections),))
+        seconds = CASE_SECONDS * host_slowness(cache)
+        cost = StudyCost((Work("deflections", seconds, deflections, "deflection"),))
         cases = [case for mesh in scene.meshes if isinstance(case := mesh.case, Case)]
         for case in {case.model_dump_json(): case for case in cases}.values():
             with boundary_errors():
                 design = predicted = predicted_designs(CASES.of(case).checked, cache)
                 if not design.across_face and case.accuracy.model not in PLANE:
                     predicted = predicted_designs(across_face(CASES.of(case)).checked, cache)
-                    gears = Work("gears", predicted.bodies)  # otherwise those of its table
+                    gears = Work("gears", predicted.bodies, stage="flanks")  # otherwise those of its table
                     cost += StudyCost((gears,), predicted.bytes)
             knots = FIRST_KNOTS + count * USUAL_PASSES if predicted.across_face else 0
             contact = predicted.design + predicted.errors
-            cost += StudyCost((Work("contacts", contact, knots + count),), predicted.bytes)
+            cost += StudyCost((Work("contacts", contact, knots + count, "flanks"),), predicted.bytes)
         return cost
 
     def compute(self, tabled: TabledScene, inputs: Inputs, means: Means) -> GearboxDeflection:

@@ -130,8 +130,12 @@ class _OptimizeStudy(
         load = np.size(request.torques) / request.checked.request.load.size
         seconds = load * request.scatter.nodes().weight.size * predicted.design
         designs = usual_designs(request.search)
-        gears, confirmed = Work("gears", predicted.bodies), Work("analyses", CONFIRMED * predicted.table, 2)
-        return StudyCost((gears, Work("designs", seconds, designs), confirmed), predicted.bytes)
+        parts = (
+            Work("gears", predicted.bodies, stage="compliance"),
+            Work("designs", seconds, designs, "search"),
+            Work("analyses", CONFIRMED * predicted.table, 2, "confirmation"),
+        )
+        return StudyCost(parts, predicted.bytes)
 
     def normalized(self, subject: CheckedCase | SceneInput, study: Inputs) -> Json:
         """Return all inputs, with the usual variables if none are named."""

@@ -213,12 +213,12 @@ def sound_cost(
     nodes = request.scatter.nodes().weight.size if question.quantile is None else pairs.samples
     coarse_designs, full_designs = usual_sound_designs(search)
     parts = [
-        Work("gears", predicted.bodies),
-        Work("transfer functions", levels.transfer),
-        Work("designs", rough, coarse_designs),
-        Work("designs", full, full_designs * nodes),
-        Work("analyses", share * (predicted.design + predicted.errors), 2),
-        Work("pairs", rough, 2 * pairs.samples),
+        Work("gears", predicted.bodies, stage="compliance"),
+        Work("transfer functions", levels.transfer, stage="transfer functions"),
+        Work("designs", rough, coarse_designs, "search"),
+        Work("designs", full, full_designs * nodes, "search"),
+        Work("analyses", share * (predicted.design + predicted.errors), 2, "confirmation"),
+        Work("pairs", rough, 2 * pairs.samples, "confirmation"),
     ]
     cost = StudyCost(tuple(parts), predicted.bytes)
     scene_misalignment = levels.scene.meshes[mesh_index(levels.scene, mesh.name)].misalignment

@@ -249,8 +249,8 @@ class _SweepStudy(CaseStudy[Inputs, SweepFigures, SweepResult]):
         with boundary_errors():
             request = case.request(_request, inputs)
             predicted = predicted_designs(request.checked, cache)
-        designs = Work("designs", predicted.design, len(request.designs))
-        return StudyCost((Work("gears", predicted.bodies), designs), predicted.bytes)
+        designs = Work("designs", predicted.design, len(request.designs), "contact")
+        return StudyCost((Work("gears", predicted.bodies, 1.0, "compliance"), designs), predicted.bytes)
 
     def compute(self, case: CheckedCase, inputs: Inputs, means: Means) -> SweepResult:
         """Sweep a case; an unswept load is the highest, an unswept deviation the nearest to zero."""
