@@ -129,6 +129,15 @@ class LevelBand:
         """Return the distance of the ends, dB."""
         return self.high - self.low
 
+    @property
+    def widths_without(self) -> dict[str, float]:
+        """Return the width of the band without each contribution, by its name, the narrowest first, dB."""
+        left = {
+            name: LevelBand(self.nominal, self.below | {name: 0.0}, self.above | {name: 0.0}).width
+            for name in self.below
+        }
+        return dict(sorted(left.items(), key=lambda item: item[1]))
+
     def with_error(self, name: str, below: float, above: float) -> LevelBand:
         """Return the band with one more contribution, e.g. the error of the radiation model, dB.
 

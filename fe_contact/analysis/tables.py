@@ -166,12 +166,12 @@ def condensed_bodies(
     report(0.0)
     with clock.stage("error estimate" if coarse else "compliance"):
         changes = request.center_distance_change
-        nominal = contact or _condensed(request.pair, plan, coarse, changes, run, report, coarse_next)
+        nominal = contact or _condensed_contact(request.pair, plan, coarse, changes, run, report, coarse_next)
     report(1.0)
     return nominal
 
 
-def _condensed(
+def _condensed_contact(
     pair: ParallelAxes,
     plan: Plan,
     coarse: bool,

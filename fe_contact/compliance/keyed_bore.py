@@ -80,7 +80,7 @@ def key_update(gear: Toothing, solved: CondensedGear, twist: float, span: int) -
     matrix = np.zeros((rows.shape[1], rows.shape[1]))
     matrix[0, 1:] = matrix[1:, 0] = key_turn
     matrix[1:, 1:] = -(np.eye(len(coupled)) + 0.5 * (coupled + coupled.T))
-    return _compressed(rows, matrix)
+    return _compressed_update(rows, matrix)
 
 
 def _unit_motion(gear: CondensedGear, distances: IntArray) -> FloatArray:
@@ -177,7 +177,7 @@ def _modes(points: _KeyPoints, count: int) -> tuple[IntArray, IntArray, FloatArr
     return used // count, used % count, vectors[:, significant] * np.sqrt(values[significant])
 
 
-def _compressed(rows: FloatArray, matrix: FloatArray) -> _KeyUpdate:
+def _compressed_update(rows: FloatArray, matrix: FloatArray) -> _KeyUpdate:
     """Return Z' H^-1 Z with as few rows as it has directions."""
     teeth, _, flank = rows.shape
     flat = rows.transpose(1, 0, 2).reshape(rows.shape[1], -1)

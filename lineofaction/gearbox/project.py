@@ -34,7 +34,7 @@ def file_of(file: InputFile, subject: str) -> InputFile:
     For "case or scene" the scene goes first. Of several scenes the one named ``scene.toml`` is taken, of
     several cases ``case.toml``. Raises `BadInput`: the folder holds no such file, or several of other names.
     """
-    return only(files_of(file, subject), file.path, subject)
+    return sole_file(files_of(file, subject), file.path, subject)
 
 
 def files_of(file: InputFile, subject: str) -> list[InputFile]:
@@ -52,11 +52,11 @@ def files_of(file: InputFile, subject: str) -> list[InputFile]:
             return [InputFile(chosen[0], file.overrides, file.path)]
         files = [InputFile(path, file.overrides, file.path, path.stem) for path in chosen]
         if files:
-            return files if kind == "case" else [only(files, file.path, kind)]
+            return files if kind == "case" else [sole_file(files, file.path, kind)]
     raise _none_of(file.path, str(file), subject)
 
 
-def only(files: Sequence[Named], project: Path, kind: str) -> Named:
+def sole_file(files: Sequence[Named], project: Path, kind: str) -> Named:
     """Return the only file of a kind in a folder; raises `BadInput`: there are several."""
     if len(files) > 1:
         remedy = f"Name one: {_listed(files)}."
@@ -70,7 +70,7 @@ def inputs_in(project: Path, study: Study) -> Path | None:
     Raises `BadInput`: several do.
     """
     files = _inputs_in(project, study)
-    return only(files, project, f"file for {study.name}") if files else None
+    return sole_file(files, project, f"file for {study.name}") if files else None
 
 
 def _inputs_in(project: Path, study: Study) -> list[Path]:

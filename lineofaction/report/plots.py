@@ -55,7 +55,7 @@ def figure_of(result: Any, view: str, *, with_axes: bool = False) -> Figure:
 
     Raises `BadInput`: there is none, or `with_axes` it is a picture.
     """
-    figure = _named(figures_of(result), view)
+    figure = _named_figure(figures_of(result), view)
     if with_axes and figure.picture is not None:
         remedy = "A picture has no numbers; name another figure."
         raise BadInput.of("view", view, "a figure with axes", remedy)
@@ -78,7 +78,7 @@ def _in_sections(sections: Sequence[Section]) -> tuple[Figure, ...]:
     return tuple(figure for section in sections for figure in section.figures)
 
 
-def _named(figures: Sequence[Figure], view: str) -> Figure:
+def _named_figure(figures: Sequence[Figure], view: str) -> Figure:
     """Return the figure of a name; else the first whose name or title has all words of the view."""
     if not view:
         return figures[0]

@@ -77,7 +77,7 @@ class _Children:
             child = self._started(folder)
             try:
                 child.send(order.frame())  # no error for a dead child: its missing answer tells
-                course = _followed(child, folder)
+                course = _followed_course(child, folder)
             finally:
                 ended = self._end(child)
         if course.answer is None:
@@ -155,7 +155,7 @@ class _Children:
         return answer.body
 
 
-def _followed(child: Child, folder: Path) -> Course:
+def _followed_course(child: Child, folder: Path) -> Course:
     """Return the course of a child until its end, or until it exceeds its time or its written bytes."""
     watch = Watch.begun(LONGEST_S + _PATIENCE_S, folder, READING)
     course, look, overrun = Course(), time.monotonic() + LOOK_S, ""

@@ -19,7 +19,6 @@ from fe_contact.analysis.studies.frontier import FIDELITIES
 from fe_contact.errors import SolveError
 from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.result_figures import figures_of
-from lineofaction.gearbox.stages import PacedFraction
 from service.worker import study_work
 from service.worker.order import WorkOrder
 from service.worker.process import default_registry
@@ -54,9 +53,8 @@ def client(served):
 def worked(inputs: dict[str, Any], workspace: Path) -> tuple[dict[str, Any], list[float]]:
     """Do the work; return its JSON and the progress of the whole job."""
     seen: list[float | None] = []
-    paced = PacedFraction(FRONTIER.stages)
     order = WorkOrder(FRONTIER.entry, inputs, FRONTIER.key(inputs), workspace, workspace)
-    (product,) = study_work.frontier(order, lambda *step: seen.append(paced.at(*step, float(len(seen)))))
+    (product,) = study_work.frontier(order, lambda *step: seen.append(step[2] if len(step) > 2 else None))
     assert (product.key, product.kind) == (order.key, "frontier")
     return figures_of("frontier", product.file), [part for part in seen if part is not None]
 

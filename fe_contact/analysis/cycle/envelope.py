@@ -74,7 +74,7 @@ class CycleContact:
     def exact(self, pitches: IntArray) -> FloatArray:
         """Return the transmission error in whole base pitches (t,), (t, P, L) in m."""
         parts = problems_in_parts(self.point, self.position, pitches)
-        deflection = [_converged(solve_contact(part, self.load)).deflection for part in parts]
+        deflection = [_converged_solution(solve_contact(part, self.load)).deflection for part in parts]
         return self.by_pitch(np.concatenate(deflection))
 
     def solved(self, pitches: IntArray) -> SolvedState:
@@ -100,7 +100,7 @@ class CycleContact:
 
     def _state(self, problem: ContactProblem, solution: ContactSolution) -> SolvedState:
         return SolvedState(
-            problem, _converged(solution), self.rows(self.point.contact.pair, problem.candidates)
+            problem, _converged_solution(solution), self.rows(self.point.contact.pair, problem.candidates)
         )
 
 
@@ -109,7 +109,7 @@ def in_parts(pitches: IntArray) -> list[IntArray]:
     return np.split(pitches, np.arange(PART, pitches.size, PART)) if pitches.size else []
 
 
-def _converged(solution: ContactSolution) -> ContactSolution:
+def _converged_solution(solution: ContactSolution) -> ContactSolution:
     if not solution.converged:
         failed = int(np.count_nonzero(solution.status))
         raise SolveError(f"contact of {failed} points of a cycle was not solved", solution)

@@ -87,12 +87,12 @@ def refined_table(checked: Checked, case: Json, run: Run, on_draft: OnDraft | No
         and `tolerance` says why there was no further pass.
     """
     if run.cache is not None:
-        return _refined(checked, _Passes(case, run, on_draft))
+        return _refined_database(checked, _Passes(case, run, on_draft))
     with TemporaryDirectory() as folder:
-        return _refined(checked, _Passes(case, replace(run, cache=Path(folder)), on_draft))
+        return _refined_database(checked, _Passes(case, replace(run, cache=Path(folder)), on_draft))
 
 
-def _refined(checked: Checked, shared: _Passes) -> SteDatabase:
+def _refined_database(checked: Checked, shared: _Passes) -> SteDatabase:
     best = shared.first(checked)
     passes = [best]
     assert best.table is not None

@@ -62,7 +62,7 @@ def with_inserted_nodes(solved_table: SolvedTable, axis: str, further: FloatArra
         contacts=contacts,
         support=support,
         solved=[(contact.problem, contact.solution) for contact in contacts],
-        table=_marked(solved_table, axes, places, (contacts, support)),
+        table=_marked_database(solved_table, axes, places, (contacts, support)),
     )
 
 
@@ -141,7 +141,7 @@ def _problem_of(solved_table: SolvedTable, operating_point: OperatingPoint) -> C
     return None
 
 
-def _marked(
+def _marked_database(
     solved_table: SolvedTable,
     axes: Alignments,
     places: OperatingPoints,

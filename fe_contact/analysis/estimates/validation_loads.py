@@ -90,10 +90,10 @@ class ValidationLoads:
         further = self._everywhere(middles)
         if further is None:
             return None
-        inserted = further if loads.inserted is None else _joined(loads.inserted, further)
+        inserted = further if loads.inserted is None else _joined_loads(loads.inserted, further)
         table = with_support_loads(self.table, self._first_pitch(inserted))
         missing = self._missing(_ends(table), loads.probes.force)
-        probes = _joined(loads.probes, self._solved(missing)) if missing.size else loads.probes
+        probes = _joined_loads(loads.probes, self._solved(missing)) if missing.size else loads.probes
         return _Loads(table, probes, inserted)
 
     def _middles(self, loads: _Loads, goal: IntervalGoal | None) -> list[float]:
@@ -222,7 +222,7 @@ def _ends(table: SteDatabase) -> list[float]:
     return sorted([*table.force.tolist(), *table.inserted_force.tolist()])
 
 
-def _joined(first: SupportLoads, second: SupportLoads) -> SupportLoads:
+def _joined_loads(first: SupportLoads, second: SupportLoads) -> SupportLoads:
     """Return the solutions of both, in order of load."""
     force = np.concatenate([first.force, second.force])
     order = np.argsort(force)

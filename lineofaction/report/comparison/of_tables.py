@@ -153,7 +153,7 @@ def _um(estimate: Estimate) -> Estimate:
 def _ripples(curves: dict[str, Curve], torque: float, measured: MeasuredCurve | None) -> Figure:
     position = np.arange(2 * PER_PITCH + 1) / PER_PITCH  # two base pitches, both ends included
     lines = [
-        Line(name, position, _twice(_ripple(curve)), color, band=0.5 * _UM * curve.peak_to_peak.error)
+        Line(name, position, _two_pitches(_ripple(curve)), color, band=0.5 * _UM * curve.peak_to_peak.error)
         for (name, curve), color in zip(curves.items(), COLORS, strict=False)  # more colors than curves
     ]
     caption = "STE less its mean. Bands: half the error of peak-to-peak on either side."
@@ -162,7 +162,7 @@ def _ripples(curves: dict[str, Curve], torque: float, measured: MeasuredCurve | 
         name = next(iter(curves))
         match = aligned_to(measured, _ripple(curves[name]))
         lines.append(
-            Line("measured", position, _twice(match.ripple), palette.INK, "dash", band=measured.spread)
+            Line("measured", position, _two_pitches(match.ripple), palette.INK, "dash", band=measured.spread)
         )
         caption += (
             f" Measured: mean of {measured.pitches} base pitches, less its mean, moved by {match.shift:.3f} "
@@ -180,7 +180,7 @@ def _ripples(curves: dict[str, Curve], torque: float, measured: MeasuredCurve | 
     )
 
 
-def _twice(ripple: FloatArray) -> FloatArray:
+def _two_pitches(ripple: FloatArray) -> FloatArray:
     """Return a ripple over two base pitches, closed by its first value."""
     return np.concatenate([ripple, ripple, ripple[:1]])
 

@@ -194,7 +194,7 @@ def test_the_verb_says_more_than_a_moment_on_standard_error(seconds, case, monke
     monkeypatch.setattr(run_study, "study_cost", lambda *_: StudyCost((Work("values", seconds / 8.0, 8),)))
     monkeypatch.setattr("lineofaction.cli.costs.host_slowness", lambda _: 2.0)
     targets = Path("sensitivity.nc"), Path("sensitivity.html")  # one is drawn
-    run_study._announce_cost(STUDIES["sensitivity"], [run_study._Subject(case, Path())], None, {}, targets)
+    run_study._announced_cost(STUDIES["sensitivity"], [run_study._Subject(case, Path())], None, {}, targets)
     printed = capsys.readouterr()
     assert printed.out == ""
     said = "loa sensitivity: about 48 CPU s: 8 values at 5 s, program and files 8.4 s\n"

@@ -61,18 +61,19 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
         """
         count = len(inputs.load_cases)
         deflections = count * (1 + USUAL_PASSES)
-        cost = StudyCost((Work("deflections", CASE_SECONDS * host_slowness(cache), deflections),))
+        seconds = CASE_SECONDS * host_slowness(cache)
+        cost = StudyCost((Work("deflections", seconds, deflections, "deflection"),))
         cases = [case for mesh in scene.meshes if isinstance(case := mesh.case, Case)]
         for case in {case.model_dump_json(): case for case in cases}.values():
             with boundary_errors():
                 design = predicted = predicted_designs(CASES.of(case).checked, cache)
                 if not design.across_face and case.accuracy.model not in PLANE:
                     predicted = predicted_designs(across_face(CASES.of(case)).checked, cache)
-                    gears = Work("gears", predicted.bodies)  # otherwise those of its table
+                    gears = Work("gears", predicted.bodies, stage="flanks")  # otherwise those of its table
                     cost += StudyCost((gears,), predicted.bytes)
             knots = FIRST_KNOTS + count * USUAL_PASSES if predicted.across_face else 0
             contact = predicted.design + predicted.errors
-            cost += StudyCost((Work("contacts", contact, knots + count),), predicted.bytes)
+            cost += StudyCost((Work("contacts", contact, knots + count, "flanks"),), predicted.bytes)
         return cost
 
     def compute(self, tabled: TabledScene, inputs: Inputs, means: Means) -> GearboxDeflection:
@@ -105,7 +106,7 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
 
     def motions(self, result: GearboxDeflection) -> list[OfferedMotion]:
         """Return the deflection under every load case."""
-        return [_offered(result.outline.shafts, case) for case in result.deflection.cases]
+        return [_offered_motion(result.outline.shafts, case) for case in result.deflection.cases]
 
     def failure(self, result: GearboxDeflection) -> str:
         """Say which load cases have no equilibrium, or how far meshes and bodies disagree."""
@@ -123,7 +124,7 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
         return ""
 
 
-def _offered(shafts: tuple[str, ...], case: CaseDeflection) -> OfferedMotion:
+def _offered_motion(shafts: tuple[str, ...], case: CaseDeflection) -> OfferedMotion:
     lines = case.shafts
     state = "" if case.status == "converged" else f", {case.status.replace('_', ' ')}"
     name = f"{case.name}, {engineering(case.torque, 4)} N m{state}"

@@ -141,14 +141,16 @@ class _OptimizeStudy(
         nodes = request.scatter.nodes().weight.size
         contact, beside = nodes * load * predicted.design, nodes * BESIDE_CONTACT * host_slowness(cache)
         parts = [
-            Work("gears", predicted.bodies),
-            Work("designs", contact + beside, usual_designs(request.search)),
+            Work("gears", predicted.bodies, stage="compliance"),
+            Work("designs", contact + beside, usual_designs(request.search), "search"),
         ]
         limited = request.limits != Limits()  # between the positions of the search a design may exceed them
         if limited:
             more = 1.0 + predicted.positions / request.search.positions
-            parts.append(Work("designs within limits", more * contact + beside, REFINED))
-        parts.append(Work("analyses", nodes * CONFIRMED * predicted.table, 3 if limited else 2))
+            parts.append(Work("designs within limits", more * contact + beside, REFINED, "search"))
+        parts.append(
+            Work("analyses", nodes * CONFIRMED * predicted.table, 3 if limited else 2, "confirmation")
+        )
         return StudyCost(tuple(parts), predicted.bytes)
 
     def normalized(self, subject: CheckedCase | SceneInput, study: Inputs) -> Json:

@@ -114,7 +114,9 @@ def sound_optimum(
     with clock.stage("search"):
         start = dict(zip(setup.problem.names, request.start_design, strict=True))
         sample = setup.sample
-        problem = _scaled(setup.problem if question.quantile is None or sample is None else sample, start)
+        problem = _scaled_problem(
+            setup.problem if question.quantile is None or sample is None else sample, start
+        )
         expected = _expected_seconds(problem, start, request.search)
         cancel = means.cancel or never
         announce(means.report, "search", expected)
@@ -125,7 +127,7 @@ def sound_optimum(
     with clock.stage("confirmation"):
         searched = replace(setup, problem=problem)
         (before, nominal_before), (after, nominal_after) = (
-            _confirmed(searched, values, run.cache) for values in designs
+            _confirmed_design(searched, values, run.cache) for values in designs
         )
     with clock.stage("pairs"):
         rough = None if sample is None or cancel() else sample.at(request.search.exploration)
@@ -160,7 +162,7 @@ def sound_optimum(
     )
 
 
-def _scaled(problem: HeardProblem, start: dict[str, float]) -> HeardProblem:
+def _scaled_problem(problem: HeardProblem, start: dict[str, float]) -> HeardProblem:
     """Return a problem whose objective is relative to the level of the start, dB.
 
     Raises `SolveError`: the contact of the start has no solution.
@@ -217,12 +219,12 @@ def sound_cost(
     nodes = request.scatter.nodes().weight.size if question.quantile is None else pairs.samples
     coarse_designs, full_designs = usual_sound_designs(search)
     parts = [
-        Work("gears", predicted.bodies),
-        Work("transfer functions", levels.transfer),
-        Work("designs", rough, coarse_designs),
-        Work("designs", full, full_designs * nodes),
-        Work("analyses", share * (predicted.design + predicted.errors), 2),
-        Work("pairs", rough, 2 * pairs.samples),
+        Work("gears", predicted.bodies, stage="compliance"),
+        Work("transfer functions", levels.transfer, stage="transfer functions"),
+        Work("designs", rough, coarse_designs, "search"),
+        Work("designs", full, full_designs * nodes, "search"),
+        Work("analyses", share * (predicted.design + predicted.errors), 2, "confirmation"),
+        Work("pairs", rough, 2 * pairs.samples, "confirmation"),
     ]
     cost = StudyCost(tuple(parts), predicted.bytes)
     scene_misalignment = levels.scene.meshes[mesh_index(levels.scene, mesh.name)].misalignment
@@ -283,10 +285,10 @@ def sound_problem(
     )
     objective = HeardObjective(at, question.over_speeds == "worst", question.over_loads == "worst")
     problem = HeardProblem(evaluator, request.variables, request.limits, 0.0, sound=objective)
-    return SoundSearch(problem, _sampled(problem, mesh.case, question), bodies, torque, misalignment)
+    return SoundSearch(problem, _sampled_problem(problem, mesh.case, question), bodies, torque, misalignment)
 
 
-def _sampled(problem: HeardProblem, case: Case, question: HeardObjectiveInput) -> HeardProblem | None:
+def _sampled_problem(problem: HeardProblem, case: Case, question: HeardObjectiveInput) -> HeardProblem | None:
     """Return the problem with a sample of pairs within tolerances as nodes, to count by a quantile of them.
 
     None: the standard has no tolerances for these gears. Deviations whose effect is off in the case are 0.
@@ -347,7 +349,9 @@ def _pair_levels(problem: HeardProblem, values: dict[str, float], nominal: float
     return problem.levels(values, means.workers) + nominal - problem.without_scatter().evaluated(values)[0]
 
 
-def _confirmed(setup: SoundSearch, values: dict[str, float], cache: Path | None) -> tuple[HeardDesign, float]:
+def _confirmed_design(
+    setup: SoundSearch, values: dict[str, float], cache: Path | None
+) -> tuple[HeardDesign, float]:
     """Return a design with errors, and its level without scatter, dB.
 
     That level is the one of tables at all their positions; scatter changes it by as much as at the equally

@@ -89,15 +89,15 @@ class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
         work, loads = predicted.work, len(request.torques)
         points = sampling.positions * loads * sampling.tangents * len(request.tolerances.widths)
         parts = [
-            Work("gears", predicted.bodies),
-            Work("compliance", work.of(sampling.positions, 0)),  # all pairs share it
-            Work("pairs", work.of_flanks(sampling.positions, loads), solved),
-            Work("samples", _ADDED * points, sampling.samples),
-            Work("table", predicted.table),
+            Work("gears", predicted.bodies, stage="compliance"),
+            Work("compliance", work.of(sampling.positions, 0), stage="samples"),  # all pairs share it
+            Work("pairs", work.of_flanks(sampling.positions, loads), solved, "samples"),
+            Work("samples", _ADDED * points, sampling.samples, "confirmation"),
+            Work("table", predicted.table, stage="confirmation"),
         ]
         if request.teeth is not None:
             revolution = work.in_pitches(sampling.positions, (loads,), request.teeth.teeth)
-            parts.append(Work("revolutions", _DRAWN_TEETH * revolution, sampling.solved))
+            parts.append(Work("revolutions", _DRAWN_TEETH * revolution, sampling.solved, "confirmation"))
         return StudyCost(tuple(parts), predicted.bytes)
 
     def compute(self, case: CheckedCase, inputs: Inputs, means: Means) -> ToleranceStudy:
@@ -131,10 +131,10 @@ def scatter_request(case: CheckedCase, inputs: Inputs) -> ToleranceRequest:
     limit = None if inputs.limit is None else order_limit(inputs.limit)
     teeth = None if limit is None or not limit.gear else _teeth(case, inputs, limit.gear)
     request = replace(request, sampling=sampling, limit=limit, teeth=teeth)
-    return _measured(request, case, inputs.population) if inputs.population else request
+    return _measured_request(request, case, inputs.population) if inputs.population else request
 
 
-def _measured(request: ToleranceRequest, case: CheckedCase, rows: Row[Drawn]) -> ToleranceRequest:
+def _measured_request(request: ToleranceRequest, case: CheckedCase, rows: Row[Drawn]) -> ToleranceRequest:
     """Return the request with figures of measured gears; in the plane helices do not deviate."""
     mean: dict[str, float] = {}
     deviation: dict[str, float] = {}

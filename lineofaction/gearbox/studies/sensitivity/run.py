@@ -123,13 +123,14 @@ class _SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
         axes = checked.request.misalignment, checked.request.center_distance_change
         values = 2 * sum(np.union1d(np.zeros(1), axis).size for axis in axes)
         per_value = predicted.design + predicted.errors
-        parts = (Work("gears", predicted.bodies), Work("values", per_value, values))
+        parts = (Work("gears", predicted.bodies, 1.0, "tables"), Work("values", per_value, values, "tables"))
         return StudyCost(parts, predicted.bytes)
 
     def compute(self, case: CheckedCase, inputs: Inputs, means: Means) -> Studies:
         """Study a case at its highest load; its own misalignments and center distances do not count."""
         gears = case.case.pair
-        tables = _TableByTable(means.report)
+        predicted = self.predicted(case, inputs, means.analysis.cache)
+        tables = _TableByTable(means.report, predicted.seconds)
         run = replace(means.analysis, progress=tables.progress, on_plan=tables.plan)
         checked = case.request(_tables, inputs)
         with boundary_errors():
@@ -148,21 +149,28 @@ class _SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
 
 
 class _TableByTable:
-    """Progress of the study from the progress of each table."""
+    """Progress of the study from the progress of each table; `seconds` are predicted for all of them."""
 
-    def __init__(self, report: Progress) -> None:
+    def __init__(self, report: Progress, seconds: float) -> None:
         self._report = report
-        self._tables: list[TableFraction] = []
+        self._whole = seconds
+        self._table = TableFraction()
+        self._seconds: list[float] = []  # predicted, of the tables so far
 
     def plan(self, stages: Mapping[str, float]) -> None:
         """Begin a table."""
-        self._tables.append(TableFraction())
-        self._tables[-1].plan(stages)
+        self._table = TableFraction()
+        self._table.plan(stages)
+        self._seconds.append(sum(stages.values()))
 
     def progress(self, stage: str, fraction: float) -> None:
-        """Report the fraction done of the study."""
-        done = len(self._tables) - 1 + self._tables[-1].at(stage, fraction)
-        self._report("tables", min(done / TABLES, 1.0))
+        """Report the fraction done of the study, by predicted cost."""
+        *before, current = self._seconds
+        done = sum(before) + current * self._table.at(stage, fraction)
+        whole = self._whole
+        if len(self._seconds) == TABLES:  # the last one ends the work, whatever was predicted
+            whole = sum(before) + current
+        self._report("tables", min(done / max(whole, done, 1e-9), 1.0))
 
 
 def _changes(case: CheckedCase, inputs: Inputs) -> tuple[float, ...]:
