@@ -150,13 +150,13 @@ def _life_table(result: GearboxDeflection) -> Table:
 def _causes_figure(result: GearboxDeflection) -> Figure:
     names, cases = _meshes_worst_first(result), result.deflection.cases
     worst = _worst_case(result, names[0])
-    largest = micrometers(_mesh_of(worst, names[0]).misalignment)
+    largest = micrometers(_mesh_of(worst, names[0]).misalignment).replace("< ", "less than ")
     return Figure(
         key="misalignment_by_cause",
         title="Misalignment of each mesh by cause",
         caption="Growth of the gap over the common face in the plane of action, positive along z of the "
         "pinion. Parts of either sign are stacked from zero, points are their sum.",
-        alternative=f"Mesh {names[0]} is misaligned by up to {largest} µm, {_under(worst)}.",
+        alternative=f"Mesh {names[0]} is misaligned most, by {largest} µm, {_under(worst)}.",
         content=tuple(_causes_panel(name, cases) for name in names),
     )
 

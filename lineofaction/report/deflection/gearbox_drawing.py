@@ -110,7 +110,7 @@ def _finding(case: CaseDeflection) -> str:
     if not case.meshes:
         return f"The axes move by up to {number(largest_motion(case) / UM, 3)} µm."
     worst = max(case.meshes, key=lambda mesh: abs(mesh.misalignment))
-    size = micrometers(worst.misalignment)
+    size = micrometers(worst.misalignment).replace("< ", "less than ")
     return f"Mesh {worst.name} has the largest misalignment, {size} µm over its face."
 
 

@@ -307,6 +307,24 @@ def test_a_vibration_costs_the_response_where_something_vibrates_and_no_run_is_n
     assert costs == [alike, None, None] and alike is not None
 
 
+def test_nodes_and_limits_of_a_search_are_in_its_cost():
+    """Every node is a contact, also in the analyses; a limit may need a search on between the positions."""
+    case = CheckedCase(read_model(Case, EXAMPLES / "palermo_spur_20_20.toml"))
+    whole = tomllib.loads((EXAMPLES / "optimize_tip_relief.toml").read_text(encoding="utf-8"))
+    free = {name: value for name, value in whole.items() if name not in ("scatter", "limits")}
+    study = STUDIES["optimize"]
+
+    def parts(fields):
+        cost = study.run.predicted(case, validated(study.inputs, fields), None)
+        return {part.name: part for part in cost.parts}
+
+    alone, scattered, limited = map(parts, (free, free | {"scatter": whole["scatter"]}, whole))
+    for name in ("designs", "analyses"):
+        assert scattered[name].seconds == pytest.approx(9.0 * alone[name].seconds)
+    assert "designs within limits" not in scattered and limited["designs within limits"].seconds > 0.0
+    assert limited["analyses"].pieces == scattered["analyses"].pieces + 1.0
+
+
 def test_the_band_of_a_sound_costs_as_many_responses_as_it_has(housed, monkeypatch):
     """And two more where it stands on mounts, whose stiffness is guessed too."""
     study, (scene, folder) = STUDIES["noise"], scene_of(housed)

@@ -180,11 +180,8 @@ class HeardProblem(SearchProblem):
 
     def rough(self, positions: int) -> Self:
         """Return the problem without scatter, at fewer positions."""
-        return self.at(positions).without_scatter()
-
-    def without_scatter(self) -> Self:
-        """Return the problem of the nominal flanks alone."""
-        return replace(self, evaluator=replace(self.evaluator, nodes=ONE_NODE))
+        problem = self.at(positions)
+        return replace(problem, evaluator=replace(problem.evaluator, nodes=ONE_NODE))
 
     def linearize(self, point: FloatArray, workers: Workers) -> tuple[Assessed, HeardMerit]:
         """Evaluate the design at a point (d,) with the derivatives of the excitation."""

@@ -126,16 +126,10 @@ def sound_optimum(
     designs = start, problem.values(runs[best].coordinates)
     with clock.stage("confirmation"):
         searched = replace(setup, problem=problem)
-        (before, nominal_before), (after, nominal_after) = (
-            _confirmed_design(searched, values, run.cache) for values in designs
-        )
+        before, after = (_confirmed_design(searched, values, run.cache) for values in designs)
     with clock.stage("pairs"):
         rough = None if sample is None or cancel() else sample.at(request.search.exploration)
-        nominal = nominal_before, nominal_after
-        pairs = [
-            np.zeros(0) if rough is None else _pair_levels(rough, values, level, means)
-            for values, level in zip(designs, nominal, strict=True)
-        ]
+        pairs = [np.zeros(0) if rough is None else rough.levels(values, means.workers) for values in designs]
     run.progress("confirmation", 1.0)
     spent = {"evaluations": sum(part.evaluations for part in runs), "search_expected_cpu_seconds": expected}
     quantity = quantity_of(subject, question)
@@ -341,22 +335,10 @@ def _evaluator(
     return replace(study.evaluator, load=load, misalignment=alignment)
 
 
-def _pair_levels(problem: HeardProblem, values: dict[str, float], nominal: float, means: Means) -> FloatArray:
-    """Return the levels of pairs within tolerances (N,), dB, about the `nominal` level of their design.
+def _confirmed_design(setup: SoundSearch, values: dict[str, float], cache: Path | None) -> HeardDesign:
+    """Return a design with errors: changes by rougher contacts, which have fewer slices or coarser meshes.
 
-    They differ from it by as much as at the positions of the problem.
-    """
-    return problem.levels(values, means.workers) + nominal - problem.without_scatter().evaluated(values)[0]
-
-
-def _confirmed_design(
-    setup: SoundSearch, values: dict[str, float], cache: Path | None
-) -> tuple[HeardDesign, float]:
-    """Return a design with errors, and its level without scatter, dB.
-
-    That level is the one of tables at all their positions; scatter changes it by as much as at the equally
-    spaced positions of the search. Errors are changes by rougher contacts, which have fewer slices or coarser
-    meshes.
+    Its level is that of tables at all their positions, with scatter that of the positions of the search.
     """
     problem = setup.problem
     pair = modified(setup.bodies.checked.request.pair, values)
@@ -366,14 +348,13 @@ def _confirmed_design(
     contacts = [_levels(problem, contact) for contact in (tables, *rougher)]
     levels = np.stack([contact.level for contact in contacts])
     objectives = np.array([contact.objective for contact in contacts])
-    searched, violation = problem.evaluated(values)
-    unscattered = problem.without_scatter().evaluated(values)[0]
-    nominal = float(objectives[0])
-    objective = nominal + (searched - unscattered) if math.isfinite(searched) else searched
+    objective, violation = problem.evaluated(values)
+    if problem.quantile is None and problem.evaluator.nodes.weight.size == 1:
+        objective = float(objectives[0])
     figures = confirmed_figures(problem.evaluator, values, cache)
     nominal_loads = slice(1, None, LOAD_FACTORS.size)  # the load case itself, the second of its loads
     ripple = [table.peak_to_peak(force=float(table.force[1])) for table in tables]
-    design = HeardDesign(
+    return HeardDesign(
         values=dict(values),
         objective=Estimate(objective, float(np.linalg.norm(objectives[1:] - objectives[0])), "dB"),
         level=levels[0],
@@ -390,7 +371,6 @@ def _confirmed_design(
         pressure_error=figures.pressure_error.max(axis=0)[nominal_loads],
         face_load_factor_error=figures.face_load_factor_error.max(axis=0)[nominal_loads],
     )
-    return design, nominal
 
 
 class _Levels(NamedTuple):
