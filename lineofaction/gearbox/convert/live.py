@@ -272,8 +272,8 @@ def _band(ripple: DrawnRipple, tolerance_class: int) -> Json:
 def _answer(bodies: CondensedPair, pair: ParallelAxes, change: LiveInput, stored: SteDatabase | None) -> Json:
     """Return the curves, each with the further answers that the question requests, and the cost.
 
-    The curves at loads and alignments of `stored` are those of that table: a report, the terminal and this
-    answer state one number with one error.
+    The curves at loads and alignments of `stored` are those of that table, if it has errors: a report, the
+    terminal and this answer state one number with one error.
     """
     torques = np.array(change.torque_n_m)
     alignment = change.misalignment_um * UM, change.center_distance_change_mm * MM
@@ -314,11 +314,12 @@ def _answer(bodies: CondensedPair, pair: ParallelAxes, change: LiveInput, stored
 def _stored_load(stored: SteDatabase | None, solved: SteDatabase, k: int) -> tuple[int, int, int] | None:
     """Return the node of the stored table at load k: indices of load, misalignment and center distance.
 
-    None is returned if the stored table has no node there.
+    None is returned if the stored table has no node there, or no errors, as with a minimal receipt: those of
+    the answer are no errors of its curve.
 
     Between loads and alignments the table interpolates, with a larger error than an answer that is solved.
     """
-    if stored is None or stored.n_failed:
+    if stored is None or stored.n_failed or not np.isfinite(stored.curve_error).any():
         return None
     load = int(np.argmin(np.abs(stored.force - solved.force[k])))
     tilts = np.flatnonzero(stored.misalignment == solved.misalignment[0])
@@ -350,9 +351,6 @@ def _stored_curve(stored: SteDatabase, node: tuple[int, int, int], solved: SteDa
         misalignment_um=alignment[0] / UM,
         center_distance_change_mm=alignment[1] / MM,
     )
-    if "mean_error_um" not in curve:  # its receipt has no errors: those of the answer stand in
-        answer = _curve(solved, k)
-        return curve | {name: value for name, value in answer.items() if "error" in name or name == "bias"}
     errors = errors_by_source(stored, OperatingPoint(float(nearest), *alignment))
     return curve | {
         "bias": in_um(stored.metadata.receipt.get("bias")),

@@ -92,3 +92,28 @@ def test_an_answer_at_a_load_of_the_table_states_the_numbers_of_the_table(tmp_pa
     for solved, known in ((between, ripple), (moved, of_table.peak_to_peak)):
         difference = abs(solved["peak_to_peak_um"] - 1e6 * known.value)
         assert 0.0 < difference < solved["peak_to_peak_error_um"] + 1e6 * known.error, "solved anew"
+
+
+@pytest.mark.usefixtures("coarse_sectors")
+def test_an_answer_does_not_lend_its_error_to_a_table_without_errors(tmp_path):
+    """Sixteen positions miss 5 % of the ripple of a short relief, and a minimal receipt does not say it."""
+    gear = {"teeth": 20, "face_width_mm": 4.0, "bore_diameter_mm": 10.0}
+    relieved = gear | {"tip_relief_um": 8.0, "tip_relief_length_mm": 0.4}
+    pair = {"normal_module_mm": 1.0, "center_distance_mm": 20.0, "pinion": relieved, "wheel": gear}
+    case = Case.model_validate_json(json.dumps({"pair": pair, "load": {"torque_n_m": [0.5, 1.0]}}))
+    options = {"torques": [0.5, 1.0], "level": "draft", "model": "plane_strain", "cache": tmp_path}
+    coarse = analyze(gear_pair(case), positions=16, receipt="minimal", **options)
+    coarse = replace(coarse, metadata=replace(coarse.metadata, case=json.loads(json.dumps(case_json(case)))))
+    file = tmp_path / "table.nc"
+    coarse.to_netcdf(file)
+    (answer,) = live_curves(condensed_of(file, tmp_path), LiveInput(torque_n_m=(1.0,)))["curves"]
+    truth = (
+        1e6
+        * analyze(gear_pair(case), positions=256, receipt="minimal", **options)
+        .curve(torque=1.0)
+        .peak_to_peak.value
+    )
+    assert (
+        abs(1e6 * coarse.curve(torque=1.0).peak_to_peak.value - truth) > 5.0 * answer["peak_to_peak_error_um"]
+    )
+    assert abs(answer["peak_to_peak_um"] - truth) < answer["peak_to_peak_error_um"]
