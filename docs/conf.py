@@ -14,6 +14,9 @@ from sphinx.errors import PycodeError
 from sphinx.pycode import ModuleAnalyzer
 
 sys.path.append(str(Path(__file__).parent))  # notebook_pages
+sys.path.append(str(Path(__file__).parents[1] / "scripts"))
+import service_pages
+
 EXTRA = Path(__file__).parents[1] / "out" / "site"  # pages that scripts write: docs/lab/index.md
 
 project = "lineofaction"
@@ -66,10 +69,15 @@ mathjax_path = "mathjax/tex-chtml.js"
 
 
 def setup(app: Sphinx) -> None:
-    """Let the site bring MathJax along, and list fields in the text of their class."""
+    """Let the site bring MathJax along, list routes, and list fields in the text of their class."""
     app.connect("build-finished", _bring_mathjax)
+    app.connect("source-read", _list_routes)
     app.connect("autodoc-process-docstring", _list_fields, priority=400)  # before napoleon reads the list
     app.connect("autodoc-skip-member", _is_field)
+
+
+def _list_routes(_app: Sphinx, _name: str, source: list[str]) -> None:
+    source[0] = service_pages.with_routes(source[0], service_pages.described)
 
 
 def _list_fields(

@@ -229,7 +229,7 @@ def ablate(
     effects, omitted = run_variants(
         stage="ablation",
         variants=states,
-        compute=partial(_toggled, scene, nominal),
+        compute=partial(_toggled_ablation, scene, nominal),
         failures=(InputError, SolveError),
         progress=progress,
         workers=workers,
@@ -296,7 +296,7 @@ class _EffectState(NamedTuple):
         return replace(scene, effects={**scene.effects, self.name: "off" if self.on else "on"})
 
 
-def _toggled(scene: Scene, nominal: RunFigures, state: _EffectState) -> EffectAblation:
+def _toggled_ablation(scene: Scene, nominal: RunFigures, state: _EffectState) -> EffectAblation:
     """Return the figures of a scene with and without one effect: `nominal`, and the figures of a second run.
 
     Raises `LeftOut`: no part of the scene can have the effect.

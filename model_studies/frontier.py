@@ -60,6 +60,7 @@ def run_fidelities(
     compute: Callable[[F], R],
     failures: tuple[type[Exception], ...],
     progress: Progress,
+    costs: Mapping[str, float] | None = None,
 ) -> tuple[list[Outcome[F, R]], dict[str, str]]:
     """Run every fidelity that is valid for a request, one after the other, so that their times compare.
 
@@ -74,6 +75,9 @@ def run_fidelities(
     failures : tuple of exception types
         Exceptions for which a fidelity is omitted. The last of these types is raised where fewer than two
         results are left.
+
+    costs : mapping, optional
+        Predicted cost of fidelities, see `run_variants`.
 
     Returns
     -------
@@ -91,7 +95,7 @@ def run_fidelities(
         return Outcome(fidelity, result, cpu_seconds() - start)
 
     by_name = {fidelity.name: fidelity for fidelity in valid}
-    outcomes, failed = run_variants("ladder", by_name, timed, failures, progress)
+    outcomes, failed = run_variants("ladder", by_name, timed, failures, progress, costs=costs)
     omitted = refused | failed
     if len(outcomes) < 2:
         raise failures[-1](f"an error needs two fidelities to compare; left out: {omitted}")

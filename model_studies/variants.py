@@ -25,6 +25,7 @@ def run_variants(
     progress: Progress,
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
     seconds: float | None = None,
+    costs: Mapping[str, float] | None = None,
 ) -> tuple[dict[str, R], dict[str, str]]:
     """Compute every variant; one that fails does not end the study.
 
@@ -34,6 +35,9 @@ def run_variants(
         Computes a variant. Workers need a function of a module, or a `partial` of one.
     seconds : float, optional
         Predicted CPU seconds of all variants, see `divided`.
+    costs : mapping, optional
+        Predicted cost of variants by name, in any unit, by which the fraction done is reported; that of one
+        without is zero. Default: all cost the same.
 
     Returns
     -------
@@ -44,9 +48,12 @@ def run_variants(
     """
     results, omitted = {}, {}
     outcomes = divided(workers, _attempted, (compute, failures), list(variants.values()), seconds)
-    for count, name in enumerate(variants):
-        progress(stage, count / len(variants))
+    shares = [1.0 if costs is None else costs.get(name, 0.0) for name in variants]
+    whole, done = sum(shares) or 1.0, 0.0
+    for name, share in zip(variants, shares, strict=True):
+        progress(stage, done / whole)
         result, reason = next(outcomes)
+        done += share
         if reason is None:
             results[name] = result
         else:

@@ -1,6 +1,6 @@
-"""Write the tables of verbs, routes, processes in docs/cli.md and docs/service.md from the program.
+"""Write the tables of verbs and processes in docs/cli.md and docs/service.md from the program.
 
-Usage: service_pages.py PAGE...
+Usage: service_pages.py PAGE... The table of routes stands on the site alone, which makes it when it is built.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 import sys
 import tempfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -20,12 +20,14 @@ from service.app import create_app
 from service.settings import Settings
 
 TABLE = re.compile(r"(<!-- table of (\w+) -->\n\n)(.*?)(\n\n<!-- end of table -->)", re.DOTALL)
+ROUTES = "<!-- all routes -->"
+"""Mark of the table of routes on the page of the service."""
 EXECUTION = re.compile(r"/v1/processes/([a-z-]+)/execution")
 
 
 def page(text: str, api: dict[str, Any]) -> str:
     """Return the page with its tables anew."""
-    tables = {"verbs": verbs(text), "routes": routes(api), "processes": processes(api)}
+    tables = {"verbs": verbs(text), "processes": processes(api)}
     return TABLE.sub(lambda found: f"{found[1]}{tables[found[2]]}{found[4]}", text)
 
 
@@ -56,6 +58,17 @@ def commands(group: Any, name: str) -> Iterator[tuple[str, str]]:
             yield from commands(command, f"{name} {verb}")
         else:
             yield f"{name} {verb}", command.help.partition("\n")[0]
+
+
+def with_routes(text: str, api: Callable[[], dict[str, Any]]) -> str:
+    """Return a page with the table of routes where it has the mark of it; `api` describes the service."""
+    return text.replace(ROUTES, routes(api())) if ROUTES in text else text
+
+
+def described() -> dict[str, Any]:
+    """Return the description of the service with all its processes."""
+    with tempfile.TemporaryDirectory() as folder:
+        return create_app(Settings(data_directory=Path(folder))).openapi()
 
 
 def routes(api: dict[str, Any]) -> str:
@@ -89,7 +102,6 @@ def default(schema: dict[str, Any]) -> str:
 
 
 if __name__ == "__main__":
-    with tempfile.TemporaryDirectory() as folder:
-        described = create_app(Settings(data_directory=Path(folder))).openapi()
+    description = described()
     for file in map(Path, sys.argv[1:]):
-        file.write_text(page(file.read_text("utf-8"), described), "utf-8")
+        file.write_text(page(file.read_text("utf-8"), description), "utf-8")

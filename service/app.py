@@ -99,9 +99,9 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
     return app
 
 
-def _route(app: FastAPI, offered: Registry) -> None:
-    documented = (documents.router, processes.processes_router(offered), jobs.router)
-    read = (job_results.job_results_router(offered), results.router, result_drawings.router)
+def _route(app: FastAPI, registry: Registry) -> None:
+    documented = (documents.router, processes.processes_router(registry), jobs.router)
+    read = (job_results.job_results_router(registry), results.router, result_drawings.router)
     grouped = (queries.router, queries.live_router, drafts.router, batches.router, events.router)
     for router in (*documented, *read, *grouped, *ROUTERS):
         app.include_router(router, prefix=API_PREFIX)
@@ -116,6 +116,7 @@ def _lifespan(context: Context, lock: DirectoryLock | None) -> Callable[[FastAPI
     async def lifespan(_app: FastAPI) -> AsyncIterator[None]:
         if lock is not None:
             lock.acquire()
+        context.start_waiting()
         if context.scheduler is not None:
             context.scheduler.start()
         deliverer = callbacks.deliverer_of(context)

@@ -45,13 +45,13 @@ def operators_cost(panels: int) -> Cost:
 def layer_operators(
     hull: Hull,
     wavenumber: float,
-    done: Report = unreported,
+    report: Report = unreported,
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> tuple[ComplexArray, ComplexArray]:
     """Return the dense single layer (T, T), m^3, and double layer (T, N), m^2, each tested with the panels.
 
     Kernel e^{+ikr}/(4 pi r); the single layer acts on constants of the panels, the double layer on hats of
-    the nodes. Singular pairs are integrated by the library's own transformations. `done` is called with the
+    the nodes. Singular pairs are integrated by the library's own transformations. `report` is called with the
     fraction of the panels that are done.
     """
     panels = len(hull.triangles)
@@ -64,7 +64,7 @@ def layer_operators(
     rows = divided(workers, _layer_rows, (hull, wavenumber), blocks, seconds)
     for (first, end), block_rows in zip(blocks, rows, strict=True):
         single[first:end], double[first:end] = block_rows
-        done(end / panels)
+        report(end / panels)
     return single, double
 
 

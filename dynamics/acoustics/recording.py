@@ -15,7 +15,7 @@ from bounds import above, at_least, at_most
 from bounds.brief import brief
 from dynamics.checks import increasing, integer, one_of, positive
 from dynamics.errors import InputError
-from dynamics.orders.plain_filters import plain_high_passed
+from dynamics.orders.high_pass import high_passed
 from dynamics.orders.resampling import resampled
 from dynamics.results import RunResult
 from dynamics.types import ComplexArray, FloatArray
@@ -151,12 +151,7 @@ def audible(values: FloatArray, sample_rate: float) -> FloatArray:
     if samples < 4:
         raise InputError("values", samples, "at least 4 samples")
     beyond = min(round(sample_rate / LOWEST), samples - 1)  # a period of the lowest frequency, reflected
-    try:
-        from scipy.signal import butter, detrend, sosfiltfilt  # noqa: PLC0415 (start-up time)
-    except ModuleNotFoundError:
-        return plain_high_passed(values, SLOPE, LOWEST, sample_rate, beyond)
-    sections = butter(SLOPE, LOWEST, "highpass", fs=sample_rate, output="sos")
-    return np.asarray(sosfiltfilt(sections, detrend(values), padtype="even", padlen=beyond))
+    return high_passed(np.asarray(values, dtype=float), SLOPE, LOWEST, sample_rate, beyond)
 
 
 def principal_direction(values: FloatArray, sample_rate: float) -> tuple[FloatArray, float]:

@@ -59,7 +59,7 @@ NO_SIGNALS = BearingForce(np.zeros(1, dtype=np.int64), _NO_INDEX, np.zeros(0), n
 def bearing_force_map(
     stiffness: FloatArray,
     damping: FloatArray,
-    joined: Connections,
+    connections: Connections,
     bearings: Sequence[BearingElement],
     elements: Elements,
 ) -> BearingForce:
@@ -69,7 +69,7 @@ def bearing_force_map(
     their pins. The last elements are those of `bearings` that are not linear or sit in a housing that moves:
     their forces act at the support.
     """
-    supports, seats = joined.supports, joined.seats
+    supports, seats = connections.supports, connections.seats
     count, rows, n = stiffness.shape
     total = elements.offset.size
     weight = np.zeros((count, rows, total + 2 * n))

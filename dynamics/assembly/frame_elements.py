@@ -40,7 +40,7 @@ def rotating_frame_elements(model: Model) -> tuple[tuple[Element, ...], Rotating
             for term in effect.frame_terms(mechanism, model.connections, index)
         ]
         moving = [term for term in added if np.any(freedoms.keep(term.rows))]
-        terms += [(index, term) for term in _merged(moving, freedoms)]
+        terms += [(index, term) for term in _merged_terms(moving, freedoms)]
     elements = tuple(
         _rotor_element(mechanism, entry, index, term.rows, spin_lever=lever if free[index] else 0.0)
         for entry, (index, term) in enumerate(terms)
@@ -49,7 +49,7 @@ def rotating_frame_elements(model: Model) -> tuple[tuple[Element, ...], Rotating
     return elements, RotatingFrameLaws.packed([term for _, term in terms], lever, spinning)
 
 
-def _merged(terms: Sequence[FrameTerm], freedoms: Freedoms) -> list[FrameTerm]:
+def _merged_terms(terms: Sequence[FrameTerm], freedoms: Freedoms) -> list[FrameTerm]:
     """Return the terms of a rotor, with those of equal motion added up: a term costs two unknowns a stage."""
     merged: list[FrameTerm] = []
     for term in terms:

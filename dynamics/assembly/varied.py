@@ -46,9 +46,9 @@ def with_flank(system: System, mesh: int, table: MeshTable) -> System:
     table : MeshTable
         Table at one misalignment and center distance.
     """
-    used = _used(system, mesh, table)
+    used = _used_table(system, mesh, table)
     plain, spatial = _laws(system)
-    # `_damped` writes into the copies of the damping, not into those of `system`
+    # `_damped_system` writes into the copies of the damping, not into those of `system`
     plain = plain._replace(table=by_address(plain.table.with_table(mesh, used)), damping=plain.damping.copy())
     elements = system.arrays.elements
     if elements.law[mesh] == SPATIAL_FLANK:
@@ -57,7 +57,7 @@ def with_flank(system: System, mesh: int, table: MeshTable) -> System:
     changed = by_address(elements._replace(laws=elements.laws._replace(flank=plain, spatial_flank=spatial)))
     arrays = by_address(system.arrays._replace(elements=changed))
     changed_system = replace(system, arrays=arrays, flanks=replace(system.flanks, law=plain))
-    return _damped(changed_system, mesh, used)
+    return _damped_system(changed_system, mesh, used)
 
 
 def with_flanks(system: System, mesh: int, tables: Sequence[MeshTable]) -> Iterator[System]:
@@ -69,11 +69,11 @@ def with_flanks(system: System, mesh: int, tables: Sequence[MeshTable]) -> Itera
     yield changed_system
     plain, spatial = _laws(changed_system)
     for table in tables[1:]:
-        used = _used(changed_system, mesh, table)
+        used = _used_table(changed_system, mesh, table)
         plain.table.overwrite(mesh, used)
         if changed_system.arrays.elements.law[mesh] == SPATIAL_FLANK:
             spatial.grid.overwrite(int(changed_system.arrays.elements.entry[mesh]), used)
-        changed_system = _damped(changed_system, mesh, used)
+        changed_system = _damped_system(changed_system, mesh, used)
         yield changed_system
 
 
@@ -81,7 +81,7 @@ def _laws(system: System) -> tuple[FlankLaws, SpatialFlankLaws]:
     return system.flanks.law, system.arrays.elements.laws.spatial_flank
 
 
-def _used(system: System, mesh: int, table: MeshTable) -> PlainTable:
+def _used_table(system: System, mesh: int, table: MeshTable) -> PlainTable:
     """Return the table with the technique of a mesh."""
     if np.size(table.misalignment) > 1 or np.size(table.center_distance_change) > 1:
         raise InputError("table", "several operating points", "a table at one of them")
@@ -90,7 +90,7 @@ def _used(system: System, mesh: int, table: MeshTable) -> PlainTable:
     return with_technique(technique, table_at(table, *point), force)
 
 
-def _damped(system: System, mesh: int, used: PlainTable) -> System:
+def _damped_system(system: System, mesh: int, used: PlainTable) -> System:
     """Return `system` with damping and mean stiffness of the table `used`, which its laws have already."""
     elements, flanks = system.arrays.elements, system.flanks
     force = float(flanks.nominal_force[mesh]) or float(used.level[1])  # no load: the first level above 0

@@ -118,7 +118,7 @@ class _RowLaw:
         return float(np.ptp(displacements))
 
     def _at_typical_load(
-        self, duty: BearingDuty, loaded: LoadedBearing | None = None, angle: float = 0.0
+        self, duty: BearingDuty, bearing: LoadedBearing | None = None, angle: float = 0.0
     ) -> tuple[float, Reaction]:
         """Return the displacement along x, m, under the typical load along x, and the reaction to it.
 
@@ -128,7 +128,7 @@ class _RowLaw:
         load = max(duty.load, self.row.element_stiffness * MIN_PRESS**exponent)
 
         def reaction(x: float) -> Reaction:
-            return (loaded or self.loaded).evaluate((x, 0.0, self.shift, 0.0, 0.0), angle)
+            return (bearing or self.loaded).evaluate((x, 0.0, self.shift, 0.0, 0.0), angle)
 
         def excess_force(x: float) -> float:
             return float(reaction(x).force[0] - load)

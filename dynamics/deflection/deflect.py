@@ -135,14 +135,14 @@ def deflect(
     check_forces(cases, [force.name for force in scene.forces])
     integer("positions", positions, 1, MAX_POSITIONS)
     deflections = []
-    for deflected in divided(workers, _deflected, (scene, positions), list(enumerate(cases))):
+    for deflected in divided(workers, _case_deflection, (scene, positions), list(enumerate(cases))):
         deflections.append(deflected)
         if progress is not None:
             progress(len(deflections) / len(cases))
     return Deflection(leader_of(scene).shaft, tuple(deflections))
 
 
-def _deflected(shared: tuple[Scene, int], numbered: tuple[int, LoadCase]) -> CaseDeflection:
+def _case_deflection(shared: tuple[Scene, int], numbered: tuple[int, LoadCase]) -> CaseDeflection:
     """Return the deflection of a scene under a load case: one task.
 
     All tasks share the scene and the number of positions; each has the number of its case and the case.

@@ -124,8 +124,8 @@ class Elements(NamedTuple):
             )
         )
 
-    def prepare(self, addressed: Elements) -> None:
-        """Compile the routines that its laws call; `addressed` are these elements as they take them."""
+    def prepare(self, elements: Elements) -> None:
+        """Compile the routines that its laws call; `elements` are these elements as they take them."""
         present = (Law(law) for law in np.unique(self.law))
         routines = [
             (law, target) for law in present for target in COMPILED[law].routines if not target.prepared
@@ -135,7 +135,7 @@ class Elements(NamedTuple):
         for law, target in routines:
             target.prepare(by_address(getattr(self.laws, law.name.lower())), local)
         for target in common:
-            target.prepare(addressed, local)
+            target.prepare(elements, local)
 
 
 def make_local(elements: Elements, meshes: int) -> LocalState:

@@ -15,7 +15,7 @@ from dynamics.housings.reduced_matrices import (
     read_reduced_matrices,
 )
 from dynamics.housings.reduction_cost import CostLimit, reduction_cost
-from dynamics.housings.step_files import FlatFace, StepSolid, mesh_step, step_solid
+from dynamics.housings.step_files import FlatFace, StepSolid, mesh_step, step_solid, usual_edge
 from dynamics.housings.supports import Foot, Mount, SeatBore, SeatFrame
 from dynamics.housings.surface_files import write_surface
 from dynamics.housings.tetrahedral_mesh import TetrahedralMesh
@@ -56,5 +56,6 @@ __all__ = [
     "scene_axes",
     "scene_housing",
     "step_solid",
+    "usual_edge",
     "write_surface",
 ]

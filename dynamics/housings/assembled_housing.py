@@ -174,7 +174,7 @@ def _rigid_faces(housing: MeshedHousing) -> tuple[_RigidFace, ...]:
     mesh, faces = housing.mesh, []
     for seat in housing.seats:
         if seat.ring is Ring.RIGID:
-            nodes = np.unique(seat.bore.triangles(mesh))
+            nodes = seat.bore.nodes(mesh)
             faces.append(_RigidFace(f"seats.{seat.name}", nodes, np.array(seat.bore.position)))
     for foot in housing.feet:
         triangles = foot.face.triangles(mesh)

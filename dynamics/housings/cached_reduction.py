@@ -24,7 +24,7 @@ from model_studies.cached_file import keep_cached, read_cached
 from model_studies.netcdf import UnreadableFile
 from model_studies.record_file import read_record, write_record
 
-REDUCTION_VERSION = 5
+REDUCTION_VERSION = 6
 """Raised with every change of the numbers of a reduction, or of what is kept with them."""
 WORK = "housing reduction"
 """Name of a reduction in the log of runs."""

@@ -107,7 +107,7 @@ def drawn_step(file: Path, maximum: int = MAX_TRIANGLES) -> DrawnSurface:
         remedy = "Unite the solids in the CAD program."
         raise InputError("step_file.solids", answer["solids"], "one solid", remedy)
     facets = np.array(answer["facets"], dtype=np.int64).reshape(-1, 3)
-    return _drawn(np.array(answer["points"]), facets, maximum, "step_file")
+    return _drawn_surface(np.array(answer["points"]), facets, maximum, "step_file")
 
 
 def drawn_mesh(file: Path, unit: str, maximum: int = MAX_TRIANGLES) -> DrawnSurface:
@@ -128,7 +128,7 @@ def drawn_mesh(file: Path, unit: str, maximum: int = MAX_TRIANGLES) -> DrawnSurf
     points, corners = np.asarray(arrays["points"], dtype=float), arrays["tetrahedra"][:, :4]
     if corners.min(initial=0) < 0 or corners.max(initial=0) >= len(points):
         raise InputError("mesh_file", "with elements that lack nodes", "complete, as its reader finds it")
-    return _drawn(UNITS[unit] * points, _bounding(corners), maximum, "mesh_file")
+    return _drawn_surface(UNITS[unit] * points, _bounding(corners), maximum, "mesh_file")
 
 
 def _bounding(tetrahedra: IntArray) -> IntArray:
@@ -138,7 +138,7 @@ def _bounding(tetrahedra: IntArray) -> IntArray:
     return np.asarray(faces[first[count == 1]])
 
 
-def _drawn(points: FloatArray, facets: IntArray, maximum: int, field: str) -> DrawnSurface:
+def _drawn_surface(points: FloatArray, facets: IntArray, maximum: int, field: str) -> DrawnSurface:
     """Return a surface of at most `maximum` triangles; it is near the origin and as large as a housing."""
     used, facets = np.unique(facets, return_inverse=True)
     points, facets = points[used], facets.reshape(-1, 3)

@@ -6,7 +6,7 @@ The surface consists of t six-node triangles; whether one is on a face depends o
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NoReturn, Protocol
+from typing import NamedTuple, NoReturn, Protocol
 
 import numpy as np
 
@@ -27,6 +27,24 @@ INWARD = 0.7
 """Least cosine between the normal of a bore's wall and the direction to its axis."""
 COVERED = 0.5
 """Least part of a bore's wall that has to exist: a split seat has half of it."""
+
+
+_TRIANGLE = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+"""Corners of a triangle in its local coordinates."""
+
+
+class WallParts(NamedTuple):
+    """The wall of a bore between its ends: w triangles as a whole, c parts of triangles that an end cuts.
+
+    Each part is a triangle between three `corners` in the local coordinates of the one that it is cut from.
+    """
+
+    whole: IntArray
+    """Shape (w, 6)."""
+    cut: IntArray
+    """Shape (c, 6)."""
+    corners: FloatArray
+    """Shape (c, 3, 2)."""
 
 
 class Face(Protocol):
@@ -74,40 +92,58 @@ class Bore:
         declared_fields(self)
 
     def triangles(self, mesh: TetrahedralMesh) -> IntArray:
-        """Return the triangles of the wall."""
+        """Return the triangles of the wall of which at least a part is within the length."""
+        parts = self.parts(mesh)
+        return np.unique(np.vstack([parts.whole, parts.cut]), axis=0)
+
+    def nodes(self, mesh: TetrahedralMesh) -> IntArray:
+        """Return the nodes of the wall that are within the length."""
+        nodes = np.unique(self.triangles(mesh))
+        along = (mesh.points[nodes] - np.array(self.position)) @ unit("axis", self.axis)
+        return np.asarray(nodes[np.abs(along) <= self.length / 2.0 + NEAR * self.diameter])
+
+    def parts(self, mesh: TetrahedralMesh) -> WallParts:
+        """Return the wall, its triangles cut at the ends of the bore."""
         axis = unit("axis", self.axis)
-        surface, near = mesh.surface, NEAR * self.diameter
+        surface, near, half = mesh.surface, NEAR * self.diameter, 0.5 * self.length
         arm = mesh.points[surface[:, :3]] - np.array(self.position)
         along = arm @ axis
         radial = arm - along[..., None] * axis
         radius = np.linalg.norm(radial, axis=2)
-        level = np.all(np.abs(along) <= self.length / 2.0 + near, axis=1)
+        level = np.all(np.abs(along) <= half + near, axis=1)
         normal, area = _normals(mesh, surface)
         # cosine between the outward normal and the direction to the axis; 1e-300: no division by zero
         toward = -np.einsum("ti,ti->t", normal, radial.mean(axis=1)) / np.maximum(radius.mean(axis=1), 1e-300)
         facing = toward >= INWARD
         wall = facing & np.all(np.abs(radius - self.diameter / 2.0) <= near, axis=1)
-        chosen = wall & level
-        if area[chosen].sum() < COVERED * np.pi * self.diameter * self.length:
-            # triangles of which at least a part is within the length
-            across = (along.min(axis=1) < self.length / 2.0) & (along.max(axis=1) > -self.length / 2.0)
-            self._check_length(float(area[wall & across].sum()), along[wall & across])
-            self._refuse(float(area[chosen].sum()), radius[facing & level])
-        return np.asarray(surface[chosen])
+        across = wall & ~level & (along.min(axis=1) < half) & (along.max(axis=1) > -half)
+        cut = [(row, part) for row in np.flatnonzero(across) for part in _between(along[row], half)]
+        rows = np.array([row for row, _ in cut], dtype=np.int64)
+        corners = np.array([part for _, part in cut]).reshape(-1, 3, 2)
+        whole_area = float(area[wall & level].sum())
+        # a triangle has the area 1/2 in its local coordinates
+        cut_area = float(np.sum(area[rows] * _doubled_area(corners)))
+        least_area = COVERED * np.pi * self.diameter * self.length
+        if whole_area + cut_area < least_area:
+            self._refuse(whole_area, radius[facing & level])
+        if whole_area < least_area:
+            self._check_length(along[across])
+        return WallParts(surface[wall & level], surface[rows], corners)
 
-    def _check_length(self, area: float, along: FloatArray) -> None:
-        """Refuse a bore whose wall exists, but in elements that reach beyond the bore's stated length.
+    def _check_length(self, along: FloatArray) -> None:
+        """Refuse a bore that is shorter than an element of its wall.
 
-        `area`: that of triangles with at least a part within the length, m^2; `along`: positions of their
-        corners along the axis, m.
+        `along`: positions along the axis, m, of the corners of triangles that its ends cut.
         """
-        if area < COVERED * np.pi * self.diameter * self.length:
+        extent = float(np.ptp(along, axis=1).max())
+        if extent <= self.length:
             return
-        element = Quantity(float(np.ptp(along, axis=1).max()), "m", digits=3)
-        bound = "one between whose ends elements of the wall lie"
-        wall = Text.of("The wall of this diameter is there, of elements up to ", element, " along the axis ")
-        remedy = "that reach beyond this length. State the whole length of the wall, or mesh it finer."
-        raise InputError("length", self.length, bound, Text.of(wall, remedy))
+        element = Quantity(extent, "m", digits=3)
+        bound = "at least that of an element of the wall"
+        wall = Text.of("The wall of this diameter is there, of elements up to ", element, " along the axis. ")
+        raise InputError(
+            "length", self.length, bound, Text.of(wall, "State a longer part, or mesh it finer.")
+        )
 
     def _refuse(self, area: float, radii: FloatArray) -> NoReturn:
         """Refuse a bore of whose wall too small an area, m^2, exists; `radii`, m: those of other walls."""
@@ -195,6 +231,31 @@ class Group:
         member = np.zeros(len(mesh.points), dtype=bool)
         member[mesh.groups[self.name]] = True
         return _require_facets("name", self.name, mesh, np.all(member[mesh.surface[:, :3]], axis=1))
+
+
+def _between(along: FloatArray, half: float) -> list[FloatArray]:
+    """Return the triangles (3, 2), in local coordinates, that make up a triangle between two planes.
+
+    `along` (3,): heights of its corners, linear between them; the planes are at the heights +-`half`.
+    """
+    polygon = np.column_stack([_TRIANGLE, along])
+    for side in (1.0, -1.0):  # what is below the upper plane, then what is above the lower one
+        inner: list[FloatArray] = []
+        for start, end in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
+            is_in, is_end_in = side * start[2] <= half, side * end[2] <= half
+            if is_in:
+                inner.append(start)
+            if is_in != is_end_in:  # the edge crosses the plane
+                inner.append(start + (side * half - start[2]) / (end[2] - start[2]) * (end - start))
+        polygon = np.array(inner).reshape(-1, 3)
+    fan = [polygon[[0, k, k + 1], :2] for k in range(1, len(polygon) - 1)]
+    return [part for part in fan if _doubled_area(part[None])[0] > 0.0]
+
+
+def _doubled_area(corners: FloatArray) -> FloatArray:
+    """Return twice the areas of triangles (c, 3, 2) with corners in positive order."""
+    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
 
 
 def _normals(mesh: TetrahedralMesh, triangles: IntArray) -> tuple[FloatArray, FloatArray]:

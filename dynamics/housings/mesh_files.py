@@ -99,7 +99,7 @@ def read_mesh(path: str | Path, unit: str) -> TetrahedralMesh:
         Unit of the coordinates, "m" or "mm": files do not state it.
     """
     scale = UNITS[one_of("unit", unit, list(UNITS))]
-    return _checked(_content(Path(path)), scale)
+    return _checked_mesh(_content(Path(path)), scale)
 
 
 def mesh_format(file: Path) -> str:
@@ -147,7 +147,7 @@ def _content(file: Path) -> _Content:
             return _Content(arrays["points"], arrays["tetrahedra"], groups)
 
 
-def _checked(content: _Content, scale: float) -> TetrahedralMesh:
+def _checked_mesh(content: _Content, scale: float) -> TetrahedralMesh:
     points, tetrahedra = _quadratic(content)
     points = scale * np.asarray(points, dtype=float)
     if not np.all(np.isfinite(points)):

@@ -31,6 +31,14 @@ class _SurfaceIntegral(NamedTuple):
     point: FloatArray
 
 
+class _PartsIntegral(NamedTuple):
+    """The same over parts of triangles, and the shape functions (t, a, p) of nodes a, by part."""
+
+    area: FloatArray
+    point: FloatArray
+    shape: FloatArray
+
+
 @cache
 def triangle() -> _ShapeFunctions:
     """Return the shape functions of the reference triangle with six nodes, in scikit-fem's order."""
@@ -89,3 +97,24 @@ def over_surface(points: FloatArray, triangles: IntArray) -> _SurfaceIntegral:
     tangent = np.einsum("tai,akp->tpki", points[triangles], rule.slope, optimize=True)  # (t, p, 2, 3)
     area = np.cross(tangent[:, :, 0], tangent[:, :, 1]) * rule.weight[:, None]
     return _SurfaceIntegral(area, np.einsum("tai,ap->tpi", points[triangles], rule.shape))
+
+
+def over_parts(points: FloatArray, triangles: IntArray, corners: FloatArray) -> _PartsIntegral:
+    """Return the quadrature points, area vectors and shapes of parts of t triangles with six nodes.
+
+    The part of each is the triangle between `corners` (t, 3, 2) in its local coordinates.
+    """
+    from skfem import ElementTriP2  # noqa: PLC0415 (start-up time)
+    from skfem.quadrature import get_quadrature  # noqa: PLC0415
+
+    reference, weight = get_quadrature(ElementTriP2, ORDER)  # (2, p), (p,)
+    sides = corners[:, 1:] - corners[:, :1]  # (t, 2 sides, 2)
+    local = np.moveaxis(corners[:, :1] + np.einsum("sp,tsk->tpk", reference, sides), 2, 0)  # (2, t, p)
+    values = [ElementTriP2().lbasis(local, node) for node in range(6)]
+    shape = np.array([np.broadcast_to(value, local.shape[1:]) for value, _ in values])  # (a, t, p)
+    slope = np.array([np.broadcast_to(slope, local.shape) for _, slope in values])  # (a, k, t, p)
+    tangent = np.einsum("tai,aktp->tpki", points[triangles], slope, optimize=True)
+    scale = sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0]
+    area = np.cross(tangent[:, :, 0], tangent[:, :, 1]) * (weight * scale[:, None])[..., None]
+    point = np.einsum("tai,atp->tpi", points[triangles], shape, optimize=True)
+    return _PartsIntegral(area, point, np.moveaxis(shape, 0, 1))

@@ -17,7 +17,7 @@ from dynamics.errors import InputError, SolveError
 from dynamics.housings.mesh_faces import Bore, Plane
 from dynamics.housings.mesh_files import read_mesh
 from dynamics.housings.step_bores import BoreWall, bores_of_walls
-from dynamics.housings.step_worker import limits
+from dynamics.housings.step_worker import ELEMENTS_A_TURN, limits
 from dynamics.housings.tetrahedral_mesh import TetrahedralMesh
 from dynamics.solid_housing import STEP_SUFFIXES
 from host import ChildFailed, ChildOutOfMemory, ask_child
@@ -62,6 +62,14 @@ def mesh_step(
         return read_mesh(folder / "housing.msh", "mm")
 
     return _by_gmsh(Path(path), request, mesh, seconds, command)
+
+
+def usual_edge(wall: float, diameter: float) -> float:
+    """Return the edge of elements at the wall of a bore without a size, m.
+
+    `wall`: mean wall thickness 2 V/S of the body, m.
+    """
+    return min(wall / WALL_ELEMENTS, np.pi * diameter / ELEMENTS_A_TURN)
 
 
 @dataclass(frozen=True)

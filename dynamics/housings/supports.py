@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from dynamics.bearings.matrix import Matrix, check_matrix
 from dynamics.errors import InputError
 from dynamics.housings.mesh_faces import Bore, Face, unit
-from dynamics.housings.quadrature import over_surface, triangle
+from dynamics.housings.quadrature import over_parts, over_surface, triangle
 from dynamics.housings.tetrahedral_mesh import TetrahedralMesh
 from dynamics.solid_housing import Ring
 from dynamics.types import FloatArray
@@ -75,27 +76,48 @@ def in_axes(frame: SeatFrame) -> FloatArray:
     return np.asarray(np.kron(np.eye(2), frame.axes.T)[: len(frame.motions)], dtype=float)
 
 
-def mean_motion(mesh: TetrahedralMesh, face: Face, about: FloatArray) -> sp.csr_array:
-    """Return the matrix (6, 3 n) from the displacements of n nodes to the nearest rigid motion of a face.
+def mean_motion(mesh: TetrahedralMesh, bore: Bore, about: FloatArray) -> sp.csr_array:
+    """Return the matrix (6, 3 n) from displacements of n nodes to the nearest rigid motion of a bore's wall.
 
-    The motion, about the point `about`, is the least-squares fit over the area with the shape functions of
-    the elements: exact for rigid motions. The transpose spreads a force and moment at `about` over the nodes.
+    The motion, about the point `about`, is the least-squares fit over the area of the wall between the bore's
+    ends with the shape functions of the elements: exact for rigid motions. The transpose spreads a force and
+    moment at `about` over the nodes.
     """
-    triangles = face.triangles(mesh)
-    area, point = over_surface(mesh.points, triangles)
-    weight, shape = np.linalg.norm(area, axis=2), triangle().shape
+    parts = bore.parts(mesh)
+    shape = triangle().shape
+    fits = [_rigid_fit(*over_surface(mesh.points, parts.whole), shape, about)]
+    if len(parts.cut):
+        fits.append(_rigid_fit(*over_parts(mesh.points, parts.cut, parts.corners), about))
+    normal = sum(fit.normal for fit in fits)
+    freedoms = 3 * np.vstack([parts.whole, parts.cut])[:, :, None] + np.arange(3)
+    values = np.linalg.solve(normal, np.hstack([fit.right for fit in fits]))
+    rows = np.repeat(np.arange(6), freedoms.size)
+    entries = (values.ravel(), (rows, np.tile(freedoms.ravel(), 6)))
+    return sp.coo_array(entries, shape=(6, mesh.freedoms)).tocsr()
+
+
+class _RigidFit(NamedTuple):
+    """Normal equations of the rigid motion nearest to that of a surface: its six motions, nodes of triangles.
+
+    `normal` has the shape (6, 6), `right` (6, 18 t) of t triangles.
+    """
+
+    normal: FloatArray
+    right: FloatArray
+
+
+def _rigid_fit(area: FloatArray, point: FloatArray, shape: FloatArray, about: FloatArray) -> _RigidFit:
+    """Return the normal equations over points (t, p, 3) with `shape` (a, p), or (t, a, p)."""
+    weight = np.linalg.norm(area, axis=2)
     motion = np.zeros((*point.shape[:2], 3, 6))  # displacement of a point by the rigid motion
     motion[..., range(3), range(3)] = 1.0
     for axis, direction in enumerate(np.eye(3)):
         motion[..., 3 + axis] = np.cross(direction, point - about)
     # t triangles, p points of quadrature, a nodes of a triangle, i directions x, y, z; c, d the six motions
     normal = np.einsum("tp,tpic,tpid->cd", weight, motion, motion, optimize=True)
-    right = np.einsum("tp,ap,tpic->ctai", weight, shape, motion, optimize=True)
-    freedoms = 3 * triangles[:, :, None] + np.arange(3)
-    values = np.linalg.solve(normal, right.reshape(6, -1))
-    rows = np.repeat(np.arange(6), freedoms.size)
-    entries = (values.ravel(), (rows, np.tile(freedoms.ravel(), 6)))
-    return sp.coo_array(entries, shape=(6, mesh.freedoms)).tocsr()
+    shapes = "ap" if shape.ndim == 2 else "tap"
+    right = np.einsum(f"tp,{shapes},tpic->ctai", weight, shape, motion, optimize=True)
+    return _RigidFit(normal, right.reshape(6, -1))
 
 
 @dataclass(frozen=True)

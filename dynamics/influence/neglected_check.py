@@ -341,12 +341,12 @@ def _influence_of(
         relative_bearing_orders=_by_order(bearing_orders, with_effect.bearing_orders),
         level=level_change(with_effect.lines, without.lines, quantity.name, quantity.unit),
         decides=system.scene.quantity is not None,
-        beyond=_beyond(system, name in LINEAR, parts),
+        beyond=_omission(system, name in LINEAR, parts),
         parts=parts,
     )
 
 
-def _beyond(system: System, linear: bool, parts: bool) -> str:
+def _omission(system: System, linear: bool, parts: bool) -> str:
     """Return the part of a change that linear theory leaves out, in words; `linear`: of a linear effect.
 
     `parts`: whether flanks part.

@@ -90,21 +90,21 @@ class Routine:
         return types.none if hint is type(None) else SCALARS[hint]
 
 
-def _typing(called: Routine) -> type:
+def _typing(routine: Routine) -> type:
     class Call(AbstractTemplate):
-        key = called
+        key = routine
 
         def generic(self, args: Any, kws: Any) -> Any:
-            return called.typed(args)
+            return routine.typed(args)
 
     return Call
 
 
-def _lowering(called: Routine) -> Callable[..., Any]:
+def _lowering(routine: Routine) -> Callable[..., Any]:
     def call(context: Any, builder: Any, sig: Any, args: Any) -> Any:
         convention = context.call_conv
-        slot = builder.module.globals.get(called.symbol)  # the module has it after the first call
-        slot = slot or cgutils.add_global_variable(builder.module, WORD, called.symbol)
+        slot = builder.module.globals.get(routine.symbol)  # the module has it after the first call
+        slot = slot or cgutils.add_global_variable(builder.module, WORD, routine.symbol)
         address = builder.load(slot)
         with cgutils.if_unlikely(builder, builder.icmp_unsigned("==", address, WORD(0))):
             convention.return_user_exc(builder, RuntimeError, (NOT_PREPARED,))

@@ -74,7 +74,7 @@ def whirl_branches(
         swept.append(modes_at(system, linear, float(value)))
         if progress is not None:
             progress((index + 1) / speed.size)
-    return _followed(system, linear, speed, swept)
+    return _followed_branches(system, linear, speed, swept)
 
 
 def branches_up_to(system: System, linear: LinearSystem, highest: float) -> WhirlBranches:
@@ -95,7 +95,7 @@ def branches_up_to(system: System, linear: LinearSystem, highest: float) -> Whir
         swept[middle] = modes_at(system, linear, float(grid[middle]))
         parts += [(low, middle), (middle, high)]
     chosen = sorted(swept)
-    return _followed(system, linear, grid[chosen], [swept[index] for index in chosen])
+    return _followed_branches(system, linear, grid[chosen], [swept[index] for index in chosen])
 
 
 def _clear(linear: LinearSystem, before: WhirlModes, modes: WhirlModes) -> bool:
@@ -113,7 +113,7 @@ def _repeated(frequency: FloatArray) -> FloatArray:
     return np.asarray(np.abs(frequency[:, None] - frequency) <= SAME * frequency, dtype=float)
 
 
-def _followed(
+def _followed_branches(
     system: System, linear: LinearSystem, speed: FloatArray, swept: Sequence[WhirlModes]
 ) -> WhirlBranches:
     """Return the branches of the modes `swept` at the speeds (S,)."""

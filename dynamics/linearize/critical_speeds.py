@@ -65,7 +65,7 @@ def critical_speeds(
             for row, mode in zip(*np.nonzero(crossed), strict=True):
                 assert matrices is not None  # between two speeds one is not 0
                 between = _between(branches, int(row), int(mode), order * rate)
-                crossing = _refined(system, linear, matrices, between)
+                crossing = _refined_crossing(system, linear, matrices, between)
                 rows.append((crossing, int(mode), mesh, order))
     rows.sort()
     counts = np.array([row[1:] for row in rows], dtype=np.int64).reshape(-1, 3)
@@ -113,7 +113,9 @@ def _between(branches: WhirlBranches, row: int, mode: int, rate: float) -> _Betw
     return _Between(speed, frequency - rate * speed, frequency, ratio, shape, rate)
 
 
-def _refined(system: System, linear: LinearSystem, matrices: SpeedMatrices, between: _Between) -> _Crossing:
+def _refined_crossing(
+    system: System, linear: LinearSystem, matrices: SpeedMatrices, between: _Between
+) -> _Crossing:
     """Find a crossing.
 
     Where Newton's method leaves the two speeds or the mode (modes that veer), they are halved: the mode in
@@ -123,7 +125,7 @@ def _refined(system: System, linear: LinearSystem, matrices: SpeedMatrices, betw
         crossing = _newton(linear, matrices, between)
         if crossing is not None:
             return crossing
-        between = _halved(system, linear, between)
+        between = _halved_interval(system, linear, between)
     end = int(np.argmin(np.abs(between.gap)))
     values = (between.speed, between.frequency, between.damping_ratio, between.gap)
     return _Crossing(*(float(value[end]) for value in values))
@@ -162,11 +164,11 @@ def _newton(linear: LinearSystem, matrices: SpeedMatrices, between: _Between) ->
         if not low - (high - low) <= speed <= high + (high - low):
             return None
         if abs(complex(change, per_speed * shift)) <= CLOSE * abs(value):
-            return _accepted(linear, matrices, between, x, complex(decay, per_speed * speed))
+            return _accepted_crossing(linear, matrices, between, x, complex(decay, per_speed * speed))
     return None
 
 
-def _accepted(
+def _accepted_crossing(
     linear: LinearSystem, matrices: SpeedMatrices, between: _Between, x: ComplexArray, value: complex
 ) -> _Crossing | None:
     """Return the crossing if it is between the speeds and of the mode."""
@@ -183,7 +185,7 @@ def _accepted(
     return _Crossing(speed, frequency, -value.real / abs(value), left)
 
 
-def _halved(system: System, linear: LinearSystem, between: _Between) -> _Between:
+def _halved_interval(system: System, linear: LinearSystem, between: _Between) -> _Between:
     """Return the half in which the gap changes its sign."""
     middle = float(np.mean(between.speed))
     modes = modes_at(system, linear, middle)

@@ -321,7 +321,7 @@ def flank_transfer(
     cached = read_cached(file, FlankTransfer.from_netcdf, ResultError)
     if cached is not None:
         return cached
-    transfer = _computed(at, speed, harmonics, orders)
+    transfer = _computed_transfer(at, speed, harmonics, orders)
     keep_cached(transfer, file, FlankTransfer.to_netcdf)
     return transfer
 
@@ -384,7 +384,7 @@ def excitation_of(at: Excited, harmonics: IntArray) -> FlankExcitation:
     return FlankExcitation(static, force, tangent, viscous, start.mesh_force)
 
 
-def _computed(at: Excited, speed: FloatArray, harmonics: IntArray, orders: int) -> FlankTransfer:
+def _computed_transfer(at: Excited, speed: FloatArray, harmonics: IntArray, orders: int) -> FlankTransfer:
     """Solve a block of speeds at a time."""
     flanks, rows, parts = excitation_of(at, harmonics), _rows(at), _parts(at)
     gradient, inputs = at.system.arrays.direction[rows], 1 + rows.size

@@ -113,7 +113,7 @@ def solve_kinematics(scene: Scene) -> Kinematics:
         suggestion = "Add a mesh, a drive or a free rotation, or leave the shaft out."
         name = scene.shafts[open_shaft].name
         raise InputError(f"shafts[{open_shaft}]", name, "geared to a drive or a free rotation", suggestion)
-    return _resolved(scene, speeds.ratios())
+    return _resolved_kinematics(scene, speeds.ratios())
 
 
 def mesh_shafts(scene: Scene, index: int) -> tuple[int, int, int | None]:
@@ -153,7 +153,7 @@ def _add_mesh(scene: Scene, speeds: TrainSpeeds, index: int) -> None:
             )
 
 
-def _resolved(scene: Scene, ratio: tuple[tuple[Fraction, ...], ...]) -> Kinematics:
+def _resolved_kinematics(scene: Scene, ratio: tuple[tuple[Fraction, ...], ...]) -> Kinematics:
     """Return the kinematics by the ratios of the shafts; refuse a mesh whose driver never turns."""
     law_shaft = tuple(scene.shaft_index(part.shaft) for part in scene.references)
     course = _speeds_over_time(scene)

@@ -139,14 +139,14 @@ def build_rotor(scene: Scene, shaft: Shaft) -> Rotor:
         shaft=shaft,
         inertia=inertia,
         center=center,
-        bushings=tuple(_damped(bushing, share, tilting) for bushing in bushings),
-        planet_bearings=tuple(_damped(bearing, share, tilting) for bearing in bearings),
+        bushings=tuple(_damped_support(bushing, share, tilting) for bushing in bushings),
+        planet_bearings=tuple(_damped_support(bearing, share, tilting) for bearing in bearings),
         frame=frame,
         carrier=frame if planet else None,
     )
 
 
-def _damped(support: Support, share: float, tilting: float) -> Support:
+def _damped_support(support: Support, share: float, tilting: float) -> Support:
     """Fill in the damping by the damping ratio; the damping of a matrix is proportional to the matrix.
 
     `share` and `tilting` are the support's shares of mass, kg, and transverse inertia, kg m^2. The largest

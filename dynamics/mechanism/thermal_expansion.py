@@ -41,7 +41,7 @@ def warmed_bearings(scene: Scene) -> Scene:
     return replace(
         scene,
         rolling_bearings=tuple(rows[part.name].warm for part in scene.rolling_bearings),
-        bushings=tuple(_preloaded(part, growth[part.name]) for part in scene.bushings),
+        bushings=tuple(_preloaded_bushing(part, growth[part.name]) for part in scene.bushings),
         temperatures=replace(warm, bearings=rows),
     ).with_bearing_laws(lambda law: law.after_growth(growth.get(law.bushing, 0.0)))
 
@@ -116,7 +116,7 @@ def _holds_axially(scene: Scene, bearing: Bushing | RollingBearing) -> bool:
     return float(bearing.seat_stiffness[2, 2]) > 0.0 or any(law.holds_axially for law in laws)
 
 
-def _preloaded(bushing: Bushing, growth: float) -> Bushing:
+def _preloaded_bushing(bushing: Bushing, growth: float) -> Bushing:
     """Return a bushing whose shaft has grown by `growth` (m) along z: its springs push back as preload."""
     if growth == 0.0:
         return bushing

@@ -147,7 +147,7 @@ def _phases(train: _Train) -> TrainPhases:
         else mesh.position_offset
         for index, mesh in enumerate(train.scene.meshes)
     ]
-    angles = tuple(_assumed(train, number) for number in range(len(train.assumed_angles)))
+    angles = tuple(_assumed_angle(train, number) for number in range(len(train.assumed_angles)))
     thickness = tuple(train.scene.gears[gear].name for gear in train.assumed_thickness)
     return TrainPhases(np.array(positions, dtype=float), angles, thickness)
 
@@ -186,7 +186,7 @@ def _wrapped(position: float, period: int) -> float:
     return max(position - period * math.floor((position + ROUNDING) / period), 0.0) + 0.0
 
 
-def _assumed(train: _Train, number: int) -> AssumedAngle:
+def _assumed_angle(train: _Train, number: int) -> AssumedAngle:
     first, second = (train.scene.gears[gear] for gear in train.assumed_angles[number])
     moves = np.array([train.moves[driver.gear].get(number, 0.0) for driver, _ in train.pairs])
     return AssumedAngle(second.shaft, (first.name, second.name), moves)

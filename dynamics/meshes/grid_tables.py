@@ -40,7 +40,7 @@ class GridTables(NamedTuple):
     @classmethod
     def packed(cls, tables: Sequence[MeshTable]) -> GridTables:
         """Lay out `tables`; those with several operating points carry their derivatives along the axes."""
-        return _packed(tuple(tables))
+        return _packed_tables(tuple(tables))
 
     @classmethod
     def _layout(cls, tables: Sequence[MeshTable]) -> GridTables:
@@ -110,7 +110,7 @@ class GridTables(NamedTuple):
 
 
 @identity_cached
-def _packed(tables: tuple[MeshTable, ...]) -> GridTables:
+def _packed_tables(tables: tuple[MeshTable, ...]) -> GridTables:
     return GridTables._layout(tables)
 
 

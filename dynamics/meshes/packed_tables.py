@@ -56,8 +56,8 @@ class PackedTables(NamedTuple):
         Tables that would be left with fewer than `MIN` knots stay as they are.
         """
         _, flank, part_of = np.unique(self.offset[:, 0], return_index=True, return_inverse=True)
-        parts = [_decimated(_part(self, int(index)), every) for index in flank]
-        return _joined(parts, part_of.tolist(), self.shift, self.period)
+        parts = [_decimated_table(_part(self, int(index)), every) for index in flank]
+        return _joined_tables(parts, part_of.tolist(), self.shift, self.period)
 
     def with_table(self, flank: int, table: MeshTable) -> PackedTables:
         """Return the tables with another one of a flank."""
@@ -65,7 +65,7 @@ class PackedTables(NamedTuple):
         parts[flank] = _laid_out(table)
         shift, period = self.shift.copy(), self.period.copy()
         shift[flank], period[flank] = float(table.position[0]), float(table.period)
-        return _joined(parts, range(len(parts)), shift, period)
+        return _joined_tables(parts, range(len(parts)), shift, period)
 
     def overwrite(self, flank: int, table: MeshTable) -> None:
         """Write another table of the same positions and number of levels into the arrays of a flank's."""
@@ -107,7 +107,7 @@ def _part(tables: PackedTables, flank: int) -> _Table:
     )
 
 
-def _decimated(table: _Table, every: int) -> _Table:
+def _decimated_table(table: _Table, every: int) -> _Table:
     """Return a table on each `every`-th knot."""
     knot, level = table.knot, table.level
     indices = retained_knots(knot.size - 1, every)
@@ -127,20 +127,22 @@ def _decimated(table: _Table, every: int) -> _Table:
 
 def pack_tables(tables: Sequence[MeshTable]) -> PackedTables:
     """Lay out `tables`, each with misalignment and center-distance axes of length 1."""
-    return _packed(tuple(tables))
+    return _packed_tables(tuple(tables))
 
 
 @identity_cached
-def _packed(tables: tuple[MeshTable, ...]) -> PackedTables:
+def _packed_tables(tables: tuple[MeshTable, ...]) -> PackedTables:
     distinct = {id(table): table for table in tables}  # flanks of one table share its part
     parts = {key: _laid_out(table) for key, table in distinct.items()}
     index = {key: k for k, key in enumerate(parts)}
     shift = np.array([float(table.position[0]) for table in tables])
     period = np.array([float(table.period) for table in tables])
-    return by_address(_joined([*parts.values()], [index[id(table)] for table in tables], shift, period))
+    return by_address(
+        _joined_tables([*parts.values()], [index[id(table)] for table in tables], shift, period)
+    )
 
 
-def _joined(
+def _joined_tables(
     parts: Sequence[_Table], part_of: Sequence[int], shift: FloatArray, period: FloatArray
 ) -> PackedTables:
     """Lay out different tables, and of each flank the one it uses: processors keep the rows of few tables."""

@@ -329,7 +329,7 @@ def housing_radiation(
 
 
 def _resolved_parts(
-    parted: Sequence[Octave],
+    octaves: Sequence[Octave],
     model: RadiationModel,
     air: Air,
     modes: FloatArray,
@@ -339,11 +339,11 @@ def _resolved_parts(
     workers: Workers,
 ) -> tuple[list[_Knots], WorkCost]:
     """Return the knots of each octave, and their cost."""
-    kind, reference = WORK.format(model.model_name), radiation_cost(parted, model, air)
+    kind, reference = WORK.format(model.model_name), radiation_cost(octaves, model, air)
     expected(on_this_host(kind, reference, cache))
-    radiators = _Radiators(model, tuple(octave.hull for octave in parted), air)
-    ranges = [(octave.first, octave.last) for octave in parted]
-    knot_seconds = [_knot_cost(octave, model, air)[0].seconds for octave in parted]
+    radiators = _Radiators(model, tuple(octave.hull for octave in octaves), air)
+    ranges = [(octave.first, octave.last) for octave in octaves]
+    knot_seconds = [_knot_cost(octave, model, air)[0].seconds for octave in octaves]
     computed: list[float] = []
 
     def resistances(points: Points) -> Iterator[ComplexArray]:

@@ -97,7 +97,7 @@ class Sensitivity:
         return abs(self.for_one_db_less) <= self.linear_range
 
 
-def _ranked(rows: Iterable[Sensitivity]) -> tuple[Sensitivity, ...]:
+def _ranked_sensitivities(rows: Iterable[Sensitivity]) -> tuple[Sensitivity, ...]:
     """Return sensitivities by the change of a step, the largest first."""
     return tuple(sorted(rows, key=lambda row: -abs(row.change)))
 
@@ -169,4 +169,4 @@ def sound_sensitivities(
     figures = (DesignFigure(name, "", 1.0, STEPS.get(name, STEP)) for name in known)
     by_name = {figure.name: figure for figure in (*figures, *flanks)}
     rows, omitted = run_variants("sensitivities", by_name, compute, (DynamicsError,), progress)
-    return _ranked(rows.values()), omitted
+    return _ranked_sensitivities(rows.values()), omitted

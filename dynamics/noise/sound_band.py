@@ -144,13 +144,13 @@ def _bearing_stiffness(model: SoundModel, factor: float) -> SoundModel:
         return model
     stiffer = replace(
         scene,
-        bushings=tuple(_stiffened(part, factor) for part in scene.bushings),
-        planet_bearings=tuple(_stiffened(part, factor) for part in scene.planet_bearings),
+        bushings=tuple(_stiffened_bearing(part, factor) for part in scene.bushings),
+        planet_bearings=tuple(_stiffened_bearing(part, factor) for part in scene.planet_bearings),
     ).with_bearing_laws(lambda law: law.scaled(factor))
     return replace(model, scene=stiffer)
 
 
-def _stiffened(bearing: Bearing, factor: float) -> Bearing:
+def _stiffened_bearing(bearing: Bearing, factor: float) -> Bearing:
     rows = bearing.stiffness
     matrix = None if rows is None else tuple(tuple(factor * value for value in row) for row in rows)
     return replace(
@@ -356,9 +356,9 @@ def sound_band(
     others = {"mode_number": fewer, **(alternatives or {})}
     count, done = 1 + len(others) + 2 * len(ranges) + cases, 0
 
-    def powers(varied: SoundModel) -> tuple[FloatArray, OrderPower]:
+    def powers(model: SoundModel) -> tuple[FloatArray, OrderPower]:
         nonlocal done
-        result = forced_power(varied, speed, orders)
+        result = forced_power(model, speed, orders)
         done += 1
         progress("band", min(done / count, 1.0))
         return result

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from bounds import at_most
 from dynamics.checks import integer, one_of
 from dynamics.errors import InputError
-from dynamics.orders.plain_filters import plain_resampled
 from dynamics.results import RunResult
 from dynamics.results.run_result import OVER_TIME
 from dynamics.types import FloatArray, IntArray
@@ -94,13 +94,25 @@ def resampled(values: FloatArray, up: int, down: int, half_length: int) -> Float
     """
     if up == down:
         return np.array(values, dtype=float)
-    try:
-        from scipy.signal import firwin, resample_poly  # noqa: PLC0415 (start-up time)
-    except ModuleNotFoundError:
-        return plain_resampled(values, up, down, half_length, KAISER)
-    steps = max(up, down)
-    taps = firwin(2 * half_length * steps + 1, 1.0 / steps, window=("kaiser", KAISER))
-    return np.asarray(resample_poly(values, up, down, window=taps))  # type: ignore[call-overload]  # its stubs know none
+    taps = _low_pass(max(up, down), half_length)
+    count = -(-taps.size // up)  # taps of a phase
+    weights = np.zeros(count * up)
+    weights[: taps.size] = taps * (up / taps.sum())
+    phases = weights.reshape(count, up)[::-1].T  # the newest sample of a window is its last
+    windows = sliding_window_view(np.concatenate([np.zeros(count), values, np.zeros(count + 1)]), count)
+    result = np.empty(-(-values.size * up // down))
+    for first in range(min(up, result.size)):  # samples `up` apart have one phase
+        newest, phase = divmod(first * down + taps.size // 2, up)
+        samples = result[first::up]
+        samples[:] = windows[newest + 1 :: down][: samples.size] @ phases[phase]
+    return result
+
+
+def _low_pass(steps: int, half_length: int) -> FloatArray:
+    """Return the taps of a low-pass at a `steps`-th of half its rate, `half_length` steps to each side."""
+    place = np.arange(half_length * steps + 1.0) / steps
+    half = np.i0(KAISER * np.sqrt(1.0 - (place / half_length) ** 2)) * np.sinc(place)
+    return np.concatenate([half[:0:-1], half])
 
 
 def interpolated(values: FloatArray, factor: int, half_length: int) -> FloatArray:

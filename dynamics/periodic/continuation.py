@@ -172,7 +172,7 @@ def _continue(
                 status = BranchStatus.STEP_FLOOR
                 break
             continue
-        bifurcations += _passed(problem, scale, trail[-1], arrived, step, len(trail) - 1)
+        bifurcations += _bifurcations_between(problem, scale, trail[-1], arrived, step, len(trail) - 1)
         trail.append(arrived)
         if progress is not None:
             progress(min(max(abs(p.orbit.speed - first) for p in trail) / abs(last - first), 1.0))
@@ -243,7 +243,7 @@ def _step(problem: PeriodicProblem, scale: float, point: _Point, step: float) ->
     return None
 
 
-def _passed(
+def _bifurcations_between(
     problem: PeriodicProblem, scale: float, before: _Point, behind: _Point, step: float, index: int
 ) -> list[_Bifurcation]:
     """Return the bifurcations between two neighboring points."""

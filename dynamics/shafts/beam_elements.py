@@ -98,7 +98,7 @@ def _along(pieces: Sequence[Piece], share: FloatArray) -> _Along:
     return _Along(*(np.array(column) for column in zip(*rows, strict=True)))
 
 
-def _bending(length: FloatArray, at: _Along, inside: _Along) -> tuple[FloatArray, FloatArray]:
+def _bending(length: FloatArray, at: _Along, along: _Along) -> tuple[FloatArray, FloatArray]:
     """Return mass and stiffness (k, 4, 4) in one plane."""
     far = length[:, None] * (1.0 - _SHARE)
     step = length[:, None] * _WEIGHT
@@ -117,7 +117,7 @@ def _bending(length: FloatArray, at: _Along, inside: _Along) -> tuple[FloatArray
     clamped = np.linalg.solve(flexibility, relative)  # force and moment at the right end
     stiffness = relative.transpose(0, 2, 1) @ clamped
     s = length[:, None] * _SHARE
-    shape = _deflection(length, inside) @ clamped[:, None]
+    shape = _deflection(length, along) @ clamped[:, None]
     shape[..., 0, 0] += 1.0  # the rigid motion with the left end
     shape[..., 0, 1] += s
     shape[..., 1, 1] += 1.0
@@ -126,16 +126,16 @@ def _bending(length: FloatArray, at: _Along, inside: _Along) -> tuple[FloatArray
     return mass, 0.5 * (stiffness + stiffness.transpose(0, 2, 1))
 
 
-def _deflection(length: FloatArray, inside: _Along) -> FloatArray:
+def _deflection(length: FloatArray, along: _Along) -> FloatArray:
     """Return deflection and rotation at the points per force and moment at the right end, (k, n, 2, 2)."""
     s = length[:, None, None] * _SHARE[:, None]
     t, step = s * _SHARE, s * _WEIGHT
     rest, arm = s - t, length[:, None, None] - t
     return _stacked(
-        np.sum(step * (rest * arm / inside.bent + 1.0 / inside.sheared), axis=-1),
-        np.sum(step * rest / inside.bent, axis=-1),
-        np.sum(step * arm / inside.bent, axis=-1),
-        np.sum(step / inside.bent, axis=-1),
+        np.sum(step * (rest * arm / along.bent + 1.0 / along.sheared), axis=-1),
+        np.sum(step * rest / along.bent, axis=-1),
+        np.sum(step * arm / along.bent, axis=-1),
+        np.sum(step / along.bent, axis=-1),
     )
 
 

@@ -194,9 +194,9 @@ def error_by_source(
     }
 
 
-def _step_error(looked: Sequence[_Window], integration: Integration) -> Json:
+def _step_error(windows: Sequence[_Window], integration: Integration) -> Json:
     """Return the error of the time steps by windows; empty if one of them failed."""
-    steps = [window.repeated(window.system, window.finer(integration)) for window in looked]
+    steps = [window.repeated(window.system, window.finer(integration)) for window in windows]
     return _estimate(steps, TIME_STEP_REST, "runs of windows at a tenth of the tolerance")
 
 

@@ -453,10 +453,10 @@ class Statements(ArrayAccess):
             raise Unsupported(str(called))
         return CALLS[called](self, *values)
 
-    def _routine(self, called: Routine, values: Sequence[Any]) -> Any:
+    def _routine(self, routine: Routine, values: Sequence[Any]) -> Any:
         """Call a function of its own: routines are called from several."""
-        function = self.module.function(called, values)
-        kinds = (TYPES.get(hint) for hint in called.arguments)
+        function = self.module.function(routine, values)
+        kinds = (TYPES.get(hint) for hint in routine.arguments)
         passed = [
             value.pointer if isinstance(value, Group) else self.cast(value, kind)
             for value, kind in zip(values, kinds, strict=True)

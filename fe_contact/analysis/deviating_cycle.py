@@ -129,7 +129,7 @@ def cycle_contact(
 
 
 def _solved(
-    contact: CycleContact, predicted: CycleSeconds, allowed: AllowedError
+    contact: CycleContact, seconds: CycleSeconds, tolerance: AllowedError
 ) -> tuple[FloatArray, BoolArray, FloatArray]:
     """Return the transmission error (T, P, L) in m, whether each pitch is solved (T,), and errors in m.
 
@@ -137,7 +137,7 @@ def _solved(
     the quantities.
     """
     pitches, no_errors = np.arange(contact.pitches), np.zeros((1 + QUANTITIES, contact.load.size))
-    envelope = chosen(contact, allowed) if predicted.pays(contact.pitches) else None
+    envelope = chosen(contact, tolerance) if seconds.pays(contact.pitches) else None
     if envelope is None:
         return contact.exact(pitches), pitches >= 0, no_errors
     return envelope.ste, envelope.solved, np.vstack([envelope.drawn_errors.error, envelope.quantity_errors])

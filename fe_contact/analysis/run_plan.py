@@ -118,7 +118,7 @@ def plan_run(
     decision = decide(checked, cache, tried=True)
     checked, choice = decision.checked, decision.mesh
     curves = expected_curves(checked)
-    others = [_planned(checked, name, curves, cache) for name in LEVELS if name != choice.level]
+    others = [_planned_level(checked, name, curves, cache) for name in LEVELS if name != choice.level]
     needed = () if decision.wished is None else (_decision(decision.wished, curves, cache),)
     passes = tuple(_decision(later, curves, cache) for later in decision.passes)
     # the same mesh may be in several groups; the last prediction is kept
@@ -193,7 +193,9 @@ def _decision(choice: Decision, curves: ExpectedCurves | None, cache: Path | Non
     return PlannedLevel(checked.model_name, option.level, option.slices, choice.predicted(cache), error)
 
 
-def _planned(checked: Checked, level: str, curves: ExpectedCurves | None, cache: Path | None) -> PlannedLevel:
+def _planned_level(
+    checked: Checked, level: str, curves: ExpectedCurves | None, cache: Path | None
+) -> PlannedLevel:
     options = replace(checked.request.options, level=None)
     plan = replace(checked, request=replace(checked.request, options=options)).plan(level)
     cost, request = checked.predicted(plan, cache), checked.request

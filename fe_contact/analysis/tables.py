@@ -88,7 +88,7 @@ def solve_table(
     run.on_plan(prediction.stages)
     announce(run.progress, "compliance", prediction.cpu_seconds, _subject(checked, prediction))
     report = partial(run.progress, "compliance")
-    nominal = condensed_bodies(checked, plan, clock, run, known=known, report=report, coarse_next=full)
+    nominal = condensed_bodies(checked, plan, clock, run, contact=known, report=report, coarse_next=full)
     points = operating_points(request.scene, request.choices, nominal, run.workers)
     with clock.stage("contact"):
         progress = by_cost(partial(run.progress, "contact"), prediction.parts["contact"])
@@ -154,7 +154,7 @@ def condensed_bodies(
     run: Run,
     *,
     coarse: bool = False,
-    known: PairContact | None = None,
+    contact: PairContact | None = None,
     report: Report = unreported,
     coarse_next: bool = False,
 ) -> PairContact:
@@ -166,12 +166,12 @@ def condensed_bodies(
     report(0.0)
     with clock.stage("error estimate" if coarse else "compliance"):
         changes = request.center_distance_change
-        nominal = known or _condensed(request.pair, plan, coarse, changes, run, report, coarse_next)
+        nominal = contact or _condensed_contact(request.pair, plan, coarse, changes, run, report, coarse_next)
     report(1.0)
     return nominal
 
 
-def _condensed(
+def _condensed_contact(
     pair: ParallelAxes,
     plan: Plan,
     coarse: bool,

@@ -85,7 +85,7 @@ def deformed_solids(
         members = np.arange(start, start + len(load))
         start += len(load)
         loaded = _Loaded(np.array(list(load)), members, columns[:, members])
-        deformed.append(_deformed(gear.teeth, solved, elements, loaded, unloaded, mirror, left))
+        deformed.append(_deformed_gear(gear.teeth, solved, elements, loaded, unloaded, mirror, left))
     return tuple(deformed)
 
 
@@ -131,7 +131,7 @@ def _fields(gear: CondensedGear, loaded: _Loaded, view: IntArray) -> tuple[Float
     return gear.condensation.expand(np.concatenate([flank, cuts])), forces
 
 
-def _deformed(
+def _deformed_gear(
     teeth: int,
     gear: CondensedGear,
     elements: SectorElements,

@@ -42,7 +42,7 @@ def deformed_sections(
     ring = condensed_ring(gear, mesh, hypothesis)
     lame = hypothesis.lame_parameters(gear.material)
     out_of_plane = lame[0] if hypothesis is PlaneHypothesis.PLANE_STRAIN else 0.0
-    return tuple(_deformed(ring, _field(ring, load), lame, out_of_plane) for load in loads)
+    return tuple(_deformed_gear(ring, _field(ring, load), lame, out_of_plane) for load in loads)
 
 
 def _field(ring: Ring, load: Mapping[int, FloatArray]) -> Field:
@@ -55,7 +55,7 @@ def _field(ring: Ring, load: Mapping[int, FloatArray]) -> Field:
     )
 
 
-def _deformed(ring: Ring, field: Field, lame: tuple[float, float], out_of_plane: float) -> DeformedGear:
+def _deformed_gear(ring: Ring, field: Field, lame: tuple[float, float], out_of_plane: float) -> DeformedGear:
     mesh = ring.mesh
     unbalanced = field.load - field.internal
     unbalanced[mesh.bore_nodes] = 0.0  # the bore is held

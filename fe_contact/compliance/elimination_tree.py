@@ -124,7 +124,7 @@ def bisected_tree(
     builder = _Builder(nodes, freedoms, position, retained, leaf)
     draft = builder.build(np.arange(len(nodes)))
     builder.order[retained] = builder.done + np.arange(len(retained))
-    return EliminationTree(_sorted(draft, builder.order), builder.order)
+    return EliminationTree(_sorted_front(draft, builder.order), builder.order)
 
 
 @dataclass(frozen=True)
@@ -138,9 +138,9 @@ class _Draft:
     count: IntArray
 
 
-def _sorted(draft: _Draft, order: IntArray) -> Front:
+def _sorted_front(draft: _Draft, order: IntArray) -> Front:
     border = draft.border[np.argsort(order[draft.border])]
-    return Front(draft.elements, tuple(_sorted(c, order) for c in draft.children), draft.inner, border)
+    return Front(draft.elements, tuple(_sorted_front(c, order) for c in draft.children), draft.inner, border)
 
 
 class _Builder:

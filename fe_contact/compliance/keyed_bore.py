@@ -80,15 +80,15 @@ def key_update(gear: Toothing, solved: CondensedGear, twist: float, span: int) -
     matrix = np.zeros((rows.shape[1], rows.shape[1]))
     matrix[0, 1:] = matrix[1:, 0] = key_turn
     matrix[1:, 1:] = -(np.eye(len(coupled)) + 0.5 * (coupled + coupled.T))
-    return _compressed(rows, matrix)
+    return _compressed_update(rows, matrix)
 
 
-def _unit_motion(solved: CondensedGear, distances: IntArray) -> FloatArray:
+def _unit_motion(gear: CondensedGear, distances: IntArray) -> FloatArray:
     """Return the displacements of flank and bore of the sectors `distances` under unit forces on bore 0.
 
     (m, nf + p, p): flank, bore between the cuts, bore on the left cut; p loads on the latter two.
     """
-    clamped, sector, left = solved.condensed, solved.sector, solved.ring.bore
+    clamped, sector, left = gear.condensed, gear.sector, gear.ring.bore
     inner = len(sector.key_bore)
     both = np.concatenate([left[distances], left[distances - 1]], axis=1)
     inside = clamped.transmitted.T @ both
@@ -177,7 +177,7 @@ def _modes(points: _KeyPoints, count: int) -> tuple[IntArray, IntArray, FloatArr
     return used // count, used % count, vectors[:, significant] * np.sqrt(values[significant])
 
 
-def _compressed(rows: FloatArray, matrix: FloatArray) -> _KeyUpdate:
+def _compressed_update(rows: FloatArray, matrix: FloatArray) -> _KeyUpdate:
     """Return Z' H^-1 Z with as few rows as it has directions."""
     teeth, _, flank = rows.shape
     flat = rows.transpose(1, 0, 2).reshape(rows.shape[1], -1)

@@ -83,7 +83,7 @@ def condense(
 
     def eliminate(front: Front, blocks: FrontBlocks) -> None:
         nonlocal done
-        factors.append(_eliminated(front, blocks))
+        factors.append(_front_factor(front, blocks))
         done += front.operations
         report(done / total)
 
@@ -136,7 +136,7 @@ def _gather(front: Front, blocks: FrontBlocks, updates: list[FloatArray], work: 
         add_elements(*blocks, stiffness.matrices, stiffness.of_element[front.elements], positions, count)
 
 
-def _eliminated(front: Front, blocks: FrontBlocks) -> _FrontFactor:
+def _front_factor(front: Front, blocks: FrontBlocks) -> _FrontFactor:
     """Factorise the inner freedoms of a front in place; the update is then in the block `rest`."""
     inner, border = len(front.inner), len(front.border)
     # LAPACK leaves the upper triangle as it was: rubbish that every later call must be told to ignore.

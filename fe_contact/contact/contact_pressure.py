@@ -29,7 +29,7 @@ def contact_pressure(problem: ContactProblem, force: FloatArray) -> tuple[FloatA
     gap, infinite = candidates.gap_at(loaded), np.full(loaded[0].size, np.inf)
     line_load = np.moveaxis(force, 1, 2)[loaded] / candidates.width[loaded][:, None]
     at_edge = (gap.low >= 0.0) | (gap.high <= 0.0)
-    endless = _unchamfered(gap)._replace(low=-infinite, high=infinite)
+    endless = _unchamfered_gap(gap)._replace(low=-infinite, high=infinite)
     endless = endless._replace(slope=np.where(at_edge, 0.0, endless.slope))
     half = _strips(gap_table(endless), line_load, problem.modulus)
     chamfer = np.where(gap.jump >= _EDGE, np.abs(gap.offset), np.inf).min(axis=-1, initial=np.inf)
@@ -43,7 +43,7 @@ def contact_pressure(problem: ContactProblem, force: FloatArray) -> tuple[FloatA
     return pressure, edge
 
 
-def _unchamfered(about: Gap) -> Gap:
+def _unchamfered_gap(about: Gap) -> Gap:
     """Return the gaps as if flanks went on over their chamfers.
 
     Where the touching point is an edge, the gap has the slope and curvature to the left of it. There is

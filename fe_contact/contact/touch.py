@@ -90,7 +90,7 @@ def modified_touch(
     """
     moving = tuple(term for term in gaps if term.along_profile)
     steady = tuple(term for term in gaps if not term.along_profile)
-    modified = _shifted(pair, touch, face, moving, teeth) if moving or teeth else touch
+    modified = _shifted_touch(pair, touch, face, moving, teeth) if moving or teeth else touch
     if not steady:
         return modified
     roll_2 = pair.mating_roll_length(touch.roll_1)
@@ -98,7 +98,7 @@ def modified_touch(
     return replace(modified, gap=modified.gap + removed * modified.lag)
 
 
-def _shifted(
+def _shifted_touch(
     pair: ParallelAxes,
     touch: Touch,
     face: FloatArray,
@@ -169,7 +169,7 @@ def _touching(flanks: _Flanks) -> _Touching:
     arrays: _Arrays = (shift, gap, zero, zero.copy(), *about)
     if sharp.any():
         every = tuple(np.zeros((sharp.size, *values.shape[1:])) for values in arrays)
-        arrays = _replaced(every, np.flatnonzero(~sharp), arrays)
+        arrays = _replaced_arrays(every, np.flatnonzero(~sharp), arrays)
     uncertain = np.flatnonzero(rough | wavy)
     for part in np.array_split(uncertain, uncertain.size // _AT_ONCE + 1):
         flanks_of_part, searched = flanks.rows(part), np.flatnonzero(rough[part])
@@ -178,7 +178,7 @@ def _touching(flanks: _Flanks) -> _Touching:
             position[searched], minimum[searched] = flanks_of_part.rows(searched).minimum(position[searched])
         off, error, local_gap = flanks_of_part.loaded_gap(position, wavy=wavy[part])
         local_gap = with_breaks(local_gap, about.offset.shape[1])
-        arrays = _replaced(arrays, part, (position, minimum, off, error, *local_gap))
+        arrays = _replaced_arrays(arrays, part, (position, minimum, off, error, *local_gap))
     shift, gap, off, error, *local_gaps = arrays
     return _Touching(shift, gap, off, error, Gap(*local_gaps))
 
@@ -204,7 +204,7 @@ def _by_parabolas(flanks: _Flanks) -> tuple[FloatArray, FloatArray, BoolArray, G
         leads_down = (next_gap <= gap_at_shift[of]) | (np.abs(step) < 1e-3 * flanks.step)
         step = np.where(leads_down, step, 0.0)
         minimum, local_gap = shifted_gap(about, step)
-        arrays = _replaced(arrays, of, tuple(local_gap))
+        arrays = _replaced_arrays(arrays, of, tuple(local_gap))
         step_error = np.abs(gap_at_shift[of] + minimum - next_gap)
         poor[of] = ~leads_down | (step_error > _STEP_ERROR * flanks.allowed)
         shift[of] = x + step
@@ -212,7 +212,7 @@ def _by_parabolas(flanks: _Flanks) -> tuple[FloatArray, FloatArray, BoolArray, G
     return shift, gap_at_shift, poor, Gap(*arrays)
 
 
-def _replaced(arrays: _Arrays, of: IntArray, part: _Arrays) -> _Arrays:
+def _replaced_arrays(arrays: _Arrays, of: IntArray, part: _Arrays) -> _Arrays:
     """Return arrays in which the entries `of` have the values of `part`; all entries if they are empty."""
     if not arrays or len(of) == len(arrays[0]):
         return part
@@ -408,7 +408,7 @@ class _Flanks:
         even_gap = strip.gap._replace(low=gap.low[inside], high=gap.high[inside])
         even_gap = with_breaks(even_gap, gap.offset.shape[1])
         off[inside], error[inside] = strip.center, strip.approach_error
-        return off, error, Gap(*_replaced(tuple(gap), inside, tuple(even_gap)))
+        return off, error, Gap(*_replaced_arrays(tuple(gap), inside, tuple(even_gap)))
 
     def closed(self, x: FloatArray, gap: FloatArray) -> dict[str, FloatArray]:
         """Return gap, lag, slopes and turns of a `Touch` at x.

@@ -67,7 +67,7 @@ class FlankGrid:
 
     def _refuse_invented(self) -> None:
         """Refuse nodes between which the surface invents material."""
-        beyond = _beyond(self.nodes, np.array(self.roll_length), np.array(self.face_position))
+        beyond = _cell_excess(self.nodes, np.array(self.roll_length), np.array(self.face_position))
         i, j = np.unravel_index(beyond.argmax(), beyond.shape)
         if beyond[i, j] > LARGEST_INVENTION:
             value = f"{1e6 * beyond[i, j]:.3g} µm beyond the nodes around it"
@@ -192,7 +192,7 @@ def _lesser(first: FloatArray, second: FloatArray) -> FloatArray:
     return np.where(first * second > 0.0, np.copysign(np.minimum(np.abs(first), np.abs(second)), first), 0.0)
 
 
-def _beyond(nodes: FloatArray, roll: FloatArray, face: FloatArray) -> FloatArray:
+def _cell_excess(nodes: FloatArray, roll: FloatArray, face: FloatArray) -> FloatArray:
     """Return the distance of the surface from its nodes in each cell, m, less the height by curvature."""
     at = np.linspace(0.0, 1.0, 9)
     weights = [_hermite_weights(at, axis) for axis in (roll, face)]

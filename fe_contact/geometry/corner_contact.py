@@ -100,11 +100,11 @@ def corner_contact(pair: ParallelAxes, side: Side, overshoot: ArrayLike) -> Corn
     if side == "exit":
         edge = pair.pinion.tip_roll_length
         touch = _touch(pair, pair.pinion, pair.wheel, edge, edge + beyond)
-        return _masked(touch, pair.wheel, touch.lever_arm_ratio, unity)
+        return _masked_contact(touch, pair.wheel, touch.lever_arm_ratio, unity)
     if side == "approach":
         edge = pair.wheel.tip_roll_length
         touch = _touch_by_tip_gear(pair, pair.wheel, pair.pinion, edge, edge + pair.wheel.sign * beyond)
-        return _masked(touch, pair.pinion, unity, touch.lever_arm_ratio)
+        return _masked_contact(touch, pair.pinion, unity, touch.lever_arm_ratio)
     raise InputError("side", side, 'one of "approach" and "exit"')
 
 
@@ -171,7 +171,9 @@ def _touch_by_tip_gear(
     return touch._replace(gap=lag)
 
 
-def _masked(touch: _Touch, flank: Toothing, pinion_arm: FloatArray, wheel_arm: FloatArray) -> CornerContact:
+def _masked_contact(
+    touch: _Touch, flank: Toothing, pinion_arm: FloatArray, wheel_arm: FloatArray
+) -> CornerContact:
     """Blank points that lie off the flank's involute or cannot drive."""
     slack = 1e-9 * flank.normal_module
     roll = touch.flank_roll_length

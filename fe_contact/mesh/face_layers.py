@@ -38,7 +38,7 @@ def layers_to_mid_face(width: float, count: int, growth: float = 1.0, breaks: Se
     """
     if len(breaks):
         below = [-z for z in reversed(breaks)]
-        layers = _broken(width, 0.5 * width / count, 1, growth, [*below, 0.0, *breaks])
+        layers = _broken_layers(width, 0.5 * width / count, 1, growth, [*below, 0.0, *breaks])
         middle = len(layers.kind) // 2
         return Layers(layers.ends[middle:], layers.kind[middle:], layers.thickness)
     kind = np.arange(count)[::-1]
@@ -59,7 +59,7 @@ def layers_across(
     group, about as thick as without breaks; so there may be more than `count` layers.
     """
     if len(breaks):
-        return _broken(width, width * group / count, group, growth, breaks)
+        return _broken_layers(width, width * group / count, group, growth, breaks)
     number = np.arange(count // group)
     top = max(1, min(RISE, (len(number) - 1) // 2))
     kind = np.repeat(np.minimum(np.minimum(number, number[::-1]), top), group)
@@ -70,7 +70,7 @@ def layers_across(
     return Layers(0.5 * (ends - ends[::-1]), kind, thickness)  # symmetric to the last bit
 
 
-def _broken(width: float, usual: float, group: int, growth: float, breaks: Sequence[float]) -> Layers:
+def _broken_layers(width: float, usual: float, group: int, growth: float, breaks: Sequence[float]) -> Layers:
     """Divide each part of the face between breaks; `usual` is the thickness of a group without breaks."""
     corners = [-0.5 * width, *breaks, 0.5 * width]
     ends, thickness = [corners[:1]], []

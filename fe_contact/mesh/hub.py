@@ -125,7 +125,7 @@ def joined_hub(
     mesh = meshes[0]
     parts = [np.full(len(mesh.triangles), thickness[0])]
     for ring, thick in zip(meshes[1:], thickness[1:], strict=True):
-        mesh = _joined(mesh, ring)
+        mesh = _joined_mesh(mesh, ring)
         parts.append(np.full(len(ring.triangles), thick))
     around, inner = mesh.boundary[::sign]
     names = {p.name for p in toothed.pieces}
@@ -144,7 +144,7 @@ def joined_hub(
     )
 
 
-def _joined(outside: QuadraticMesh, inside: QuadraticMesh) -> QuadraticMesh:
+def _joined_mesh(outside: QuadraticMesh, inside: QuadraticMesh) -> QuadraticMesh:
     """Join two meshes along the inner boundary of `outside` and the outer boundary of `inside`.
 
     The two boundaries have the same nodes.

@@ -52,12 +52,15 @@ def triangulate(
     growth = [region.growth for region in regions]
     answer = ask_gmsh({"regions": loops, "growth": growth}, seconds, command)
     try:
-        return [_received(region, mesh) for region, mesh in zip(regions, answer["regions"], strict=True)]
+        return [
+            _received_triangulation(region, mesh)
+            for region, mesh in zip(regions, answer["regions"], strict=True)
+        ]
     except (KeyError, ValueError, TypeError) as error:
         raise MeshError("gmsh worker: unusable answer") from error
 
 
-def _received(region: Region, mesh: dict[str, Any]) -> Triangulation:
+def _received_triangulation(region: Region, mesh: dict[str, Any]) -> Triangulation:
     """Convert one answer, with the boundary points as they were given and triangles counter-clockwise."""
     points = np.array(mesh["points"], dtype=float).reshape(-1, 2) * region.scale
     boundary = np.concatenate(region.loops)

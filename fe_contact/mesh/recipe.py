@@ -67,7 +67,7 @@ class MeshRecipe:
         Teeth and margin stay, so that recipes of one family differ by their discretization only.
         """
         positive("factor", factor)
-        return _refined(self, factor)
+        return _refined_recipe(self, factor)
 
     def content(self) -> Json:
         """Return all fields as plain JSON."""
@@ -75,7 +75,7 @@ class MeshRecipe:
 
 
 @lru_cache(maxsize=64)
-def _refined(recipe: MeshRecipe, factor: float) -> MeshRecipe:
+def _refined_recipe(recipe: MeshRecipe, factor: float) -> MeshRecipe:
     """Return `MeshRecipe.refined`; a plan reads the same few recipes dozens of times."""
     return replace(
         recipe,

@@ -86,16 +86,16 @@ def choose(
         designs = start_values, problem.values(runs[best].coordinates)
         seconds = len(designs) * study.decision.checked.predicted(study.decision.plan, run.cache).cpu_seconds
         shared = problem, study, run.cache
-        start, optimum = divided(to_the_end(run.workers, cancel), _confirmed, shared, designs, seconds)
+        start, optimum = divided(to_the_end(run.workers, cancel), _confirmed_design, shared, designs, seconds)
     choice = Choice(problem, start, optimum, runs, best)
     for _ in range(ROUNDS):
         if choice.optimum.violation <= SLACK or choice.run.assessed.violation > SLACK or cancel():
             break
-        choice = _refined(choice, request, study, clock, run, cancel)
+        choice = _refined_choice(choice, request, study, clock, run, cancel)
     return choice
 
 
-def _confirmed(
+def _confirmed_design(
     shared: tuple[DesignProblem, DesignStudy, Path | None], values: dict[str, float]
 ) -> ConfirmedDesign:
     """Analyze a design in full: one task."""
@@ -103,7 +103,7 @@ def _confirmed(
     return confirm(problem, values, study, cache)
 
 
-def _refined(
+def _refined_choice(
     choice: Choice,
     request: OptimizationRequest,
     study: DesignStudy,

@@ -177,16 +177,16 @@ class DesignProblem(SearchProblem):
         """Return the objective over the scale."""
         return objective / self.scale
 
-    def objective_of(self, evaluated: Evaluation, evaluator: Evaluator | None = None) -> float:
+    def objective_of(self, evaluation: Evaluation, evaluator: Evaluator | None = None) -> float:
         """Return the objective in m of a design that an evaluator, by default that of the problem, solved."""
         solver = evaluator or self.evaluator
-        counted = self.objective.counted(evaluated.ste, solver.position)
+        counted = self.objective.counted(evaluation.ste, solver.position)
         return self.objective.of(solver.nodes.weight @ np.ptp(counted, axis=1))
 
-    def _assessed(self, evaluated: Evaluation) -> tuple[float, float]:
+    def _assessed(self, evaluation: Evaluation) -> tuple[float, float]:
         """Return objective in m and violation of an evaluated design."""
-        objective = self.objective_of(evaluated)
-        return objective, evaluated.violation(self.limits) if math.isfinite(objective) else math.inf
+        objective = self.objective_of(evaluation)
+        return objective, evaluation.violation(self.limits) if math.isfinite(objective) else math.inf
 
 
 def _linearized_nodes(

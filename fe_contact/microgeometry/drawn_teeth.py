@@ -197,11 +197,6 @@ class DrawnTeeth:
             return replace(self, by_axis={**self.by_axis, name: amount})
         return replace(self, by_tooth={**self.by_tooth, name: amount})
 
-    def subset(self, rows: slice) -> DrawnTeeth:
-        """Return some of the gears."""
-        by_axis = {name: values[rows] for name, values in self.by_axis.items()}
-        return replace(self, by_axis=by_axis, by_tooth={n: v[rows] for n, v in self.by_tooth.items()})
-
     def fields(self, index: int) -> dict[str, Any]:
         """Return the fields of one of the gears."""
         vectors = (complex(self.by_axis[name][index]) if name in self.by_axis else 0j for name in OF_AXIS)

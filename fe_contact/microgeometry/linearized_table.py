@@ -83,10 +83,10 @@ def tabled_loads(
         for group, (pair, problem, solution) in zip(evaluator.groups, solved, strict=True):
             skew = float(evaluator.misalignments[node, group[0]])  # one misalignment for all loads of a group
             table = table_of_solution(pair, problem, solution, evaluator.position, skew)
-            yield _tabled(pair, problem, solution, table, names, limits, evaluator.roots)
+            yield _tabled_loads(pair, problem, solution, table, names, limits, evaluator.roots)
 
 
-def _tabled(
+def _tabled_loads(
     pair: ParallelAxes,
     problem: ContactProblem,
     solution: ContactSolution,

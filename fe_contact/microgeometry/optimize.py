@@ -43,7 +43,7 @@ def search_all(
     ]
     begins = list(enumerate([first, *others]))
     alone = search.starts == 1 or isinstance(run.workers, InProcess)
-    search_starts = _locally if alone else _remotely
+    search_starts = _local_runs if alone else _remote_runs
     runs = search_starts(problem, search, begins, run, cancel)
     if runs:
         return tuple(runs)
@@ -51,7 +51,7 @@ def search_all(
     return (SearchRun(first, assessed, evaluations=1, ended=Ended.CANCELLED, cpu_seconds=0.0),)
 
 
-def _locally(
+def _local_runs(
     problem: SearchProblem,
     search: Search,
     begins: list[tuple[int, FloatArray]],
@@ -70,7 +70,7 @@ def _locally(
     return runs
 
 
-def _remotely(
+def _remote_runs(
     problem: SearchProblem,
     search: Search,
     begins: list[tuple[int, FloatArray]],

@@ -215,21 +215,21 @@ def _share_error(beyond: BoolArray, confidence: float) -> FloatArray:
 
 
 def mesh_order_above(
-    limit: OrderLimit, drawn: DrawnPairs, nominal: FloatArray, confidence: float
+    limit: OrderLimit, pairs: DrawnPairs, nominal: FloatArray, confidence: float
 ) -> PairsAbove:
     """Count the pairs above a limit of a mesh order and look for the cause.
 
     `nominal` (P, L) is the curve as designed, m.
     """
-    designed = order_amplitude(nominal[None], limit.order, drawn.period)[0]
-    solved = order_amplitude(drawn.ste, limit.order, drawn.period)
-    modeled = drawn.model.amplitude(drawn.deviation, limit.order, drawn.period)
+    designed = order_amplitude(nominal[None], limit.order, pairs.period)[0]
+    solved = order_amplitude(pairs.ste, limit.order, pairs.period)
+    modeled = pairs.model.amplitude(pairs.deviation, limit.order, pairs.period)
 
     def causes(load: int) -> Causes:
         share = float((modeled[:, load] > limit.amplitude).mean())
-        return Causes(*_indices(limit, drawn, load), share, _tightened(limit, drawn, load))
+        return Causes(*_indices(limit, pairs, load), share, _tightened(limit, pairs, load))
 
-    return ModeledPairs(drawn.names, designed, solved, modeled, drawn.first_unknown).above(
+    return ModeledPairs(pairs.names, designed, solved, modeled, pairs.first_unknown).above(
         limit, confidence, causes
     )
 
@@ -256,34 +256,34 @@ def _shares(
     return above.mean(axis=0), low, high
 
 
-def _level(limit: OrderLimit, drawn: DrawnPairs, load: int) -> Callable[[FloatArray], FloatArray]:
+def _level(limit: OrderLimit, pairs: DrawnPairs, load: int) -> Callable[[FloatArray], FloatArray]:
     """Return the level of the order in dB by the deviations (d, n), re the limit."""
-    model = drawn.model.at_load(load)
+    model = pairs.model.at_load(load)
 
     def level(deviation: FloatArray) -> FloatArray:
-        amplitude = model.amplitude(deviation.T, limit.order, drawn.period)[:, 0]
+        amplitude = model.amplitude(deviation.T, limit.order, pairs.period)[:, 0]
         return np.asarray(20.0 * np.log10(np.maximum(amplitude, 1e-15) / limit.amplitude))
 
     return level
 
 
-def _indices(limit: OrderLimit, drawn: DrawnPairs, load: int) -> tuple[FloatArray, FloatArray]:
+def _indices(limit: OrderLimit, pairs: DrawnPairs, load: int) -> tuple[FloatArray, FloatArray]:
     """Return the first-order and total Sobol' indices of the level, (d,) each."""
     from scipy.stats import sobol_indices  # noqa: PLC0415 (start-up time)
 
-    level = _level(limit, drawn, load)
+    level = _level(limit, pairs, load)
     indices = sobol_indices(
-        func=lambda deviation: level(deviation)[None], n=BASE_PAIRS, dists=list(drawn.of_pair), rng=drawn.seed
+        func=lambda deviation: level(deviation)[None], n=BASE_PAIRS, dists=list(pairs.of_pair), rng=pairs.seed
     )
     return np.asarray(indices.first_order).reshape(-1), np.asarray(indices.total_order).reshape(-1)
 
 
-def _tightened(limit: OrderLimit, drawn: DrawnPairs, load: int) -> FloatArray:
+def _tightened(limit: OrderLimit, pairs: DrawnPairs, load: int) -> FloatArray:
     """Return the share above by the model with each tolerance tightened by a class, (d,)."""
-    level = _level(limit, drawn, load)
+    level = _level(limit, pairs, load)
     shares = []
-    for k in range(drawn.deviation.shape[1]):
-        narrow = drawn.deviation.copy()
+    for k in range(pairs.deviation.shape[1]):
+        narrow = pairs.deviation.copy()
         narrow[:, k] *= TIGHTENED
         shares.append(float(np.mean(level(narrow.T) > 0.0)))
     return np.array(shares)

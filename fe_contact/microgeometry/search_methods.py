@@ -137,13 +137,13 @@ class SequentialLinearProgramming:
         self, merit: CountedMerit, rough: CountedMerit, start: FloatArray, seed: np.random.SeedSequence
     ) -> None:
         """Search by both merits; the sequence and the restarts are random."""
-        walks = [_begun(merit, _Walk(start))]
+        walks = [_first_walk(merit, _Walk(start))]
         for point in _screened(rough, self.sample, self.trials, start.size, seed):
-            walks.append(_begun(merit, _Walk(point)))
+            walks.append(_first_walk(merit, _Walk(point)))
         if len(walks) > 1:
             walks = list(_following_walks(merit, walks, TRIED))
         best = min(walks, key=lambda walk: walk.value)
-        _try_neighbors(merit, _followed(merit, best), seed)
+        _try_neighbors(merit, _completed_walk(merit, best), seed)
 
     def to_json(self) -> Json:
         """Return plain JSON."""
@@ -234,26 +234,26 @@ class _Walk:
     """Merit linearized there; None before the walk begins."""
 
 
-def _begun(merit: CountedMerit, walk: _Walk) -> _Walk:
+def _first_walk(merit: CountedMerit, walk: _Walk) -> _Walk:
     """Assess the design that a walk starts from."""
     value, linear = merit.linearize(walk.position)
     return replace(walk, value=value, linear=linear)
 
 
-def _followed(merit: CountedMerit, walk: _Walk, maximum: int | None = None) -> _Walk:
+def _completed_walk(merit: CountedMerit, walk: _Walk, maximum: int | None = None) -> _Walk:
     """Begin the walk where it has not begun, and step until converged, at most `maximum` times."""
-    walk = _begun(merit, walk) if walk.linear is None else walk
+    walk = _first_walk(merit, walk) if walk.linear is None else walk
     for _ in range(maximum) if maximum is not None else count():
         if not np.isfinite(walk.value) or walk.region <= SIMPLEX_SIZE:
             break
-        further = _stepped(merit, walk)
+        further = _next_walk(merit, walk)
         if further is None:
             break
         walk = further
     return walk
 
 
-def _stepped(merit: CountedMerit, walk: _Walk) -> _Walk | None:
+def _next_walk(merit: CountedMerit, walk: _Walk) -> _Walk | None:
     """Take the step of the linear program, and adapt the region to its success; None: it promises nothing."""
     assert walk.linear is not None
     low, high = np.maximum(-walk.region, -walk.position), np.minimum(walk.region, 1.0 - walk.position)
@@ -275,7 +275,7 @@ def _following_walks(
 ) -> Iterator[_Walk]:
     """Follow independent walks to their ends, or for `maximum` steps at most, and yield each."""
     if len(walks) < 2 or not merit.divides:
-        yield from (_followed(merit, walk, maximum) for walk in walks)
+        yield from (_completed_walk(merit, walk, maximum) for walk in walks)
         return
     tasks = [(walk, maximum, merit.left + 1) for walk in walks]
     for walk, designs in merit.workers.run(_walked, merit.problem, tasks):
@@ -291,7 +291,7 @@ def _walked(problem: SearchProblem, task: tuple[_Walk, int | None, int]) -> tupl
     walk, maximum, designs = task
     merit = CountedMerit(problem, Budget(designs, never, unreported), designs)
     with suppress(BudgetUsed):
-        walk = _followed(merit, walk, maximum)
+        walk = _completed_walk(merit, walk, maximum)
     return walk, merit.designs
 
 

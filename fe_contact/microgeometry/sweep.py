@@ -138,9 +138,9 @@ class _SweptPair:
         return condense(self.request.pair, self.request.checked, cache)
 
 
-def _swept_design(shared: _SweptPair, design: tuple[tuple[str, float], ...]) -> FloatArray:
+def _swept_design(pair: _SweptPair, design: tuple[tuple[str, float], ...]) -> FloatArray:
     """Return values and errors (2, L, Q) in SI of all quantities at all torques of a design: one task."""
-    request, bodies, values = shared.request, shared.bodies, dict(design)
+    request, bodies, values = pair.request, pair.bodies, dict(design)
     question = request.flanks(values), request.torques, *request.alignment(values)
     table, solved_point = bodies.solve_table(*question)
     curves = np.array(list(_of_curves(table, solved_point.solution.status == Status.CONVERGED)))
@@ -167,9 +167,9 @@ def _of_curves(table: SteDatabase, solved: BoolArray) -> Iterator[FloatArray]:
         yield np.array([[figure.value for figure in figures], [figure.error for figure in figures]])
 
 
-def _on_flanks(solved: SolvedOperatingPoint, every: int = 1) -> FloatArray:
+def _on_flanks(point: SolvedOperatingPoint, every: int = 1) -> FloatArray:
     """Return largest pressure in Pa and face load factor of the cycle (L, 2), of each `every`-th position."""
-    problem, force = solved.problem, solved.solution.force
+    problem, force = point.problem, point.solution.force
     pressure, edge = contact_pressure(problem, force)
     clear = np.where(edge, 0.0, pressure)[::every].max(axis=(0, 2))
     load = over_face(problem, force[::every])

@@ -169,18 +169,18 @@ def _modified(pair: ParallelAxes) -> bool:
     return any(gear.modification.varies_along_profile for gear in (pair.pinion, pair.wheel))
 
 
-def _parts(pair: ParallelAxes, plan: Plan, known: ExpectedCurves) -> dict[str, FloatArray]:
+def _parts(pair: ParallelAxes, plan: Plan, curves: ExpectedCurves) -> dict[str, FloatArray]:
     """Return the errors of mean and peak-to-peak by source, each (2, C) in m, for C curves (loads)."""
     made = plan.discretization
-    mean, ripple = known.mean, known.peak_to_peak
+    mean, ripple = curves.mean, curves.peak_to_peak
     values = np.stack([mean, ripple])
-    by_mesh = np.outer(usual_mesh_error(pair, plan), known.added)
+    by_mesh = np.outer(usual_mesh_error(pair, plan), curves.added)
     nothing = np.zeros_like(by_mesh)
     slices, plane = nothing.copy(), nothing.copy()
     if isinstance(made, FaceDiscretization):
         by_overlap = QUIET_SLICES if _is_quiet(pair, plan) else HELICAL_SLICES
         part = max(by_overlap * pair.overlap_ratio, SPUR_SLICES)
-        slices[1] = part * (SLICES / made.slices) ** SLICE_ORDER * known.added
+        slices[1] = part * (SLICES / made.slices) ** SLICE_ORDER * curves.added
     elif made.corrected:
         plane = np.outer(
             correction_error(pair) * np.array(finite_width_excess(pair)) * (1.0, WIDTH_RIPPLE), mean
@@ -188,8 +188,8 @@ def _parts(pair: ParallelAxes, plan: Plan, known: ExpectedCurves) -> dict[str, F
     elif bias := plane_bias(pair, made):
         plane = bias.largest(mean, ripple)
     # displacements that are not small have errors that are known only with the curves in m
-    error_of = model_errors if known.absolute else in_small_displacements
-    method = error_of(pair, known.force, values, over_face=isinstance(made, FaceDiscretization))
+    error_of = model_errors if curves.absolute else in_small_displacements
+    method = error_of(pair, curves.force, values, over_face=isinstance(made, FaceDiscretization))
     positions = nothing.copy()
     over_allowed = FACE_POSITIONS if isinstance(made, FaceDiscretization) else PLANE_POSITIONS
     positions[1] = over_allowed * plan.nodes.tolerance * np.maximum(ripple, plan.nodes.least_ripple)

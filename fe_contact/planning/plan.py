@@ -100,16 +100,16 @@ class NodeRule:
         neighbors = 4.0 * _REACH / self.start
         return 1.0 if period == 1 else (1.0 + neighbors) * min(self.assessed_pitches, period)
 
-    def for_tolerance(self, allowed: AllowedError) -> NodeRule:
+    def for_tolerance(self, tolerance: AllowedError) -> NodeRule:
         """Return the rule by which positions use their share of a tolerance.
 
         The interpolation error is never larger than without a tolerance, nor smaller than `CLOSEST` of that.
         """
-        wanted = POSITION_SHARE * allowed.relative / self.tolerance
+        wanted = POSITION_SHARE * tolerance.relative / self.tolerance
         factor = min(max(wanted, CLOSEST), 1.0)
         limit = round(self.maximum / math.sqrt(factor))
         # tolerance times least ripple, the floor of the error, does not depend on the limits of the factor
-        minimum = FLOOR_SHARE * allowed.least_scale * wanted / factor
+        minimum = FLOOR_SHARE * tolerance.least_scale * wanted / factor
         return replace(self, tolerance=factor * self.tolerance, maximum=limit, least_ripple=minimum)
 
     def ripple(self, curves: FloatArray) -> FloatArray:
@@ -219,7 +219,9 @@ def make_plan(
     )
 
 
-def patch_rules(pair: ParallelAxes, force: float, made: Discretization) -> tuple[PatchRule, PatchRule, float]:
+def patch_rules(
+    pair: ParallelAxes, force: float, discretization: Discretization
+) -> tuple[PatchRule, PatchRule, float]:
     """Return the load patches, the wider patches, and the factor from their difference to the error.
 
     Patches are as wide as strips under half the largest load, or as wide as the mesh can resolve. The wider
@@ -231,10 +233,10 @@ def patch_rules(pair: ParallelAxes, force: float, made: Discretization) -> tuple
     modulus = contact_modulus(pair.pinion.material, pair.wheel.material)
     edge_load = 4.0 * EDGE_SHARE * force * cosine / (pair.face_width * math.pi * modulus)
     wanted, law = wanted_patch(pair, force), longest_strip(pair, LARGEST_SUPPORT * force) / STRIP_OVER_LAW
-    half, edge = _resolved(made, made.recipes)
+    half, edge = _resolved(discretization, discretization.recipes)
     half, edge = max(half, wanted), max(edge, EDGE_PATCH * pair.pinion.normal_module)
-    coarse, coarse_edge = _resolved(made, made.coarse_recipes)
-    slice_width = pair.face_width / (SLICE_OVER_PATCH * made.slices)
+    coarse, coarse_edge = _resolved(discretization, discretization.coarse_recipes)
+    slice_width = pair.face_width / (SLICE_OVER_PATCH * discretization.slices)
     wider = max(min(coarse, slice_width), WIDER * half if half > wanted else half)
     remaining = 0.0
     if half > wanted:  # the error grows with the square of the width
@@ -243,10 +245,12 @@ def patch_rules(pair: ParallelAxes, force: float, made: Discretization) -> tuple
     return PatchRule(half, edge, edge_load, law), PatchRule(wider, coarse_edge, edge_load, law), remaining
 
 
-def _resolved(made: Discretization, recipes: tuple[MeshRecipe | SectorRecipe, ...]) -> tuple[float, float]:
+def _resolved(
+    discretization: Discretization, recipes: tuple[MeshRecipe | SectorRecipe, ...]
+) -> tuple[float, float]:
     """Return the half-width of a load patch and the length of one at a tip edge that meshes resolve, m."""
-    half = made.resolved * max(recipe.flank_size for recipe in recipes)
-    return half, made.resolved_edge * max(recipe.tip_size for recipe in recipes)
+    half = discretization.resolved * max(recipe.flank_size for recipe in recipes)
+    return half, discretization.resolved_edge * max(recipe.tip_size for recipe in recipes)
 
 
 def wanted_patch(pair: ParallelAxes, force: float) -> float:

@@ -39,7 +39,7 @@ class KernelTable(NamedTuple):
 
 
 @inner(nogil=True, error_model="numpy")
-def _inside(knots: FloatArray, first: int, size: int, period: float, query: float) -> float:
+def _wrapped_query(knots: FloatArray, first: int, size: int, period: float, query: float) -> float:
     """Return the query wrapped into the period, or clipped to the ends of an open axis (period 0)."""
     start = knots[first]
     if period > 0.0 and size > 1:
@@ -181,7 +181,7 @@ def sample_forces(
         offset[0], flags, active = 0, 0, 0
         for axis in range(3):
             turn, query = period if axis == 0 else 0.0, points[axis, i]
-            inside = _inside(knots, first[axis], size[axis], turn, query)
+            inside = _wrapped_query(knots, first[axis], size[axis], turn, query)
             left = _interval(knots, first[axis], size[axis], turn > 0.0, inside)
             _corners(offset, active, left, size[axis])
             if size[axis] > 1:

@@ -104,7 +104,7 @@ class MeshForce:
         cubic = self._cubic(at, lower)
         force, stiffness, position_slope = cubic.sample(d, lifted, top)
         above = top & (d > cubic.deflection_ends[:, 1])
-        validity = _outside(at) + Validity.LIFTED_OFF * lifted + Validity.ABOVE_TABLE * above
+        validity = _outside_flags(at) + Validity.LIFTED_OFF * lifted + Validity.ABOVE_TABLE * above
         return ForceSample(
             force.reshape(shape),
             stiffness.reshape(shape),
@@ -150,7 +150,7 @@ class MeshForce:
             deflection = self.levels.value(at, lower[:, None])[:, 0]
         else:
             deflection = self._cubic(at, lower).deflection(f, lower == len(self.table.level) - 1)
-        validity = _outside(at) + Validity.ABOVE_TABLE * (f > self.table.level[-1])
+        validity = _outside_flags(at) + Validity.ABOVE_TABLE * (f > self.table.level[-1])
         return deflection, validity.astype(np.int8)
 
     def _stencils(self, x: FloatArray, m: FloatArray, c: FloatArray) -> tuple[Stencil, Stencil, Stencil]:
@@ -181,7 +181,7 @@ class MeshForce:
         )
 
 
-def _outside(at: tuple[Stencil, Stencil, Stencil]) -> NDArray[np.int64]:
+def _outside_flags(at: tuple[Stencil, Stencil, Stencil]) -> NDArray[np.int64]:
     """Return the flags of queries outside the axes of alignments, as a sum."""
     _, misalignment, center_distance = at
     flags = Validity.OUTSIDE_MISALIGNMENT * misalignment.outside

@@ -180,7 +180,7 @@ def read(path: Path) -> dict[str, Any]:
 
     Raises `DatabaseError`: the file is missing, no netCDF-4, no STE database, of a newer schema, or damaged.
     """
-    content, attributes = FILES.read(path, lambda attributes: _before(_period(path, attributes)))
+    content, attributes = FILES.read(path, lambda attributes: _checksum_prefix(_period(path, attributes)))
     # files of schema version 1 have no errors of the method: they are 0 in their place among the sources
     if content.get("curve_error", np.empty(0)).shape[0] == len(SOURCES) - 1:
         content["curve_error"] = np.insert(content["curve_error"], AT_NODES.index(METHOD), 0.0, axis=0)
@@ -232,7 +232,7 @@ def _global_attributes(database: SteFields) -> Json:
         "period": np.int64(database.period),
         "facts": json.dumps(database.geometry.to_json()),
         **{name: json.dumps(metadata[name]) for name in (*_JSON_ATTRIBUTES, WARNINGS)},
-        "data_sha256": digest(_stored(database), _before(database.period)),
+        "data_sha256": digest(_stored(database), _checksum_prefix(database.period)),
     }
 
 
@@ -248,7 +248,7 @@ def _period(path: Path, attributes: Json) -> int:
     return int(period)
 
 
-def _before(period: int) -> str:
+def _checksum_prefix(period: int) -> str:
     """Return the text that the checksum begins with: the period if it is not 1."""
     return f"period {period};" if period != 1 else ""
 

@@ -39,8 +39,8 @@ def operating_point(
     """
     return OperatingPoint(
         _normal_force(database, torque, force),
-        _inside("misalignment", misalignment, database.misalignment),
-        _inside("center_distance_change", center_distance_change, database.center_distance_change),
+        _axis_value("misalignment", misalignment, database.misalignment),
+        _axis_value("center_distance_change", center_distance_change, database.center_distance_change),
     )
 
 
@@ -68,6 +68,6 @@ def _normal_force(database: SteFields, torque: float | None, force: float | None
     return value if torque is None else database.geometry.normal_force(value)
 
 
-def _inside(name: str, value: float | None, axis: FloatArray) -> float:
+def _axis_value(name: str, value: float | None, axis: FloatArray) -> float:
     hint = "The table has no such axis; add values to the case." if axis.size == 1 else "Add it to the case."
     return within(name, default_value(value, axis), float(axis[0]), float(axis[-1]), hint)

@@ -40,10 +40,18 @@ Warn: TypeAlias = Callable[..., object]
 """Function that is called as ``warn(event, **facts)``."""
 
 
+class LauncherClosed(OSError):
+    """The launcher is closed: it starts no child."""
+
+    def __init__(self) -> None:
+        super().__init__("the launcher is closed")
+
+
 class Launcher:
     """Launches children that do ``work(descriptor)`` of a module, forked from a warm process where it can.
 
-    One thread calls its methods; any thread may call `hurry` and `close`.
+    One thread at a time calls `launch` and `warm_up`; any thread may call the other methods. A closed
+    launcher starts no process until it is opened.
 
     Parameters
     ----------
@@ -60,47 +68,68 @@ class Launcher:
     def __init__(self, work: str, modules: Iterable[str], log: Path, warn: Warn) -> None:
         self._modules, self._log, self._work, self._warn = sorted(set(modules)), log, work, warn
         self._server: WarmProcess | None = None
-        self._waits = True
+        self._waits, self._closed = True, False
+        self._starting = threading.RLock()  # of whoever starts a process or closes; never while one waits
+
+    def open(self) -> None:
+        """Launch children again after `close`, and let them wait for a warm process again."""
+        with self._starting:
+            self._waits, self._closed = True, False
 
     def warm_up(self) -> None:
-        """Start the warm process, if the system forks and there is none; return at once."""
-        server = self._server
-        if sys.platform != "linux" or (server is not None and (server.usable or server.living)):
-            return
-        if server is not None:
-            server.close()
-        self._server = None
-        try:
-            self._server = WarmProcess(self._work, self._modules, self._log, self._warn)
-        except OSError as error:
-            self._warn("no warm process", reason=str(error))
+        """Start the warm process, if the system forks and there is none; return at once.
+
+        Raises `LauncherClosed`.
+        """
+        with self._starting:
+            self._require_open()
+            server = self._server
+            if sys.platform != "linux" or (server is not None and (server.usable or server.living)):
+                return
+            if server is not None:
+                server.close()
+            self._server = None
+            try:
+                self._server = WarmProcess(self._work, self._modules, self._log, self._warn)
+            except OSError as error:
+                self._warn("no warm process", reason=str(error))
 
     @property
     def warm(self) -> bool:
         """Whether the next child is forked."""
-        return self._server is not None and self._server.ready
+        with self._starting:
+            return self._server is not None and self._server.ready
 
     def launch(self, ends: Ends, warm_within: float = WARM_WITHIN_S) -> ChildProcess:
-        """Fork a child, or start one; OSError: the system does neither."""
+        """Fork a child, or start one; OSError: the system does neither, or the launcher is closed."""
         self.warm_up()
-        if self._server is not None and self._server.usable and not self._server.ready:
-            self._server.await_word(warm_within if self._waits else 0.0)
-        if self._server is not None and self.warm:
-            with contextlib.suppress(ConnectionError):
-                return self._server.fork(ends)
-        return start_child(self._work, ends)
+        server = self._server
+        if server is not None and server.usable and not self.warm:
+            server.await_word(warm_within if self._waits else 0.0)
+        with self._starting:
+            self._require_open()
+            if self._server is not None and self.warm:
+                with contextlib.suppress(ConnectionError):
+                    return self._server.fork(ends)
+            return start_child(self._work, ends)
 
     def hurry(self) -> None:
-        """Let no child wait for a warm process until `close` is called; any thread may call it."""
+        """Let no child wait for a warm process until `open` is called."""
         self._waits = False
         if (server := self._server) is not None:
             server.end_unless_ready()
 
     def close(self) -> None:
-        """End the warm process; its children live on."""
-        if self._server is not None:
-            self._server.close()
-        self._server, self._waits = None, True
+        """End the warm process and start no other; its children live on."""
+        with self._starting:
+            self._closed = True
+            server, self._server = self._server, None
+            if server is not None:
+                server.close()
+
+    def _require_open(self) -> None:
+        if self._closed:
+            raise LauncherClosed
 
 
 @dataclass(frozen=True)
@@ -181,8 +210,9 @@ class WarmProcess:
         return self._ready and self.usable
 
     def await_word(self, seconds: float) -> None:
-        """Wait until the process reports that it is ready, or has ended."""
-        select.select([self._channel], [], [], seconds)
+        """Wait until the process reports that it is ready, or has ended; any thread may end it meanwhile."""
+        with contextlib.suppress(OSError, ValueError):  # its end of the channel is closed
+            select.select([self._channel], [], [], seconds)
 
     def fork(self, ends: Ends) -> _ForkedChild:
         """Fork a child; ConnectionError: the process is gone; OSError: the system forks no more."""
@@ -214,9 +244,9 @@ class WarmProcess:
 
     def close(self) -> None:
         """End the process; its children live on."""
-        self._channel.close()
         self._process.kill()
         self._process.wait()
+        self._channel.close()  # last: who waits for a word has seen the end of the process
 
 
 @dataclass(frozen=True)

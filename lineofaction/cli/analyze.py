@@ -57,7 +57,7 @@ def run_analyze(
     check_netcdf_output(output)
     database = CachedTables.find(case.case)
     if database is None:
-        database = _computed(case, executor)
+        database = _computed_database(case, executor)
     elif not as_json:
         print(_FROM_CACHE, file=sys.stderr)  # noqa: T201 (this is the command line)
     warn([*database.metadata.warnings, *tolerance_warnings(database.metadata.receipt)])
@@ -75,7 +75,7 @@ def run_analyze(
         raise JobFailed(f"{database.failure_message()}. The table in {output} holds NaN there. {remedy}")
 
 
-def _computed(case: CheckedCase, executor: tuple[int, str | None]) -> SteDatabase:
+def _computed_database(case: CheckedCase, executor: tuple[int, str | None]) -> SteDatabase:
     """Compute the table of a case, and keep it for verbs that take it."""
     from lineofaction.cli.computed_tables import computed_table  # noqa: PLC0415 (start-up time)
     from lineofaction.gearbox.executor import open_executor  # noqa: PLC0415 (start-up time)

@@ -27,6 +27,8 @@ _READING, _PLAYED, _BY_EAR = 0.5, 0.06, 2.9
 figures of hearing."""
 _LOADED = 2.5
 """CPU seconds of loading what a study needs, on the reference host."""
+_LOADED_IN_WORK = 1.0
+"""CPU seconds of them once the work has begun: what meshes and contact need."""
 _DRAWN = {".html": 1.7, ".png": 2.1, ".svg": 2.1, ".pdf": 2.1}
 """CPU seconds of drawing a file of a result, on the reference host, by its ending."""
 
@@ -47,7 +49,7 @@ def table_cost(case: Case) -> StudyCost:
     """Return the predicted cost of the table of a case, in all passes that are expected."""
     passes = costs_of(CASES.of(case), cache_home() / "compliance")
     seconds = sum(cost.cpu_seconds for cost in passes)
-    return StudyCost((Work("tables", seconds),), max(cost.memory_bytes for cost in passes))
+    return StudyCost((Work("tables", seconds, stage="analysis"),), max(cost.memory_bytes for cost in passes))
 
 
 def tables_cost(scene: SceneInput, folder: Path) -> StudyCost:
@@ -83,6 +85,11 @@ def announce_cost(
     if None not in costs and total.seconds > ANNOUNCED:
         total += StudyCost(()) if targets is None else _program_cost(targets)
         sys.stderr.write(in_lines(f"loa {verb}: {total.text}", sys.stderr) + "\n")
+
+
+def loading_cost() -> float:
+    """Return the predicted CPU seconds of loading once the work of a study has begun."""
+    return _LOADED_IN_WORK * host_slowness(cache_home() / "compliance")
 
 
 def _program_cost(targets: Sequence[Path]) -> StudyCost:

@@ -181,6 +181,8 @@ def _show(made: StepHousing) -> None:
     if made.fields.keys() & NAMES.keys():
         placed = ", ".join(f"{name} = {made.fields[name]}" for name in NAMES if name in made.fields)
         out.print(f"where the file stands, by its bores or as typed: {placed}", soft_wrap=True)
+    if (size := made.fields.get("element_size_mm")) is not None:
+        out.print(f"element_size_mm = {size}: as fine as the shortest of these seats needs", soft_wrap=True)
     out.print(table(head, rows, "", ("bearing",)))
 
 

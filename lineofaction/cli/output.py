@@ -169,7 +169,7 @@ def _blocks(columns: Sequence[_Column], width: int) -> list[_Block]:
     """
     keys = max(1, next((k for k, column in enumerate(columns) if not column.text), 1))
     tried = [
-        _divided([(column, column.minimum(widest)) for column in columns], keys, width)
+        _divided_blocks([(column, column.minimum(widest)) for column in columns], keys, width)
         for widest in (width, _WIDEST)
     ]
     # first the division that exceeds the width least, then the one of fewest blocks
@@ -177,7 +177,7 @@ def _blocks(columns: Sequence[_Column], width: int) -> list[_Block]:
     return [_grown(block, width) for block in blocks]
 
 
-def _divided(columns: _Block, keys: int, width: int) -> list[_Block]:
+def _divided_blocks(columns: _Block, keys: int, width: int) -> list[_Block]:
     blocks = [columns[:keys]]
     for column in columns[keys:]:
         if _wide([*blocks[-1], column]) > width and len(blocks[-1]) > keys:

@@ -70,7 +70,7 @@ def overridable(argument: str, subject: str = "case") -> Callable[[Callable[...,
         def run(**options: Any) -> R:
             typed = {option.name: options.pop(option.name, None) for option in added}
             from lineofaction.cli.output import EMPHASIS, console  # noqa: PLC0415 (start-up time)
-            from lineofaction.gearbox.project import files_of, only  # noqa: PLC0415 (start-up time)
+            from lineofaction.gearbox.project import files_of, sole_file  # noqa: PLC0415 (start-up time)
 
             named, overrides = options[argument], _overrides(typed)
             several = isinstance(named, list)
@@ -80,7 +80,7 @@ def overridable(argument: str, subject: str = "case") -> Callable[[Callable[...,
             if several:
                 return verb(**options | {argument: files})
             if any(options.get(name) for name in _OF_ONE):
-                only(files, named.path, subject)
+                sole_file(files, named.path, subject)
             for file in files:  # of a folder each of its cases
                 if file.part:
                     console().print(f"\n{file.part}", style=EMPHASIS)

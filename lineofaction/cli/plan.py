@@ -58,8 +58,8 @@ def _row(entry: PlannedLevel, plan: RunPlan) -> list[str]:
     ]
 
 
-def _mesh(entry: PlannedLevel, chosen: PlannedLevel) -> str:
+def _mesh(entry: PlannedLevel, level: PlannedLevel) -> str:
     """Name a mesh, and its model where that is not the chosen one."""
-    model = [] if entry.model == chosen.model else [entry.model]
+    model = [] if entry.model == level.model else [entry.model]
     slices = [] if entry.slices == 1 else [f"{entry.slices} slices"]
     return ", ".join([*model, entry.level, *slices])

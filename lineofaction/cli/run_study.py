@@ -14,7 +14,7 @@ from bounds import engineering
 from bounds.types import Json
 from host import cpu_seconds
 from host.directories import cache_home
-from lineofaction.cli.costs import announce_cost, study_cost, tables_cost, written_out
+from lineofaction.cli.costs import announce_cost, loading_cost, study_cost, tables_cost, written_out
 from lineofaction.cli.output import (
     check_writable,
     console,
@@ -47,6 +47,7 @@ from lineofaction.gearbox.schemas.report import ReportInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.spelling import item_type, spelling_of
 from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.studies.cost import StudyCost
 from lineofaction.gearbox.study import Study
 from lineofaction.gearbox.study_cache import cached_workers
 from lineofaction.report.document import read_run, write_page
@@ -76,7 +77,7 @@ class _Subject(NamedTuple):
 def run_study(study: Study, options: Json) -> None:
     """Run a study as its verb was called; `options` holds argument and options by their names."""
     files = options[study.argument] if study.several else [options[study.argument]]
-    sources = [_read(study, file) for file in files]
+    sources = [_subject_of(study, file) for file in files]
     run = None if options.get("run") is None else read_run(options["run"], "run")
     inputs = _inputs(study, options, sources[0].content, files[0].project)
     subjects = []
@@ -92,11 +93,12 @@ def run_study(study: Study, options: Json) -> None:
     runs = targets[0].with_name(f"{targets[0].stem}_runs") if targets else None
     interrupts = until_interrupted if study.run.interruptible else nullcontext
     with open_executor(options["workers"], options["scheduler"]) as executor:
+        stages = study.stages
         if not options["json"]:
-            _announce_cost(study, subjects, inputs, options, targets)
+            stages = _announced_cost(study, subjects, inputs, options, targets).shares(stages, loading_cost())
         with (
             cached_workers(study, [subject.fields for subject in subjects], inputs, executor) as workers,
-            progress_bar(study.stages) as report,
+            progress_bar(stages) as report,
             interrupts() as cancel,
         ):
             means = Means(cache_home(), report, workers, cancel, runs, run)
@@ -119,10 +121,13 @@ def run_study(study: Study, options: Json) -> None:
         raise JobFailed(failure)
 
 
-def _announce_cost(
+def _announced_cost(
     study: Study, subjects: Sequence[_Subject], inputs: Any, options: Json, targets: Sequence[Path]
-) -> None:
-    """Print on standard error what is known beforehand, and the cost if it is more than a moment."""
+) -> StudyCost:
+    """Print on standard error what is known beforehand, and the cost if it is more than a moment.
+
+    Return what of the cost is known.
+    """
     for subject in subjects:
         if known := study.run.known_before(written_out(*subject), inputs):
             sys.stderr.write(in_lines(known, sys.stderr) + "\n")
@@ -130,6 +135,7 @@ def _announce_cost(
     if study.run.tables and options.get("service") is None:
         costs += [tables_cost(scene, folder) for scene, folder in subjects if isinstance(scene, SceneInput)]
     announce_cost(study.name, costs, targets)
+    return sum(filter(None, costs), StudyCost(()))
 
 
 def _write(
@@ -180,7 +186,7 @@ def _fields(study: Study, options: Json) -> Json:
     return fields
 
 
-def _read(study: Study, file: InputFile) -> _Subject:
+def _subject_of(study: Study, file: InputFile) -> _Subject:
     if study.takes.subject == "scene" or (study.takes.subject != "case" and "shafts" in read_table(file)):
         return _Subject(*assessed_scene(file))
     return _Subject(CheckedCase(read_model(Case, file)), file.folder)

@@ -18,7 +18,7 @@ from lineofaction.cli.verb_warnings import warn
 from lineofaction.gearbox.convert.answers import curve_json, teeth_text
 from lineofaction.gearbox.convert.operating_point import pair_point
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.project import only, tables_in
+from lineofaction.gearbox.project import sole_file, tables_in
 from lineofaction.gearbox.schemas import Case, read_model
 from lineofaction.gearbox.units import MM, UM
 
@@ -55,7 +55,7 @@ def run_ste(
     """Read, evaluate, print each table; `point` holds the options of load and alignment by their names."""
     tables = tables_in(named, _cached_table)
     if as_csv or as_json:
-        tables = {"": only([*filter(None, tables.values())], named, "table")}
+        tables = {"": sole_file([*filter(None, tables.values())], named, "table")}
     for name, file in tables.items():
         if len(tables) > 1:
             console().print(f"\n{name}", style=EMPHASIS)

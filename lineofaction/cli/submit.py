@@ -40,7 +40,7 @@ _OF_SCENES = ("simulate", *studies_of("scene"))
 _OF_BOTH = studies_of("case or scene")
 
 
-def _waited(client: LineOfActionClient, job: str) -> Result:
+def _awaited_result(client: LineOfActionClient, job: str) -> Result:
     """Print the job, wait for it with a bar on a terminal; Ctrl-C prints how to go on with it."""
     screen = Console(stderr=True)
     screen.print(f"job {job}", highlight=False)
@@ -88,11 +88,11 @@ def run_submit(
         check_writable(output)
     further = _further(process, inputs)
     with LineOfActionClient(service).with_terms(**terms) as client:
-        state = _submitted(client, file, process, further)
+        state = _submitted_state(client, file, process, further)
         warn(state.warnings)
         answer: dict[str, object] = {"job": state.id, "process": state.process, "status": state.status}
         if wait or output is not None:
-            result = _waited(client, state.id)
+            result = _awaited_result(client, state.id)
             answer |= {"status": "successful", "hash": result.key, "kind": result.kind}
         if output is not None:
             shutil.copyfile(client.fetch_file(result.key, result.kind), output)
@@ -126,7 +126,7 @@ def _further(process: str | None, text: str | None) -> dict[str, Any]:
     return inputs
 
 
-def _submitted(
+def _submitted_state(
     client: LineOfActionClient, file: InputFile, process: str | None, further: dict[str, Any]
 ) -> JobState:
     content = read_table(file)
@@ -181,7 +181,7 @@ def _ended(client: LineOfActionClient, job: str, *, wait: bool) -> Result:
         remedy = "loa submit prints the first two."
         raise BadInput.of("name", job, "the identifier of a job, a content hash or an address", remedy)
     try:
-        return _waited(client, job) if wait else client.result(job)
+        return _awaited_result(client, job) if wait else client.result(job)
     except ResultNotReady as error:
         raise ResultNotReady(f"{error} Wait for it with: loa fetch {job} --wait -o FILE") from None
 

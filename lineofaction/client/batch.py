@@ -46,7 +46,7 @@ class _BatchSurface(Followed, Generic[T, J]):
         def jobs(answer: dict[str, Any]) -> list[J]:
             return [self._job(*self._ended(index, entry)) for index, entry in enumerate(answer["jobs"])]
 
-        return (yield from self._patiently(lambda: exchange.read(jobs, "GET", path)))
+        return (yield from self._with_retries(lambda: exchange.read(jobs, "GET", path)))
 
     @operation
     def result(self, progress: Watch | None = None, *, timeout: float | None = None) -> Steps[list[T]]:

@@ -68,7 +68,7 @@ class Exchange:
         def once() -> Steps[httpx2.Response]:
             return _checked((yield Send(method, path, traced(options))))
 
-        return (yield from self._patiently(once))
+        return (yield from self._with_retries(once))
 
     def read(self, reader: Callable[[Any], T], method: str, path: str, **options: Any) -> Steps[T]:
         """Return the value of `reader` for the JSON that answers a request; raises as `request`."""
@@ -100,7 +100,7 @@ class Exchange:
                 into.write(piece)
             return digest.hexdigest(), stream.response.headers
 
-        return (yield from self._patiently(once))
+        return (yield from self._with_retries(once))
 
     def opened(self, path: str, media_type: str) -> Steps[Stream]:
         """Return the answer of a path with its body still to come; raises as `request`."""
@@ -112,9 +112,9 @@ class Exchange:
                 raise stranger(stream.response)
             return stream
 
-        return (yield from self._patiently(once))
+        return (yield from self._with_retries(once))
 
-    def _patiently(self, once: Callable[[], Steps[T]]) -> Steps[T]:
+    def _with_retries(self, once: Callable[[], Steps[T]]) -> Steps[T]:
         """Return the value of `once`, which runs again when the network or the service asks for it."""
         for attempt in range(1, self.attempts):
             try:

@@ -65,7 +65,7 @@ class Followed(Surface):
         else:
             yield from JobCalls.events(self, self.id)
 
-    def _patiently(self, fetch: Callable[[], Steps[Fetched]]) -> Steps[Fetched]:
+    def _with_retries(self, fetch: Callable[[], Steps[Fetched]]) -> Steps[Fetched]:
         """Repeat a fetch while the service is away, within the patience of the client."""
         return outlasting(fetch, self.session.patience)
 
@@ -114,7 +114,7 @@ class JobSurface(Followed, Generic[T, F]):
     def file(self, progress: Watch | None = None, *, timeout: float | None = None) -> Steps[Path]:
         """Wait for the job and return its netCDF file in the cache; raises as `wait`."""
         result = yield from JobSurface.wait(self, progress, timeout=timeout)
-        return (yield from self._patiently(lambda: ResultCalls.fetch_file(self, result.key, result.kind)))
+        return (yield from self._with_retries(lambda: ResultCalls.fetch_file(self, result.key, result.kind)))
 
     @operation
     def dataset(
@@ -122,20 +122,22 @@ class JobSurface(Followed, Generic[T, F]):
     ) -> Steps[xarray.Dataset]:
         """Wait for the job and return its result as arrays with units and names; raises as `wait`."""
         result = yield from JobSurface.wait(self, progress, timeout=timeout)
-        return (yield from self._patiently(lambda: ResultCalls.fetch_dataset(self, result.key, result.kind)))
+        return (
+            yield from self._with_retries(lambda: ResultCalls.fetch_dataset(self, result.key, result.kind))
+        )
 
     @operation
     def figures(self, progress: Watch | None = None, *, timeout: float | None = None) -> Steps[F]:
         """Wait for the job and return the figures of its result, units in their names; raises as `wait`."""
         result = yield from JobSurface.wait(self, progress, timeout=timeout)
         fetch = partial(ResultCalls.fetch_figures, self, result.key, result.kind)
-        return cast("F", (yield from self._patiently(fetch)))
+        return cast("F", (yield from self._with_retries(fetch)))
 
     @operation
     def report(self, progress: Watch | None = None, *, timeout: float | None = None) -> Steps[Report]:
         """Wait for the job and return the report on its result; notebooks show it; raises as `wait`."""
         result = yield from JobSurface.wait(self, progress, timeout=timeout)
-        return (yield from self._patiently(lambda: ResultCalls.report(self, result.key)))
+        return (yield from self._with_retries(lambda: ResultCalls.report(self, result.key)))
 
     def ending(self) -> Steps[Result | None]:
         """Wait until the job has ended and its file is in the cache; return its result.

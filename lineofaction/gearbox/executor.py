@@ -27,7 +27,7 @@ def open_executor(processes: int = 1, scheduler: str | None = None) -> Iterator[
         bound = "left out with --scheduler or LOA_SCHEDULER"
         raise BadInput.of("--workers", processes, bound, "A cluster has its own.")
     if scheduler is not None:
-        with _connected(scheduler) as cluster:
+        with _connected_workers(scheduler) as cluster:
             yield cluster
     elif processes == 1:
         yield InProcess()
@@ -37,7 +37,7 @@ def open_executor(processes: int = 1, scheduler: str | None = None) -> Iterator[
 
 
 @contextmanager
-def _connected(scheduler: str) -> Iterator[Workers]:
+def _connected_workers(scheduler: str) -> Iterator[Workers]:
     try:
         cluster = dask_workers(scheduler)
     except MissingExtra as error:

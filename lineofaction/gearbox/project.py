@@ -28,35 +28,35 @@ RUN, SOUND = f"run{SUFFIX}", "run.wav"
 Named = TypeVar("Named", InputFile, Path)
 
 
-def file_of(named: InputFile, subject: str) -> InputFile:
+def file_of(file: InputFile, subject: str) -> InputFile:
     """Return a named file, or of a folder the only file that holds a `subject` of the study.
 
     For "case or scene" the scene goes first. Of several scenes the one named ``scene.toml`` is taken, of
     several cases ``case.toml``. Raises `BadInput`: the folder holds no such file, or several of other names.
     """
-    return only(files_of(named, subject), named.path, subject)
+    return sole_file(files_of(file, subject), file.path, subject)
 
 
-def files_of(named: InputFile, subject: str) -> list[InputFile]:
+def files_of(file: InputFile, subject: str) -> list[InputFile]:
     """Return the file of `file_of`, or all cases of a folder that has several.
 
     Raises `BadInput`: the folder holds no such file, or several scenes of other names.
     """
-    if not named.path.is_dir():
-        return [named]
+    if not file.path.is_dir():
+        return [file]
     for kind in _SIGNS:
         if kind not in subject:
             continue
-        chosen = _chosen(dict(_tables(named.path)), kind)
+        chosen = _chosen(dict(_tables(file.path)), kind)
         if len(chosen) == 1:
-            return [InputFile(chosen[0], named.overrides, named.path)]
-        files = [InputFile(path, named.overrides, named.path, path.stem) for path in chosen]
+            return [InputFile(chosen[0], file.overrides, file.path)]
+        files = [InputFile(path, file.overrides, file.path, path.stem) for path in chosen]
         if files:
-            return files if kind == "case" else [only(files, named.path, kind)]
-    raise _none_of(named.path, str(named), subject)
+            return files if kind == "case" else [sole_file(files, file.path, kind)]
+    raise _none_of(file.path, str(file), subject)
 
 
-def only(files: Sequence[Named], project: Path, kind: str) -> Named:
+def sole_file(files: Sequence[Named], project: Path, kind: str) -> Named:
     """Return the only file of a kind in a folder; raises `BadInput`: there are several."""
     if len(files) > 1:
         remedy = f"Name one: {_listed(files)}."
@@ -70,7 +70,7 @@ def inputs_in(project: Path, study: Study) -> Path | None:
     Raises `BadInput`: several do.
     """
     files = _inputs_in(project, study)
-    return only(files, project, f"file for {study.name}") if files else None
+    return sole_file(files, project, f"file for {study.name}") if files else None
 
 
 def _inputs_in(project: Path, study: Study) -> list[Path]:

@@ -21,6 +21,10 @@ passes are the last.
 """
 
 
+LOADING = ""
+"""Name of what loads within the first stage of a process, before its work: it is never reported."""
+
+
 class Stage(NamedTuple):
     """A stage of the work and its usual share of the time (the shares of a process sum to 1)."""
 
@@ -39,11 +43,12 @@ class PacedFraction:
     The time of a stage that has not begun follows from the time so far and the usual shares. The time of the
     current stage follows from its pace; up to `_PACE_KNOWN`, its usual time counts as well. Stages that are
     left out, such as that of stored tables, count neither before nor after. `stages` are names with usual
-    shares, in the order in which they are done.
+    shares, in the order in which they are done; `LOADING` is in the first one that is reported.
     """
 
     def __init__(self, stages: Iterable[tuple[str, float]]) -> None:
         self._shares = dict(stages)
+        self._loading = self._shares.pop(LOADING, 0.0)
         self._seen: list[str] = []
         self._first_s = 0.0  # times of the clock: the first report,
         self._begun_s = 0.0  # the end of the stage before the current one,
@@ -82,7 +87,9 @@ class PacedFraction:
         past_s = self._begun_s - self._first_s  # time of the stages before
         stage_s = self._last_s - self._begun_s  # time of the current stage so far
         if past_s <= 0.0:  # the first stage: the shares alone
-            return share * fraction / (share + ahead)
+            loaded = self._loading if fraction > 0.0 else 0.0
+            return (loaded + share * fraction) / (self._loading + share + ahead)
+        before += self._loading
         usual_s = past_s * share / before
         weight = min(fraction / _PACE_KNOWN, 1.0)  # of the time by the pace of the stage
         total_s = (1.0 - weight) * max(usual_s, stage_s) + (weight * stage_s / fraction if fraction else 0.0)

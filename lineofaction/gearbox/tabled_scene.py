@@ -95,7 +95,7 @@ def tabled_scene(
 
 
 def database_of(
-    checked: CheckedCase,
+    case: CheckedCase,
     home: Path,
     progress: Progress = silent,
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
@@ -106,21 +106,21 @@ def database_of(
     Raises `BadInput`: the pair cannot exist, or cannot carry these loads.
     """
     run = Run(workers, home / "compliance", progress)
-    return checked_table(checked, run, on_draft)
+    return checked_table(case, run, on_draft)
 
 
-def checked_table(checked: CheckedCase, run: Run, on_draft: OnDraft | None = None) -> SteDatabase:
+def checked_table(case: CheckedCase, run: Run, on_draft: OnDraft | None = None) -> SteDatabase:
     """Compute the STE database of a case, its warnings in the fields and units of the case."""
     from fe_contact.analysis.analyze import analyze  # noqa: PLC0415 (start-up time)
 
     with boundary_errors():
-        database = analyze(checked.checked, run=run, case=case_json(checked.case), on_draft=on_draft)
+        database = analyze(case.checked, run=run, case=case_json(case.case), on_draft=on_draft)
     metadata = database.metadata
-    allowed = allowed_misalignment(checked.case)
+    allowed = allowed_misalignment(case.case)
     if allowed is not None:
         receipt = metadata.receipt | {"misalignment_range": allowed.text}
         metadata = replace(metadata, receipt=receipt)
-    warnings = phrased_for(checked.case, metadata.warnings)
+    warnings = phrased_for(case.case, metadata.warnings)
     return replace(database, metadata=replace(metadata, warnings=warnings))
 
 

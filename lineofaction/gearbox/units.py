@@ -18,6 +18,8 @@ G_MM = 1e-6
 RPM = 2.0 * math.pi / 60.0
 N_PER_UM = 1e6
 N_PER_MM3 = 1e9
+STANDARD_GRAVITY = 9.80665
+"""Standard gravity, m/s^2 (ISO 80000-3)."""
 
 UNITS: dict[str, Unit] = {
     "_g_mm": Unit("g mm", G_MM, "kg m"),

@@ -221,10 +221,10 @@ def tabled(
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> TabledScene:
     """Return a scene with the tables of its meshes, computed here, and its housings reduced."""
-    return _tabled(*_scene(subject), progress, workers)
+    return _tabled_scene(*_scene(subject), progress, workers)
 
 
-def _tabled(scene: SceneInput, folder: Path, progress: Progress, workers: Workers) -> TabledScene:
+def _tabled_scene(scene: SceneInput, folder: Path, progress: Progress, workers: Workers) -> TabledScene:
     _warn(omission_warnings(scene.left_out))
     cases = CheckedCases()
     computed = ComputedTables(lambda case: database_of(cases.of(case), cache_home(), progress, workers))
@@ -287,7 +287,7 @@ def _as_written(study: Study, subject: Subject) -> tuple[CheckedCase | SceneInpu
 def _made(study: Study, scene: SceneInput, folder: Path, means: Means) -> TabledScene | HousedScene:
     """Return a scene with its tables, or only with its housings, as the study takes it."""
     if study.run.tables:
-        return _tabled(scene, folder, means.report, means.workers)
+        return _tabled_scene(scene, folder, means.report, means.workers)
     _warn(omission_warnings(scene.left_out))
     return HousedScene(scene, housings_in(scene, cache_home(), folder, means.report))
 

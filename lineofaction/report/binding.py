@@ -97,7 +97,7 @@ def _figure(figures: Mapping[str, Figure]) -> Figure:
         caption=_joined_text({name: part.caption for name, part in figures.items()}),
         alternative=" ".join(_named(name, part.alternative) for name, part in figures.items()),
         content=tuple(side_by_side),
-        table=None if figure.table is None else _joined(tables),
+        table=None if figure.table is None else _joined_table(tables),
     )
 
 
@@ -106,7 +106,7 @@ def _panel(part: str, panel: Panel, suffix: str) -> Panel:
     return replace(panel, title=": ".join(filter(None, (part, title)))) if part else panel
 
 
-def _joined(tables: Mapping[str, Table]) -> Table:
+def _joined_table(tables: Mapping[str, Table]) -> Table:
     """Stack the rows of tables, each with its part; where heads differ, return the first table alone."""
     first = next(iter(tables.values()))
     if len(tables) == 1 or len({table.head for table in tables.values()}) > 1:

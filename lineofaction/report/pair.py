@@ -175,7 +175,7 @@ def pair_drawing(pair: ParallelAxes, tolerance_class: int | None = None) -> Figu
     panels = [_section(pair)]
     leads = {}
     for name, gear in gears.items():
-        made = _made(gear)
+        made = _made_flanks(gear)
         if gear.modification.varies_along_profile or made:
             panels.append(_profile(name, pair, tolerance_class))
         if gear.modification.varies_along_face or any(flank.varies_along_face for flank in made):
@@ -191,7 +191,7 @@ def pair_drawing(pair: ParallelAxes, tolerance_class: int | None = None) -> Figu
     if len(panels) > 1 and tolerance_class is not None:
         tolerances = f"F_alpha and F_beta of class {tolerance_class} of ISO 1328-1:2013"
         caption += f" Shaded: {tolerances}, half to each side."
-    if any(map(_made, gears.values())):
+    if any(map(_made_flanks, gears.values())):
         caption += " Thin: the teeth as made, without their pitch deviations."
     return Figure(
         key="pair_drawing",
@@ -202,7 +202,7 @@ def pair_drawing(pair: ParallelAxes, tolerance_class: int | None = None) -> Figu
     )
 
 
-def _made(gear: Toothing) -> list[ToothFlank]:
+def _made_flanks(gear: Toothing) -> list[ToothFlank]:
     """Return the flanks of the teeth that deviate from the design."""
     return [flank for flank in gear.tooth_flanks if not flank.neutral]
 
@@ -235,7 +235,7 @@ def _gear_line(name: str, gear: Json, across: float) -> Line:
     """Draw the teeth of a gear near the mesh; the drawing reaches `across`, mm, to either side."""
     tooth = np.array(gear["tooth_mm"])
     pitch = -2.0 * math.pi / gear["teeth"]  # teeth follow each other from left to right
-    angles = math.radians(gear["angle_deg"]) + pitch * _near(gear, across)
+    angles = math.radians(gear["angle_deg"]) + pitch * _near_teeth(gear, across)
     x = np.cos(angles)[:, None] * tooth[:, 0] - np.sin(angles)[:, None] * tooth[:, 1]
     y = np.sin(angles)[:, None] * tooth[:, 0] + np.cos(angles)[:, None] * tooth[:, 1]
     is_complete = len(angles) == gear["teeth"]
@@ -246,7 +246,7 @@ def _gear_line(name: str, gear: Json, across: float) -> Line:
     return replace(outline, filled=gear["radius_mm"]["tip"] > gear["radius_mm"]["root"])  # not a ring gear
 
 
-def _near(gear: Json, across: float) -> IntArray:
+def _near_teeth(gear: Json, across: float) -> IntArray:
     """Return the numbers of the teeth within twice the drawn distance of the mesh, or of all teeth."""
     count = gear["teeth"]
     reach = 2.0 * across / gear["radius_mm"]["root"]  # rad, about
@@ -305,7 +305,9 @@ def _teeth_as_made(
     name: str, gear: Toothing, x: FloatArray, roll: FloatArray, face: FloatArray
 ) -> tuple[Line, ...]:
     """Return the traces of all teeth that deviate over `x` as one line with gaps; no line without any."""
-    traces = [_removed(gear, roll, face) - flank.excess(gear, roll, face) / UM for flank in _made(gear)]
+    traces = [
+        _removed(gear, roll, face) - flank.excess(gear, roll, face) / UM for flank in _made_flanks(gear)
+    ]
     if not traces:
         return ()
     y = np.concatenate([np.append(trace, np.nan) for trace in traces])
@@ -318,7 +320,7 @@ def _removed(gear: Toothing, roll: FloatArray, face: FloatArray | float) -> Floa
 
 
 def _finding(name: str, gear: Toothing) -> str:
-    remark = f" {len(_made(gear))} of its teeth are drawn as made." if _made(gear) else ""
+    remark = f" {len(_made_flanks(gear))} of its teeth are drawn as made." if _made_flanks(gear) else ""
     if gear.modification.neutral:
         return f"The {name} is not modified.{remark}"
     roll, face = np.meshgrid(_usable(gear), np.linspace(-0.5, 0.5, _POINTS) * gear.face_width)

@@ -56,7 +56,7 @@ def figure_of(result: Any, view: str, *, with_axes: bool = False) -> Figure:
 
     Raises `BadInput`: there is none, or `with_axes` it is a picture.
     """
-    figure = _named(figures_of(result), view)
+    figure = _named_figure(figures_of(result), view)
     if with_axes and figure.picture is not None:
         remedy = "A picture has no numbers; name another figure."
         raise BadInput.of("view", view, "a figure with axes", remedy)
@@ -79,7 +79,7 @@ def _in_sections(sections: Sequence[Section]) -> tuple[Figure, ...]:
     return tuple(figure for section in sections for figure in section.figures)
 
 
-def _named(figures: Sequence[Figure], view: str) -> Figure:
+def _named_figure(figures: Sequence[Figure], view: str) -> Figure:
     """Return the figure of a name; else the first with all words of the view in its name or its title.
 
     Where there is none, return the panels of a figure that have the words in their titles.

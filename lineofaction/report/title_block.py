@@ -81,30 +81,31 @@ def _main_result(headlines: Sequence[Headline]) -> tuple[str, ...]:
     return ()
 
 
-def _meant(required: Requirement, headlines: Sequence[Headline]) -> list[tuple[Headline, float]]:
+def _meant(requirement: Requirement, headlines: Sequence[Headline]) -> list[tuple[Headline, float]]:
     """Return the main results that a requirement names and that are in its unit, with their values."""
     results = []
     for headline in headlines:
         value = _VALUE.match(headline.value)
-        is_named = headline.name.lower().startswith(required.figure.lower())
-        if is_named and value and value[2] == required.unit:
+        is_named = headline.name.lower().startswith(requirement.figure.lower())
+        if is_named and value and value[2] == requirement.unit:
             results.append((headline, float(value[1])))
     return results
 
 
-def _verdicts(required: Requirement, headlines: Sequence[Headline]) -> list[str]:
+def _verdicts(requirement: Requirement, headlines: Sequence[Headline]) -> list[str]:
     """Return a sentence for each result: met, not met, or open where the limit lies within its error."""
     verdicts = []
-    for headline, value in _meant(required, headlines):
+    for headline, value in _meant(requirement, headlines):
         low, high, band = _band(headline, value)
-        is_met = value <= required.limit if required.maximum else value >= required.limit
+        is_met = value <= requirement.limit if requirement.maximum else value >= requirement.limit
         verdict = "Met" if is_met else "Not met"
-        if low < required.limit < high:
+        if low < requirement.limit < high:
             verdict = "Open within the error"
         if is_met and not band:
             verdict = "Open, no error is stated"
-        limit = f"{'at most' if required.maximum else 'at least'} {required.limit:g} {required.unit}".rstrip()
-        result = f"{headline.value.removesuffix(required.unit).strip()}{band} {required.unit}".rstrip()
+        side = "at most" if requirement.maximum else "at least"
+        limit = f"{side} {requirement.limit:g} {requirement.unit}".rstrip()
+        result = f"{headline.value.removesuffix(requirement.unit).strip()}{band} {requirement.unit}".rstrip()
         verdicts.append(f"{verdict}: {headline.name} is {result}; required is {limit}.")
     return verdicts
 

@@ -48,9 +48,9 @@ def stored_motion(inputs: Json) -> Json:
         return {"groups": _groups(offered), "motion": motion}
 
 
-def _groups(offered: list[OfferedMotion]) -> list[Json]:
+def _groups(motions: list[OfferedMotion]) -> list[Json]:
     groups: dict[str, list[str]] = {}
-    for one in offered:
+    for one in motions:
         groups.setdefault(one.group, []).append(one.name)
     return [{"name": group, "motions": names} for group, names in groups.items()]
 

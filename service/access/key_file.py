@@ -188,8 +188,8 @@ def _made(holder: Holder, life: timedelta | None) -> tuple[str, AccessKey]:
     return secret, AccessKey(**fields, sha256=digest_of(secret), created=_written(instant))
 
 
-def _unknown(name: str, known: Iterable[AccessKey]) -> BadInput:
-    names = ", ".join(dict.fromkeys(key.name for key in known)) or "none"
+def _unknown(name: str, keys: Iterable[AccessKey]) -> BadInput:
+    names = ", ".join(dict.fromkeys(key.name for key in keys)) or "none"
     return BadInput.of("name", name, f"one of the keys: {names}", "loa keys list shows them.")
 
 

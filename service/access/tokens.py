@@ -130,7 +130,7 @@ class Tokens:
             raise KeyExpired.of("This token has expired. Ask its issuer for a new one.") from None
         except (jwt.PyJWTError, ValueError):
             raise Unauthorised.of("This token is not good for this service.") from None
-        return self._mapped(claims)
+        return self._holder(claims)
 
     async def _key(self, identifier: str, algorithm: str) -> Json:
         key = await self._issuer.key(identifier)
@@ -138,7 +138,7 @@ class Tokens:
             raise ValueError(identifier)
         return key
 
-    def _mapped(self, claims: Json) -> Holder:
+    def _holder(self, claims: Json) -> Holder:
         settings = self._settings
         name = _claim(claims, settings.name_claim)
         if not isinstance(name, str) or not 0 < len(name) <= _LONGEST_NAME:

@@ -19,7 +19,7 @@ from lineofaction.gearbox.problems import LiveUnavailable, ServiceError, Superse
 from service.folders import locked_folder, remove_left
 from service.live.answer import propagated
 from service.live.child import Share
-from service.live.question_pool import QuestionPool
+from service.live.question_pool import STOP, QuestionPool
 from service.live.turns import Limits, Question
 from service.settings import MIN_MEMORY_MB, Settings
 from service.worker.usage import machine_memory_mb
@@ -154,6 +154,11 @@ class LiveWorker:
             raise Unexpected(reference)
         return answer.body
 
+    def start(self) -> None:
+        """Answer again after a stop; see `QuestionWorker`."""
+        with self._lock:
+            self._stopping = False
+
     def stop(self) -> None:
         """End the process in the middle of an answer; see `QuestionWorker`."""
         with self._lock:
@@ -168,11 +173,10 @@ class LiveWorker:
     def close(self) -> None:
         """End the process; see `QuestionWorker`."""
         self._end_process()
-        self._stopping = False
 
     def _cause(self, gone: _WorkerGone, question: Question) -> Exception:
         if self._stopping:
-            return LiveUnavailable("The service stops.")
+            return LiveUnavailable(STOP)
         if question.obsolete:
             return _superseded()
         if gone.late:
@@ -194,7 +198,7 @@ class LiveWorker:
     def _ready(self) -> _LiveProcess:
         with self._lock:
             if self._stopping:
-                raise LiveUnavailable("The service stops.")
+                raise LiveUnavailable(STOP)
             if self._process is not None and not self._process.alive:
                 self._end_process()
             if self._process is None:

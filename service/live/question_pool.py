@@ -16,6 +16,8 @@ from lineofaction.gearbox.problems import LiveUnavailable
 from service.live.order import LiveOrder
 from service.live.turns import Asker, Limits, Question, Turns
 
+STOP = "The service stops."
+"""Refusal of a question that comes after a stop, or was in progress then."""
 _SUBJECTS = 64
 """Most subjects of which the pool remembers the worker."""
 
@@ -29,11 +31,17 @@ class QuestionWorker(Protocol):
     def rest(self) -> None:
         """Free the memory while no questions come; the next question starts the process again."""
 
+    def start(self) -> None:
+        """Answer questions again after a stop; the next question starts the processes."""
+
     def stop(self) -> None:
-        """End the question in progress, whose caller gets the error of a stop. Any thread may call this."""
+        """End the question in progress, whose caller gets the error of a stop, and start no process more.
+
+        Any thread may call this.
+        """
 
     def close(self) -> None:
-        """End all processes once no question is in progress; the next question starts them again."""
+        """End all processes, once no question is in progress after a stop."""
 
 
 class QuestionPool:
@@ -79,18 +87,25 @@ class QuestionPool:
         question = Question(order, asker or Asker(), subject, lasting)
         with self._changed:
             if self._stopping:
-                raise LiveUnavailable("The service stops.")
+                raise LiveUnavailable(STOP)
             self._turns.enter(question)
             self._begin_worker(question)
             self._changed.notify_all()
         return question.answer
 
+    def start(self) -> None:
+        """Take questions again after a stop."""
+        with self._changed:
+            for worker in self._workers:
+                worker.start()
+            self._stopping = False
+
     def stop(self) -> None:
-        """Refuse the waiting questions, end the workers; a later question begins them anew."""
+        """Refuse the waiting questions and all later ones, and end the workers."""
         with self._changed:
             self._stopping = True
             for question in self._turns.empty():
-                question.refuse(LiveUnavailable("The service stops."))
+                question.refuse(LiveUnavailable(STOP))
             threads = list(self._threads.values())
             self._changed.notify_all()
         for worker in self._workers:
@@ -99,7 +114,6 @@ class QuestionPool:
             thread.join()
         for worker in self._workers:
             worker.close()
-        self._stopping = False
 
     def _begin_worker(self, question: Question) -> None:
         """Start a worker if no idle worker serves the question."""

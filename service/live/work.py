@@ -29,7 +29,7 @@ def live_ste(inputs: Json) -> Json:
     begin = cpu_seconds()
     question = LiveInput.model_validate_json(json.dumps(inputs["question"]))
     paths = Path(inputs["file"]), Path(inputs["cache"])
-    condensed = _condensed(inputs["key"], *paths, compute=question.condense)
+    condensed = _condensed_case(inputs["key"], *paths, compute=question.condense)
     read = cpu_seconds() - begin  # to read or compute the compliance, and to check the question
     answer = live_curves(condensed, question)
     answer["cost"]["compliance_cpu_seconds"] += read
@@ -58,7 +58,7 @@ def _study_cost(name: str, case: CheckedCase, cache: Path) -> Json | None:
     return {"cpu_seconds": cost.seconds, "memory_bytes": cost.bytes, "words": cost.text}
 
 
-def _condensed(key: str, file: Path, cache: Path, *, compute: bool) -> CondensedCase:
+def _condensed_case(key: str, file: Path, cache: Path, *, compute: bool) -> CondensedCase:
     if key not in _cases:
         _cases[key] = condensed_of(file, cache, compute=compute)
     _cases.move_to_end(key)

@@ -27,7 +27,7 @@ def database_figures(workload: WorkloadReader) -> Iterable[Metric]:
     up.add_metric([], 1)
     yield up
     yield from _queue(load)
-    yield from _ended(load)
+    yield from _ended_metrics(load)
     yield from _results(load)
 
 
@@ -56,7 +56,7 @@ def _queue(load: Workload) -> Iterable[Metric]:
     return states, depth, oldest
 
 
-def _ended(load: Workload) -> Iterable[Metric]:
+def _ended_metrics(load: Workload) -> Iterable[Metric]:
     text = "Computations that ended, from their first start"
     seconds = HistogramMetricFamily("loa_computation_seconds", text, labels=_ENDED)
     attempts = CounterMetricFamily(

@@ -98,7 +98,7 @@ class Claims:
         it anew. `alongside`: other computations run. A suspect is then not claimed, nor one behind it.
         """
         while (row := self._first()) is not None:
-            claim = _claimed(row)
+            claim = _claim_of(row)
             if row.program != self.program:
                 return claim
             if alongside and claim.suspect:
@@ -206,7 +206,7 @@ class Claims:
         """Return the running computations; when a server starts, they are those of a former one that died."""
         runs = (computations.c.state == "running") & ~of_batch
         with reading(self._engine) as connection:
-            return [_claimed(row) for row in connection.execute(select(computations).where(runs))]
+            return [_claim_of(row) for row in connection.execute(select(computations).where(runs))]
 
     @retried
     def waiting(self) -> set[str]:
@@ -231,7 +231,7 @@ def _waited_long_enough() -> ColumnElement[bool]:
     return or_(table.lost_runs == 0, *due, table.lost_runs >= MAX_LOST_RUNS)
 
 
-def _claimed(row: Row[Any]) -> Claim:
+def _claim_of(row: Row[Any]) -> Claim:
     project, key = at_address(row.key)
     return Claim(
         id=row.id,

@@ -16,7 +16,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Mapping
-from concurrent.futures import CancelledError
+from concurrent.futures import CancelledError, ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -155,7 +155,8 @@ class Cluster:
 
     def check(self) -> None:
         """Raise `BadInput` if the scheduler is silent, has no workers, or has workers of other programs."""
-        bound, tip = asyncio.run(self._fault_at_start())
+        with ThreadPoolExecutor(1) as thread:  # the caller's may have an event loop of its own
+            bound, tip = thread.submit(lambda: asyncio.run(self._fault_at_start())).result()
         if bound:
             raise BadInput.of("scheduler", self._address, bound, tip)
 

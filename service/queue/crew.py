@@ -33,7 +33,8 @@ class Children:
         self._launcher = Launcher(WORK, modules, log, logger.warning)
 
     def start(self, _notify: Callable[[], None]) -> None:
-        """Do nothing: the first child starts the warm process."""
+        """Let children be launched; the first one starts the warm process."""
+        self._launcher.open()
 
     def begin(self, order: WorkOrder, _name: str, log: Path) -> Worker:
         """Start or fork a child; raises `OSError`: the system can do neither."""
@@ -45,7 +46,7 @@ class Children:
         self._launcher.hurry()
 
     def close(self) -> None:
-        """End the warm process."""
+        """End the warm process; no child is launched until the next start."""
         self._launcher.close()
 
 

@@ -70,7 +70,7 @@ class Entry:
 
         Parameters and errors are those of `batch`.
         """
-        return self._job(self._identifier(process, name), process, self._addressed(work), looked)
+        return self._job(self._identifier(process, name), process, self._addressed_case(work), looked)
 
     def batch(self, process: str, cases: Sequence[BatchCase], looked: str, name: str | None = None) -> str:
         """Enter a batch with its jobs, all or none; return its identifier.
@@ -81,7 +81,7 @@ class Entry:
         wait; `QueueFull`: too many computations wait now, or the caller has too many unfinished jobs.
         """
         identifier = self._identifier(f"batch of {process}", name)
-        self._batch(identifier, process, [self._addressed(case) for case in cases], looked)
+        self._batch(identifier, process, [self._addressed_case(case) for case in cases], looked)
         return identifier
 
     def _identifier(self, what: str, name: str | None) -> str:
@@ -93,7 +93,7 @@ class Entry:
             uuid.uuid5(_NAMES, json.dumps(named if self._project == COMMON else [self._project, *named]))
         )
 
-    def _addressed(self, work: BatchCase) -> BatchCase:
+    def _addressed_case(self, work: BatchCase) -> BatchCase:
         return replace(work, key=address_of(self._project, work.key))
 
     @retried

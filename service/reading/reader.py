@@ -18,13 +18,13 @@ import structlog
 from host import LOOK_S, READING, Ended, ending_signal, missing_protections
 from host.children.child import Child
 from host.children.frames import Frame
-from host.children.launcher import ChildProcess, Ends, Launcher
+from host.children.launcher import ChildProcess, Ends, Launcher, LauncherClosed
 from host.children.watch import Watch
 from lineofaction.gearbox.problems import BadInput, LiveUnavailable, ServiceError, Unexpected
 from service.folders import locked_folder, remove_left
 from service.live.answer import propagated
 from service.live.order import LiveOrder
-from service.live.question_pool import QuestionPool
+from service.live.question_pool import STOP, QuestionPool
 from service.live.turns import Limits, Question
 from service.reading.child import LONGEST_S
 from service.reading.course import MAX_BYTES, Course
@@ -77,32 +77,43 @@ class _Children:
             child = self._started(folder)
             try:
                 child.send(order.frame())  # no error for a dead child: its missing answer tells
-                course = _followed(child, folder)
+                course = _followed_course(child, folder)
             finally:
                 ended = self._end(child)
         if course.answer is None:
             raise self._cause(ended, course, order)
         return self._unpacked(course.answer, course, order)
 
+    def start(self) -> None:
+        """Start children for the questions again."""
+        self._stopping = False
+        self._launcher.open()
+
     def stop(self) -> None:
-        """End all children; their callers get the error of a stop."""
+        """End all children and start no other; their callers get the error of a stop."""
         self._stopping = True
+        self._launcher.hurry()
         for child in tuple(self._children):
             child.end_group()
 
     def close(self) -> None:
-        """End the warm process, once no child is left; later children start another."""
+        """End the warm process, once no child is left."""
         self._launcher.close()
-        self._stopping = False
 
     def _started(self, folder: Path) -> Child:
+        if self._stopping:
+            raise LiveUnavailable(STOP)
         self._log.parent.mkdir(parents=True, exist_ok=True)
         try:
             with self._log.open("ab") as log, self._launching:
                 child = Child(self._launch, log.fileno(), folder)
                 self._children.add(child)
+        except LauncherClosed:
+            raise LiveUnavailable(STOP) from None
         except OSError:
             raise LiveUnavailable("The system starts no reader now. Try again soon.") from None
+        if self._stopping:  # it began during a stop, which may not have seen it
+            child.end_group()
         return child
 
     def _launch(self, ends: Ends) -> ChildProcess:
@@ -122,7 +133,7 @@ class _Children:
     def _cause(self, ended: Ended, course: Course, order: LiveOrder) -> ServiceError:
         """Return the error for a child that ended without an answer."""
         if self._stopping:
-            return LiveUnavailable("The service stops.")
+            return LiveUnavailable(STOP)
         signal = ending_signal(ended.code)
         logger.warning("reader gone", code=ended.code, signal=signal, field=course.field)
         bound = course.bound_of_end(ended)
@@ -144,7 +155,7 @@ class _Children:
         return answer.body
 
 
-def _followed(child: Child, folder: Path) -> Course:
+def _followed_course(child: Child, folder: Path) -> Course:
     """Return the course of a child until its end, or until it exceeds its time or its written bytes."""
     watch = Watch.begun(LONGEST_S + _PATIENCE_S, folder, READING)
     course, look, overrun = Course(), time.monotonic() + LOOK_S, ""
@@ -175,8 +186,12 @@ class Reader:
         """Return the JSON answer of the child; raises as `_Children.read`."""
         return self._children.read(question.order)
 
+    def start(self) -> None:
+        """Read again after a stop; see `QuestionWorker`."""
+        self._children.start()
+
     def stop(self) -> None:
-        """End all children; see `QuestionWorker`."""
+        """End all children and start no other; see `QuestionWorker`."""
         self._children.stop()
 
     def rest(self) -> None:

@@ -95,6 +95,11 @@ class Context:
         if self.scheduler is not None:
             self.scheduler.wake()
 
+    def start_waiting(self) -> None:
+        """Take the questions of callers that wait for an answer, also after a stop."""
+        self.live.start()
+        self.reader.start()
+
     def stop_waiting(self) -> None:
         """End the workers of callers that wait for an answer, and the streams of events."""
         self.watcher.stop()

@@ -87,24 +87,24 @@ def list_effects() -> list[EffectBody]:
 @needs(OPEN_TO_ALL)
 def page(request: Request) -> Response:
     """Return the page."""
-    return _served(page_file("index.html"), request)
+    return _document_response(page_file("index.html"), request)
 
 
 @pages_router.get("/docs")
 @needs(OPEN_TO_ALL)
 def docs(request: Request) -> Response:
     """Return the page that shows the description of the API."""
-    return _served(page_file("docs.html"), request)
+    return _document_response(page_file("docs.html"), request)
 
 
 @pages_router.get("/page/{name}")
 @needs(OPEN_TO_ALL)
 def part(name: str, request: Request) -> Response:
     """Return a style sheet, a module or plotly.js."""
-    return _served(page_file(name), request)
+    return _document_response(page_file(name), request)
 
 
-def _served(file: PageFile | None, request: Request) -> Response:
+def _document_response(file: PageFile | None, request: Request) -> Response:
     """Return a file, compressed if the caller takes that, or 304."""
     if file is None:
         raise NotFound("The page has no such file.")
@@ -122,6 +122,6 @@ def description(request: Request) -> Response:
     """Return the description, as OpenAPI's media type to callers that prefer it."""
     accepted = negotiated(request.headers.get("accept", "*/*"), _OFFERED)
     content = json.dumps(request.app.openapi(), ensure_ascii=False, allow_nan=False).encode()
-    answer = _served(PageFile(content, JSON if accepted == JSON else OPENAPI), request)
+    answer = _document_response(PageFile(content, JSON if accepted == JSON else OPENAPI), request)
     answer.headers.add_vary_header("Accept")
     return answer

@@ -123,7 +123,7 @@ def job_results(
         raise problem
     process = context.registry[job.process]
     if response is None and mode is None:
-        form = _accepted(job.delivery, request.headers.get("accept", "*/*"))
+        form = _accepted_delivery(job.delivery, request.headers.get("accept", "*/*"))
     else:
         form = delivery(response or job.delivery.response, mode, "transmissionMode")
     reference = reference_of(job)
@@ -136,7 +136,7 @@ def job_results(
     return file_response(known_result(context, job.key, process.kind), request, headers)
 
 
-def _accepted(ordered: Delivery, accept: str) -> Delivery:
+def _accepted_delivery(ordered: Delivery, accept: str) -> Delivery:
     """Return the form that the execution requested, or the other one if the caller prefers its media type."""
     offered = (JSON, NETCDF) if ordered.response == "document" else (NETCDF, JSON)
     accepted = negotiated(accept, offered)

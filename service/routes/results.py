@@ -120,32 +120,29 @@ def known_result(context: Context, key: str, kind: str | None = None) -> StoredR
     stored = context.store.verified(key, kind)
     if stored.kind not in RESULT_KINDS:
         raise NotFound(f"Result {key!r} is of a kind that this version does not know: {stored.kind}.")
-    if stored.path.suffix != SUFFIX:
-        reason = "Version 0.1 stored it as JSON; results are netCDF"
-        raise NotFound(f"Result {key!r} cannot be read. {reason}. Submit its case again to compute it.")
     return stored
 
 
 def file_response(
-    stored: StoredResult, request: Request, further: Mapping[str, str] | None = None
+    result: StoredResult, request: Request, further: Mapping[str, str] | None = None
 ) -> Response:
     """Return the file with its digest (RFC 9530), or 304."""
-    headers = _headers(stored) | dict(further or {})
+    headers = _headers(result) | dict(further or {})
     if _known(request, headers["ETag"]):
         return Response(status_code=304, headers=headers)
     return FileResponse(
-        stored.path,
+        result.path,
         media_type=NETCDF,
-        filename=f"{stored.kind}_{stored.key[:12]}{SUFFIX}",
-        headers=headers | _digest(bytes.fromhex(stored.sha256)),
+        filename=f"{result.kind}_{result.key[:12]}{SUFFIX}",
+        headers=headers | _digest(bytes.fromhex(result.sha256)),
     )
 
 
-def _metadata(stored: StoredResult, request: Request, fields: dict[str, Any]) -> Response:
-    headers = _headers(stored, _FIGURES)
+def _metadata(result: StoredResult, request: Request, fields: dict[str, Any]) -> Response:
+    headers = _headers(result, _FIGURES)
     if _known(request, headers["ETag"]):
         return Response(status_code=304, headers=headers)
-    stored_fields = {"hash": stored.key, "sha256": stored.sha256, "size": stored.size}
+    stored_fields = {"hash": result.key, "sha256": result.sha256, "size": result.size}
     response = JSONResponse(stored_fields | fields, headers=headers)
     response.headers.update(_digest(hashlib.sha256(response.body).digest()))
     return response
@@ -155,10 +152,10 @@ def _digest(sha256: bytes) -> dict[str, str]:
     return {"Content-Digest": f"sha-256=:{base64.b64encode(sha256).decode()}:"}
 
 
-def _headers(stored: StoredResult, form: str = "") -> dict[str, str]:
+def _headers(result: StoredResult, form: str = "") -> dict[str, str]:
     """Return the headers of an answer that never changes; `form` tells it from the file itself."""
-    tag = f'"{stored.sha256}{form}"'
-    return {"ETag": tag, "Cache-Control": _IMMUTABLE, "Vary": "Accept", "Result-Kind": stored.kind}
+    tag = f'"{result.sha256}{form}"'
+    return {"ETag": tag, "Cache-Control": _IMMUTABLE, "Vary": "Accept", "Result-Kind": result.kind}
 
 
 def _known(request: Request, tag: str) -> bool:

@@ -111,7 +111,7 @@ class Deployment:
         names none of them; or the index names files and the place is empty.
         """
         if self._owner() is None:
-            self._compared().refuse_strangers(self._refusal)
+            self._comparison().refuse_strangers(self._refusal)
             self._mark()
         self.confirm()
 
@@ -123,7 +123,7 @@ class Deployment:
         owner = self._owner()
         if owner is None or owner.deployment != self._named():
             whose = f"to {owner}" if owner is not None else f"to nobody: its {NOTE} is gone"
-            tip = _REINDEX if self._compared().may_be_ours else _OTHER_STORE
+            tip = _REINDEX if self._comparison().may_be_ours else _OTHER_STORE
             raise self._refusal(f": it belongs {whose}", tip)
 
     def write_database(self) -> None:
@@ -160,7 +160,7 @@ class Deployment:
 
         Raises `BadInput`: they are another's, and the index names other files.
         """
-        if self._owner() is None or self._compared().may_be_ours:
+        if self._owner() is None or self._comparison().may_be_ours:
             self._mark(replace=True)
         self.confirm()
 
@@ -180,7 +180,7 @@ class Deployment:
         except OSError as error:
             raise self._refusal(f", where we may write: {error.strerror}", _WRITABLE) from None
 
-    def _compared(self) -> _Comparison:
+    def _comparison(self) -> _Comparison:
         named = {line.file for line in self._store.lines()}
         first = None
         for file in self._files.files():

@@ -219,7 +219,7 @@ class ResultStore:
         ordered = statement.order_by(results.c.created.desc(), results.c.key.desc()).limit(limit)
         with reading(self._engine) as connection:
             rows = connection.execute(ordered).all()
-        return [(Mark(row.created, at_address(row.key)[1]), _read(row)) for row in rows]
+        return [(Mark(row.created, at_address(row.key)[1]), _index_line(row)) for row in rows]
 
     def verified(self, key: str, kind: str | None = None) -> StoredResult:
         """Return the result of a key after comparing its bytes with its digest; without `kind`, of any kind.
@@ -275,7 +275,7 @@ class ResultStore:
             rows = connection.execute(
                 select(results).where(*conditions).order_by(results.c.key).limit(limit)
             ).all()
-        return [_read(row) for row in rows]
+        return [_index_line(row) for row in rows]
 
     @optional
     def note_headline(self, key: str, kind: str, headline: Mapping[str, Any]) -> None:
@@ -309,7 +309,7 @@ class ResultStore:
         """Return the whole index."""
         with reading(self._engine) as connection:
             rows = connection.execute(select(results).order_by(results.c.key, results.c.kind)).all()
-        return [_read(row) for row in rows]
+        return [_index_line(row) for row in rows]
 
 
 def _is_key(key: str) -> bool:
@@ -321,10 +321,10 @@ def _line(connection: Connection, address: str, kind: str | None) -> IndexLine |
     if kind is not None:
         statement = statement.where(results.c.kind == kind)
     row = connection.execute(statement).first()
-    return None if row is None else _read(row)
+    return None if row is None else _index_line(row)
 
 
-def _read(row: Row[Any]) -> IndexLine:
+def _index_line(row: Row[Any]) -> IndexLine:
     project, key = at_address(row.key)
     fields = (row.kind, row.sha256, row.size, row.file, row.used, row.reindexed)
     return IndexLine(key, *fields, project=project, headline=row.headline)

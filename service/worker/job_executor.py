@@ -76,9 +76,9 @@ class _DeferredCluster:
         if not self.connected:
             # A Dask worker that only waits for this job sees the file, and frees its thread for the tasks.
             self.marker.touch()
-            self.connected.append(_connected(self.scheduler, self.cost))
+            self.connected.append(_connected_cluster(self.scheduler, self.cost))
         return self.connected[0].run(function, shared, items)
 
 
-def _connected(scheduler: str, cost: RunCost) -> ByDask:
+def _connected_cluster(scheduler: str, cost: RunCost) -> ByDask:
     return replace(dask_workers(scheduler), cost=cost)

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import json
+import time
 from collections.abc import Callable
 from functools import partial
 from typing import Any
 
 from dynamics.results import RunResult
+from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.housings import HousedScene
 from lineofaction.gearbox.registry import STUDIES, SUFFIX
 from lineofaction.gearbox.schemas.plan import omission_warnings
+from lineofaction.gearbox.stages import PacedFraction
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.study import Study
 from service.store.results import ResultStore
@@ -54,7 +57,8 @@ def _work(study: Study, order: WorkOrder, progress: Progress) -> tuple[Product, 
     with executor(order) as workers:
         key = getattr(inputs, "run", None)
         run = None if key is None else RunResult.from_netcdf(order.stored[key])
-        means = Means(order.data_directory, progress, workers, folder=order.workspace / "runs", run=run)
+        report = _paced(study, subject, inputs, order, progress)
+        means = Means(order.data_directory, report, workers, folder=order.workspace / "runs", run=run)
         result = study.run.compute(subject, inputs, means)
     file = order.workspace / f"{study.kind}{SUFFIX}"
     study.run.file.write(result, file)
@@ -63,6 +67,24 @@ def _work(study: Study, order: WorkOrder, progress: Progress) -> tuple[Product, 
         result_warnings = [*omission_warnings(subject.inputs.left_out), *(result_warnings or ())]
     runs = (Product(key, "run", run) for key, run in study.run.stored_runs(result, means).items())
     return (*products, *runs, Product(order.key, study.kind, file, result_warnings))
+
+
+def _paced(study: Study, subject: Any, inputs: Any, order: WorkOrder, progress: Progress) -> Progress:
+    """Return the progress of a study of a case with the fraction of the whole, by its planned cost.
+
+    The plan of a scene needs steps of its motion: its stages have their usual shares, at the other end.
+    """
+    if not isinstance(subject, CheckedCase):
+        return progress
+    cost = study.run.predicted(subject, inputs, order.data_directory / "compliance")
+    if cost is None:
+        return progress
+    paced, begun_s = PacedFraction(cost.shares(study.stages)), time.monotonic()
+
+    def report(stage: str, fraction: float, _whole: float | None = None) -> None:
+        progress(stage, fraction, paced.at(stage, fraction, time.monotonic() - begun_s))
+
+    return report
 
 
 def _subject(study: Study, order: WorkOrder, progress: Progress) -> tuple[Any, tuple[Product, ...], Any]:

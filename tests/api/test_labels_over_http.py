@@ -122,7 +122,7 @@ def test_the_verb_labels_what_it_submits(client, monkeypatch):
     plain = LineOfActionClient("http://testserver", transport=client._transport)
     monkeypatch.setattr("lineofaction.cli.submit.LineOfActionClient", lambda _: plain)
     monkeypatch.setattr(
-        "lineofaction.cli.submit._submitted", lambda client, *_: client.submit("fake", {"wish": {}})
+        "lineofaction.cli.submit._submitted_state", lambda client, *_: client.submit("fake", {"wish": {}})
     )
     labels = ("--title", "Study 7", "--tag", "EV-3", "--tag", "draft")
     result = CliRunner().invoke(command, ["submit", "examples/palermo_spur_20_20.toml", *labels, "--json"])

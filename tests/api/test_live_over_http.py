@@ -292,6 +292,7 @@ def test_a_table_that_is_unknown_or_removed_is_not_found(client, key):
     known = context.live.ask(LiveOrder(STE, inputs)).result(timeout=PATIENCE_S)
     assert len(json.loads(known)["curves"]) == 1  # from memory
     context.live.stop()
+    context.live.start()
     with pytest.raises(ServiceError, match="removed from the store") as gone:
         context.live.ask(LiveOrder(STE, inputs)).result(timeout=PATIENCE_S)
     assert gone.value.as_json()["status"] == 404

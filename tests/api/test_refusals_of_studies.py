@@ -285,16 +285,10 @@ def test_a_sample_too_large_for_a_job_is_refused_by_the_service_alone(served):
 
 
 SAID: dict[str, list[tuple[list[str], str]]] = {
-    "flank": [
-        (["--torque", "100", "--force", "5"], "normal_force_n = 5.0: must be left out when torque_n_m"),
-        (["--torque", "-1"], "torque_n_m = -1"),
-        (["--torque", "nan"], "torque_n_m"),
-    ],
+    "flank": [(["--torque", "nan"], "torque_n_m")],
     "sensitivity": [
         (["--misalignment-um", "0,x"], "--misalignment-um = '0,x': must be FIRST:LAST:STEP, or increasing"),
         (["--misalignment-um", "0,nan"], "misalignment_um[1] = nan"),
-        (["--misalignment-um", "30,15"], "misalignment_um = [30.0, 15.0]: must be strictly increasing"),
-        (["--misalignment-um", "0,20000"], "misalignment_um[1] = 20000"),
         (["--center-distance-change-percent", "-5"], "jam"),
     ],
     "modes": [(["--speed-rpm", text], "--speed-rpm") for text in ("x", "0:1", "10:1:1", "0:1:-1", "0:1e6:1")],

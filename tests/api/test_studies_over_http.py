@@ -1,6 +1,5 @@
-"""Studies as jobs beyond their contract: older files, rungs that fail, kept runs, rotors, textbooks."""
+"""Studies as jobs beyond their contract: rungs that fail, kept runs, rotors, textbooks."""
 
-import hashlib
 import importlib
 import math
 import tomllib
@@ -20,16 +19,12 @@ from fe_contact.analysis.studies.frontier import FIDELITIES
 from fe_contact.errors import SolveError
 from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.result_figures import figures_of
-from lineofaction.gearbox.stages import PacedFraction
-from service.store.places import stored_results
-from service.store.results import IndexLine
 from service.worker import study_work
 from service.worker.order import WorkOrder
 from service.worker.process import default_registry
 
 FRONTIER = default_registry()["frontier"]
 CLOSED = ["iso6336", "thin_slices"]
-OLD = "0d" * 32
 STUDY = {
     "factors": [
         {"path": "loads.brake.torque_n_m", "levels": [50.0, 100.0]},
@@ -52,28 +47,14 @@ def client(served):
     return served.client
 
 
-def test_one_that_version_0_1_stored_as_json_is_to_be_computed_again(served, tmp_path):
-    old, store = tmp_path / "ablation.json", stored_results(served.data)
-    old.write_text("{}", encoding="utf-8")
-    digest = hashlib.sha256(b"{}").hexdigest()
-    name = f"ablation/{OLD[:2]}/{OLD}.{digest[:16]}.01234567.json"
-    store.files.put(name, old, digest)
-    store.enter(IndexLine(OLD, "ablation", digest, 2, name, "2026-01-01T00:00:00Z"))
-    for path in (f"/v1/results/{OLD}", f"/v1/results/{OLD}/figures"):
-        answer = served.http.get(path)
-        assert answer.status_code == 404
-        assert "Version 0.1 stored it as JSON" in answer.json()["detail"]
-
-
 # The ladder of an accuracy study, worked in this process.
 
 
 def worked(inputs: dict[str, Any], workspace: Path) -> tuple[dict[str, Any], list[float]]:
     """Do the work; return its JSON and the progress of the whole job."""
     seen: list[float | None] = []
-    paced = PacedFraction(FRONTIER.stages)
     order = WorkOrder(FRONTIER.entry, inputs, FRONTIER.key(inputs), workspace, workspace)
-    (product,) = study_work.frontier(order, lambda *step: seen.append(paced.at(*step, float(len(seen)))))
+    (product,) = study_work.frontier(order, lambda *step: seen.append(step[2] if len(step) > 2 else None))
     assert (product.key, product.kind) == (order.key, "frontier")
     return figures_of("frontier", product.file), [part for part in seen if part is not None]
 

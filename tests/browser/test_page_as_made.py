@@ -73,7 +73,9 @@ def test_orders_of_run_out_and_waves_have_names(page, tmp_path):
     page.locator("#analyze").press("Enter")
     expect(page).to_have_url(re.compile("database="))
     answered(page)
-    expect(page.locator("[data-figure=live_ste] h3")).to_have_text("Transmission error over 20 base pitches")
+    expect(page.locator("[data-figure=live_ste] h3")).to_have_text(
+        "Transmission error over 20 base pitches, at 1 N m"
+    )
     tab(page, "Orders")
     orders = page.locator("[data-figure=live_harmonics] .plot")
     for name in ("pinion 1 ", "pinion 7 ", "pinion 13 ", "mesh 1 "):

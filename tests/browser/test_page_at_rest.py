@@ -119,7 +119,7 @@ def test_the_band_of_a_class_is_drawn_and_goes_away_with_its_switch(visit, asked
     assert curve.evaluate(BANDS) == [] and not any("tolerance_class" in question for question in asked)
     page.locator("#band-on").check()
     expect(words).to_contain_text("nine of ten pairs within class 6, as the case states none")
-    expect(words).to_contain_text(re.compile(r"µm \(± .*1000 drawn, 16 of them solved"))
+    expect(words).to_contain_text(re.compile(r"± .* µm peak to peak, .*; 1000 drawn, 16 of them solved\."))
     until(lambda: len(curve.evaluate(BANDS)) == 1)
     (band,) = curve.evaluate(BANDS)
     assert band["fillcolor"] == "#0072B233" and band["width"] > 0.0  # 20 % of the color of the line

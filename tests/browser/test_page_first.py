@@ -56,7 +56,9 @@ def test_no_figure_of_a_result_stands_under_the_title_of_another(browser, addres
     expect(figures).to_contain_text("mean STE")
     page.unroute("**/ste", hold)  # lets go what was held
     expect(figures).to_contain_text("first harmonic")
-    expect(page.locator("#live-ripple figcaption")).to_contain_text("Gray: as analyzed, at the same torque")
+    expect(page.locator("#live-ripple figcaption")).to_contain_text(
+        "Gray: the pair as analyzed, at the same torque"
+    )
     page.close()
 
 

@@ -50,7 +50,8 @@ class Hand:
     def did(self, task: str) -> None:
         """See that a task took the actions of the documentation, and few."""
         (text,) = (part for part in TASKS if part.startswith(f"{task}\n"))
-        assert self.actions == len(re.findall(r"^\d+\. ", text, re.MULTILINE)) < MAX
+        *_, last = re.findall(r"^(\d+)\. ", text, re.MULTILINE)  # an earlier task may be its beginning
+        assert self.actions == int(last) < MAX
 
 
 @pytest.fixture

@@ -53,7 +53,13 @@ class BadInput:
 
 DROP = object()
 UNITS = {"_mm": MM, "_um": UM, "_deg": DEG, "_gpa": 1e9}
-IN_PYTHON = {"load.torque_n_m": "torques", "errors.misalignment_um": "misalignments", "_budget_s": "_budget"}
+IN_PYTHON = {
+    "load.torque_n_m": "torques",
+    "load.normal_force_n": "normal_forces",
+    "errors.misalignment_um": "misalignments",
+    "errors.center_distance_change_mm": "center_distance_changes",
+    "_budget_s": "_budget",
+}
 
 
 def in_si(shown: Table) -> Table:
@@ -144,7 +150,8 @@ def of_file(name: str, path: str, value: Any) -> BadInput:
 NAN = float("nan")
 WISHES: Table = {"tolerance": 0.01, "level": "fine"}
 MISALIGNED: Table = {"model": "plane_strain", "misalignments": (0.0, 30 * UM)}
-TORQUE, SKEW = "load.torque_n_m", "errors.misalignment_um"
+TORQUE, FORCE = "load.torque_n_m", "load.normal_force_n"
+SKEW, DISTANCE = "errors.misalignment_um", "errors.center_distance_change_mm"
 
 BAD_INPUTS: tuple[BadInput, ...] = (
     of_gear("too few teeth", "teeth", 3),
@@ -197,6 +204,13 @@ BAD_INPUTS: tuple[BadInput, ...] = (
         {"accuracy.model": "plane_strain", SKEW: [0.0, 30.0]},
     ),
     of_run("misalignments out of order", {"misalignments": (30 * UM, 0.0)}, SKEW, [30.0, 0.0]),
+    of_run(
+        "repeated force",
+        {"torques": None, "normal_forces": [100.0, 100.0]},
+        FORCE,
+        {"load": {"normal_force_n": [100.0, 100.0]}},
+    ),
+    of_run("distances out of order", {"center_distance_changes": (1e-4, 0.0)}, DISTANCE, [0.1, 0.0]),
     of_plane(
         "helical gears in a plane model",
         helical,

@@ -6,10 +6,12 @@ from typing import Any
 import pytest
 from command_line import loa
 from housing_solid import housed_scene, write_block
+from printed_pages import Printed
 from spur_case import spur_case
 
 from lineofaction.gearbox.project import status_of
 from lineofaction.gearbox.schemas.toml import toml_text
+from lineofaction.report.drawing.printing import browser
 
 UNIT = Path(__file__).parents[2] / "examples" / "two_stage" / "two_stage.rexs"
 RESTS_ON = ("examples",)
@@ -89,15 +91,49 @@ def gearbox(folder: Path) -> None:
     (folder / "search.toml").write_text(SEARCH)
 
 
-@pytest.mark.nightly
-def test_every_verb_takes_the_folder_to_which_a_housing_is_added(tmp_path):
-    unit = tmp_path / "unit"
+HEADS = {
+    "analyze": "Static transmission error",
+    "deflect": "Bearings",
+    "modes": "Modes",
+    "response": "Forced response",
+    "simulate": "Dynamic transmission error",
+    "vibration": "Vibration of the housing",
+    "noise": "Sound power",
+    "sensitivity": "Sensitivity",
+    "optimize": "What is heard",
+}
+"""Heading of a result in the report of the folder, by its verb."""
+
+
+@pytest.fixture(scope="module")
+def housed(tmp_path_factory):
+    """A folder with a housing, on which every verb has worked."""
+    unit = tmp_path_factory.mktemp("housed") / "unit"
     gearbox(unit)
-    block = write_block(tmp_path / "block.step")
+    block = write_block(unit.parent / "block.step")
     housing = {"housing": (block, "--material", "gray_cast_iron")}
     for verb, options in (housing | OF_HOUSED).items():
         done = loa(verb, unit, *options)
         assert done.exit_code == 0, (verb, done.output)
+    return unit
+
+
+@pytest.mark.nightly
+def test_every_verb_takes_the_folder_to_which_a_housing_is_added(housed):
+    unit = housed
     fresh = {one.verb for one in status_of(unit) if one.state == "fresh"}
     assert fresh == set(OF_HOUSED) - {"status", "plan", "ste", "report"}
     assert (unit / "report.html").is_file()
+
+
+@pytest.mark.nightly
+@pytest.mark.skipif(browser() is None, reason="no browser on this machine that prints")
+def test_nine_results_are_printed_on_twelve_pages_each_with_its_head(housed):
+    results = {one.verb for one in status_of(housed) if one.state == "fresh"}
+    assert results == HEADS.keys() and len(results) == 9
+    done = loa("report", housed, "-o", housed.parent / "report.pdf")
+    assert done.exit_code == 0, done.output
+    printed = Printed((housed.parent / "report.pdf").read_bytes())
+    assert len(printed.pages) <= 12
+    headings = [printed.words(heading) for heading in printed.document.all("H2")]
+    assert {verb: headings.count(head) for verb, head in HEADS.items()} == dict.fromkeys(HEADS, 1)

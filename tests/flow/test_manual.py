@@ -100,7 +100,11 @@ def test_a_guide_runs_after_those_whose_files_it_goes_on_with():
 
 
 def links(page: Path) -> set[Path]:
-    targets = re.findall(r"\]\(([^)#\s]+\.md)", page.read_text("utf-8"))
+    """Return the pages that a page leads to, by links and by the contents that it shows."""
+    text = page.read_text("utf-8")
+    targets = re.findall(r"\]\(([^)#\s]+\.md)", text)
+    for contents in re.findall(r"```\{toctree\}\n:maxdepth: 1\n\n(.*?)```", text, re.DOTALL):
+        targets += [f"{name}.md" for name in contents.split()]
     return {(page.parent / target).resolve() for target in targets}
 
 

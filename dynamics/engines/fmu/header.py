@@ -9,15 +9,15 @@ from dynamics.engines.fmu.model_description import BOOLEAN, INTEGER, REAL, TABLE
 from dynamics.engines.mesh_element import MeshElement
 
 
-def _of_kind(chosen: Sequence[Variable], kind: str) -> list[Variable]:
+def _of_kind(variables: Sequence[Variable], kind: str) -> list[Variable]:
     """Return the variables of `kind` in the order of their value references."""
-    return [variable for variable in chosen if variable.kind == kind]
+    return [variable for variable in variables if variable.kind == kind]
 
 
-def c_header(element: MeshElement, chosen: Sequence[Variable], guid: str, identity: str) -> str:
+def c_header(element: MeshElement, variables: Sequence[Variable], guid: str, identity: str) -> str:
     """Return variables.h; numbers are written as hexadecimal floats, which C99 reads without rounding."""
-    parts = [_kind(_of_kind(chosen, kind), kind.upper()) for kind in (REAL, INTEGER, BOOLEAN)]
-    names = ", ".join(f'"{variable.name}"' for variable in _of_kind(chosen, REAL))
+    parts = [_kind(_of_kind(variables, kind), kind.upper()) for kind in (REAL, INTEGER, BOOLEAN)]
+    names = ", ".join(f'"{variable.name}"' for variable in _of_kind(variables, REAL))
     macros = {
         "GUID": f'"{guid}"',
         "TABLE_FILE": f'"{TABLE_FILE}"',
@@ -44,15 +44,15 @@ def c_header(element: MeshElement, chosen: Sequence[Variable], guid: str, identi
     )
 
 
-def _kind(chosen: Sequence[Variable], kind: str) -> str:
+def _kind(variables: Sequence[Variable], kind: str) -> str:
     """Value references and start values of one kind; what can be set comes first."""
-    settable = [variable for variable in chosen if variable.start is not None]
-    if list(chosen[: len(settable)]) != settable:
+    settable = [variable for variable in variables if variable.start is not None]
+    if list(variables[: len(settable)]) != settable:
         raise AssertionError("outputs come after what can be set")
-    names = ", ".join([*(variable.name.upper() for variable in chosen), f"{kind}_COUNT"])
+    names = ", ".join([*(variable.name.upper() for variable in variables), f"{kind}_COUNT"])
     start = ", ".join(
         _exact(variable.start or 0.0) if kind == "REAL" else str(int(variable.start or 0))
-        for variable in chosen
+        for variable in variables
     )
     return f"enum {{{names}, {kind}_SETTABLE = {len(settable)}}};\n#define {kind}_START_VALUES {{{start}}}"
 

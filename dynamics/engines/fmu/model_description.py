@@ -47,7 +47,7 @@ class Variable:
     """None: an output, which follows from the others."""
 
 
-def model_description(name: str, chosen: Sequence[Variable], guid: str, sources: Sequence[str]) -> bytes:
+def model_description(name: str, variables: Sequence[Variable], guid: str, sources: Sequence[str]) -> bytes:
     """Return the XML; it holds no date, so that the same table gives the same file.
 
     `name` is a C identifier; `sources` are the C files to compile, in ``sources/``.
@@ -70,16 +70,16 @@ def model_description(name: str, chosen: Sequence[Variable], guid: str, sources:
     for unit_name, exponents in _UNITS.items():
         unit = Xml.SubElement(definitions, "Unit", name=unit_name)
         Xml.SubElement(unit, "BaseUnit", {base: str(power) for base, power in exponents.items()})
-    _add_variables(root, chosen)
-    _add_structure(root, chosen)
+    _add_variables(root, variables)
+    _add_structure(root, variables)
     Xml.indent(root)
     content: bytes = Xml.tostring(root, encoding="UTF-8", xml_declaration=True)
     return content + b"\n"
 
 
-def _add_variables(root: Xml.Element, chosen: Sequence[Variable]) -> None:
+def _add_variables(root: Xml.Element, variables: Sequence[Variable]) -> None:
     section, count = Xml.SubElement(root, "ModelVariables"), dict.fromkeys((REAL, INTEGER, BOOLEAN), 0)
-    for variable in chosen:
+    for variable in variables:
         entry = Xml.SubElement(
             section,
             "ScalarVariable",
@@ -97,11 +97,11 @@ def _add_variables(root: Xml.Element, chosen: Sequence[Variable]) -> None:
         Xml.SubElement(entry, variable.kind, attributes)
 
 
-def _add_structure(root: Xml.Element, chosen: Sequence[Variable]) -> None:
+def _add_structure(root: Xml.Element, variables: Sequence[Variable]) -> None:
     """Every output depends on every input, at once."""
     structure = Xml.SubElement(root, "ModelStructure")
     for section in ("Outputs", "InitialUnknowns"):
         listed = Xml.SubElement(structure, section)
-        for index, variable in enumerate(chosen, start=1):
+        for index, variable in enumerate(variables, start=1):
             if variable.causality == "output":
                 Xml.SubElement(listed, "Unknown", index=str(index))

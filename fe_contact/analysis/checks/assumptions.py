@@ -63,7 +63,7 @@ def check_assumptions(run: SolvedTable) -> tuple[Assumption, ...]:
     """Check all assumptions of a table on its results."""
     return (
         *_tip_edges(run, _ripples(run)),
-        *_neglected(run),
+        *_neglected_assumptions(run),
         *_plane(run),
         *_coast_flanks(run),
         *_printed_data(run),
@@ -83,7 +83,7 @@ def check_cheaply(run: SolvedRun) -> tuple[Assumption, ...]:
     return (*_plane(run), *_coast_flanks(run), *_printed_data(run), *_crests(run), _load_patches(run))
 
 
-def _allowed(run: SolvedRun) -> AllowedError:
+def _allowed_error(run: SolvedRun) -> AllowedError:
     return run.checked.request.options.allowed
 
 
@@ -100,13 +100,13 @@ def _tip_edges(run: SolvedRun, size: FloatArray) -> Iterator[Assumption]:
     deepest = [np.maximum(depth, _at_handovers(point, run.plan.load)) for point, depth in pairs]
     depth = np.stack(deepest, axis=1)
     # a curve without ripple has the size 0, which rounding of its mean replaces
-    scale = np.maximum(_allowed(run).scale(size), 1e-12 * np.abs(_means(run)))
+    scale = np.maximum(_allowed_error(run).scale(size), 1e-12 * np.abs(_means(run)))
     change = float(np.max(depth / scale))
     reason = "the gaps at the tip edges stay open"
     if depth.any():
         largest = engineering(1e6 * float(depth.max()), 2)
         reason = f"teeth bend {largest} µm beyond the gap at a tip edge"
-    yield Assumption(effect, "tip edges stay clear", change <= _allowed(run).relative, change, reason)
+    yield Assumption(effect, "tip edges stay clear", change <= _allowed_error(run).relative, change, reason)
 
 
 def _at_handovers(point: OperatingPoint, load: FloatArray) -> FloatArray:
@@ -120,9 +120,9 @@ def _at_handovers(point: OperatingPoint, load: FloatArray) -> FloatArray:
     return np.asarray(np.max(depths, axis=0))
 
 
-def _neglected(run: SolvedTable) -> Iterator[Assumption]:
+def _neglected_assumptions(run: SolvedTable) -> Iterator[Assumption]:
     """Check the effects neglected for the tolerance: estimate and bound of their influence."""
-    allowed, means, ripples = _allowed(run), _means(run), _ripples(run)
+    allowed, means, ripples = _allowed_error(run), _means(run), _ripples(run)
     for name in run.checked.request.neglected:
         scene, model = run.checked.assessing(name)
         influence = estimate_influence(scene, model, name)
@@ -152,7 +152,7 @@ def _plane(run: SolvedRun) -> Iterator[Assumption]:
     if bias := plane_bias(run.places.places[0].contact.pair, run.plan.discretization):
         missing = abs(bias.mean)
         reason = f"the finite width changes about {engineering(100 * missing, 2)} % of the mean"
-        holds = missing <= _allowed(run).relative
+        holds = missing <= _allowed_error(run).relative
         yield Assumption(width, "plane strain over the whole face", holds, missing, reason)
 
 

@@ -74,7 +74,7 @@ class CycleContact:
     def exact(self, pitches: IntArray) -> FloatArray:
         """Return the transmission error in whole base pitches (t,), (t, P, L) in m."""
         parts = problems_in_parts(self.point, self.position, pitches)
-        deflection = [_converged(solve_contact(part, self.load)).deflection for part in parts]
+        deflection = [_converged_solution(solve_contact(part, self.load)).deflection for part in parts]
         return self.by_pitch(np.concatenate(deflection))
 
     def solved(self, pitches: IntArray) -> SolvedState:
@@ -100,7 +100,7 @@ class CycleContact:
 
     def _state(self, problem: ContactProblem, solution: ContactSolution) -> SolvedState:
         return SolvedState(
-            problem, _converged(solution), self.rows(self.point.contact.pair, problem.candidates)
+            problem, _converged_solution(solution), self.rows(self.point.contact.pair, problem.candidates)
         )
 
 
@@ -109,7 +109,7 @@ def in_parts(pitches: IntArray) -> list[IntArray]:
     return np.split(pitches, np.arange(PART, pitches.size, PART)) if pitches.size else []
 
 
-def _converged(solution: ContactSolution) -> ContactSolution:
+def _converged_solution(solution: ContactSolution) -> ContactSolution:
     if not solution.converged:
         failed = int(np.count_nonzero(solution.status))
         raise SolveError(f"contact of {failed} points of a cycle was not solved", solution)
@@ -341,23 +341,23 @@ class Envelope:
 
 
 def chosen(
-    contact: CycleContact, allowed: AllowedError, part: float = 1.0, keep: Keep = keep_nothing
+    contact: CycleContact, tolerance: AllowedError, part: float = 1.0, keep: Keep = keep_nothing
 ) -> Envelope | None:
     """Solve as many pitches as a part of the error allowed needs; None where that is one in `DIVISOR`."""
     envelope = Envelope.of(contact, keep)
     envelope = envelope.about(envelope.next)
-    while not _within(allowed, part, envelope):
+    while not _within(tolerance, part, envelope):
         if DIVISOR * envelope.pitches.size > contact.pitches:
             return None
         envelope = envelope.about(envelope.next)
     return envelope
 
 
-def _within(allowed: AllowedError, part: float, envelope: Envelope) -> bool:
+def _within(tolerance: AllowedError, part: float, envelope: Envelope) -> bool:
     """Whether derivatives give mean and peak-to-peak within a part of the tolerance, at all loads.
 
     The mean is that of nominal gears: deviations turn the gears, and it may be zero.
     """
     ste, errors = envelope.ste, envelope.quantity_errors
     values = np.stack([envelope.nominal, np.ptp(ste, axis=(0, 1))])
-    return bool(np.all(errors[[MEAN, PEAK_TO_PEAK]] <= part * allowed.of(values)))
+    return bool(np.all(errors[[MEAN, PEAK_TO_PEAK]] <= part * tolerance.of(values)))

@@ -87,12 +87,12 @@ def refined_table(checked: Checked, case: Json, run: Run, on_draft: OnDraft | No
         and `tolerance` says why there was no further pass.
     """
     if run.cache is not None:
-        return _refined(checked, _Passes(case, run, on_draft))
+        return _refined_database(checked, _Passes(case, run, on_draft))
     with TemporaryDirectory() as folder:
-        return _refined(checked, _Passes(case, replace(run, cache=Path(folder)), on_draft))
+        return _refined_database(checked, _Passes(case, replace(run, cache=Path(folder)), on_draft))
 
 
-def _refined(checked: Checked, shared: _Passes) -> SteDatabase:
+def _refined_database(checked: Checked, shared: _Passes) -> SteDatabase:
     best = shared.first(checked)
     passes = [best]
     assert best.table is not None
@@ -138,11 +138,11 @@ def _next_refinement(table: SteDatabase, last: Pass) -> Refinement | str:
     return measured
 
 
-def _behind_trial(behind: Decision, trial: Pass) -> Refinement:
+def _behind_trial(decision: Decision, trial: Pass) -> Refinement:
     """Return the pass that was expected to follow a trial, where one step from the trial is not enough."""
-    expected = behind.mesh.option.error.reducible / behind.checked.request.options.allowed.relative
-    name = f"{behind.checked.model_name}, {behind.mesh.option.name}"
-    return Refinement(behind, "trial", (f"{trial.name} -> {name}",), expected)
+    expected = decision.mesh.option.error.reducible / decision.checked.request.options.allowed.relative
+    name = f"{decision.checked.model_name}, {decision.mesh.option.name}"
+    return Refinement(decision, "trial", (f"{trial.name} -> {name}",), expected)
 
 
 def _interval_reason(table: SteDatabase) -> str:

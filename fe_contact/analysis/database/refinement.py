@@ -165,13 +165,13 @@ def next_pass(choice: Decision, shares: FloatArray) -> Refinement | str:
         level_left=len(LEVELS),
     )
     source = int(np.argmax(initial.sources))
-    finest = _refined(initial)
+    finest = _refined_resolution(initial)
     barrier = _barrier(initial, finest)
     if barrier is not None:
         if barrier == _WIDTH and (model := next_model(choice.checked)):
             return _model_refinement(model, initial)
         return _refusal(finest, barrier)
-    finer = _refined(replace(initial, level_left=1))
+    finer = _refined_resolution(replace(initial, level_left=1))
     share = engineering(initial.sources[source], 2)
     reason = f"{source_words(AT_NODES[source])} takes {share} of the tolerance"
     refined = choice.refined(finer.level, finer.slices, finer.nodes, reason)
@@ -201,7 +201,7 @@ def finer_mesh(choice: Decision, failed: int) -> Refinement | str:
     return Refinement(refined, AT_NODES[_MESH], finer.steps, expected)
 
 
-def _refined(resolution: _Resolution) -> _Resolution:
+def _refined_resolution(resolution: _Resolution) -> _Resolution:
     """Refine the largest errors until the tolerance is predicted to be met, or nothing is left to refine."""
     while resolution.used > AIM:
         used, sources = resolution.used, resolution.sources

@@ -98,12 +98,12 @@ class AssessedTable:
         )
         return with_errors if self.inserted is None else with_support_loads(with_errors, self.inserted)
 
-    def with_derivatives(self, derived: DerivedCycle | None) -> AssessedTable:
+    def with_derivatives(self, cycle: DerivedCycle | None) -> AssessedTable:
         """Return the errors with those of derivatives, if any base pitch of the table follows from them."""
-        if derived is None or not derived.tables:
+        if cycle is None or not cycle.tables:
             return self
-        by_kind = zip(*(table.errors[:3] for table in derived.tables), strict=True)
-        band, curves, arms = (derived.places.gathered(list(errors)) for errors in by_kind)
+        by_kind = zip(*(table.errors[:3] for table in cycle.tables), strict=True)
+        band, curves, arms = (cycle.places.gathered(list(errors)) for errors in by_kind)
         return replace(
             self,
             band=self.band + band,
@@ -151,9 +151,9 @@ def assessed_table(solved_table: SolvedTable, coarse: OperatingPoints) -> tuple[
     sources, errors = estimate_errors(*measured), curve_errors(*measured)
     request = solved_table.checked.request
 
-    def goal(refined: SteDatabase) -> IntervalGoal:
-        at_nodes, bias = _at_inserted(errors, refined), table_bias(refined, fine, plan)
-        return interval_goal(refined, at_nodes, request, bias)
+    def goal(database: SteDatabase) -> IntervalGoal:
+        at_nodes, bias = _at_inserted(errors, database), table_bias(database, fine, plan)
+        return interval_goal(database, at_nodes, request, bias)
 
     has_goal = request.options.tolerance is not None and not request.nodes_alone
     validation = validation_axes(solved_table, goal if has_goal else None)

@@ -78,17 +78,17 @@ def mesh_bias(nested: Nested, plan: Plan) -> FloatArray:
 
 
 def mean_of_limit(
-    left: MeshRemainder, by_mesh: FloatArray | float, by_patches: FloatArray | float
+    remainder: MeshRemainder, by_mesh: FloatArray | float, by_patches: FloatArray | float
 ) -> tuple[FloatArray, FloatArray]:
     """Return how much higher the mean lies in the limit of exact meshes, and the doubt of that, m.
 
     `by_mesh` and `by_patches` are the remainders of second order of the mean, m.
     """
-    signed = left.mesh * by_mesh + left.patches * by_patches
-    return np.asarray(signed), np.asarray(left.doubt * np.abs(by_mesh))
+    signed = remainder.mesh * by_mesh + remainder.patches * by_patches
+    return np.asarray(signed), np.asarray(remainder.doubt * np.abs(by_mesh))
 
 
-def ripple_of_limit(left: MeshRemainder, half: FloatArray, added: FloatArray) -> FloatArray:
+def ripple_of_limit(remainder: MeshRemainder, half: FloatArray, added: FloatArray) -> FloatArray:
     """Return the error of peak-to-peak by the mesh, (f, ...) in m.
 
     The difference of two meshes may be small at one load by accident, but not at several. So its ratio to
@@ -97,7 +97,7 @@ def ripple_of_limit(left: MeshRemainder, half: FloatArray, added: FloatArray) ->
     """
     loads = half.shape[0]  # a mean square of few samples scatters: 1 / loads widens the error
     relative = np.sqrt(np.mean(np.square(half / added), axis=0))
-    return np.asarray(left.ripple * np.sqrt(1.0 + 1.0 / loads) * relative * added)
+    return np.asarray(remainder.ripple * np.sqrt(1.0 + 1.0 / loads) * relative * added)
 
 
 def with_signed_errors(changes: FloatArray, nested: Nested, added: FloatArray, plan: Plan) -> FloatArray:

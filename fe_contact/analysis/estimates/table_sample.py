@@ -96,7 +96,7 @@ class TableSample:
             load=self.axes[0][self.nodes[0]],
             pitches=np.arange(self.period),
             workers=points.workers,
-            known=self._candidates(chosen[0], [known.places[k] for k in self.places]),
+            candidates=self._candidates(chosen[0], [known.places[k] for k in self.places]),
             starts=starts,
         )
         return self.shaped([np.moveaxis(curve, -1, 0) for curve in curves])
@@ -108,15 +108,15 @@ class TableSample:
         force = solution.force[np.ix_(self.rows, self.nodes[0])]
         return Start(problem.candidates, np.nan_to_num(force))
 
-    def _candidates(self, point: OperatingPoint, known: Sequence[OperatingPoint]) -> list[Candidates] | None:
+    def _candidates(self, point: OperatingPoint, points: Sequence[OperatingPoint]) -> list[Candidates] | None:
         """Return the contact candidates of the table's points, which do not depend on the bodies.
 
-        None where `point` has other slices or load patches than `known`, and so other candidates.
+        None where `point` has other slices or load patches than `points`, and so other candidates.
         """
-        plan, known_plan = point.contact.plan, known[0].contact.plan
+        plan, known_plan = point.contact.plan, points[0].contact.plan
         if plan.discretization.slices != known_plan.discretization.slices or plan.patch != known_plan.patch:
             return None
-        return [point.contact.candidates(point.model, self.position).rows(self.rows) for point in known]
+        return [point.contact.candidates(point.model, self.position).rows(self.rows) for point in points]
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from fe_contact.ste.plane_bias import PlaneBias, stored_bias
 from fe_contact.types import FloatArray, Json
 
 
-def error_shares(table: SteDatabase, allowed: AllowedError) -> FloatArray:
+def error_shares(table: SteDatabase, tolerance: AllowedError) -> FloatArray:
     """Return the errors of mean and peak-to-peak by source, relative to the tolerance.
 
     A plane that the program chose errs by its whole bias; the one of the caller is the model that was
@@ -27,16 +27,16 @@ def error_shares(table: SteDatabase, allowed: AllowedError) -> FloatArray:
         parts of what is allowed at the end where that is less. NaN where not estimated and at failed points.
     """
     errors = _with_bias(table, table.curve_error, stored_bias(table.metadata.receipt))
-    shares = errors / allowed_errors(table, allowed)
+    shares = errors / allowed_errors(table, tolerance)
     for axis, source in enumerate(range(len(AT_NODES), len(SOURCES)), start=1):
-        minimum = _with_next(allowed_errors(table, allowed), axis, np.fmin)
+        minimum = _with_next(allowed_errors(table, tolerance), axis, np.fmin)
         shares[source] = table.curve_error[source, [MEAN, PEAK_TO_PEAK]] / minimum
     return np.asarray(shares)
 
 
-def allowed_errors(table: SteDatabase, allowed: AllowedError) -> FloatArray:
+def allowed_errors(table: SteDatabase, tolerance: AllowedError) -> FloatArray:
     """Return the errors of mean and peak-to-peak that are allowed at the nodes, (2, F, M, D) in m."""
-    return allowed.of(_mean_and_ripple(table))
+    return tolerance.of(_mean_and_ripple(table))
 
 
 def _mean_and_ripple(table: SteDatabase) -> FloatArray:
@@ -79,7 +79,7 @@ def interval_goal(
     return IntervalGoal(tolerance, used_at_nodes(shares, request))
 
 
-def tolerance_receipt(table: SteDatabase, allowed: AllowedError, request: Request) -> Json:
+def tolerance_receipt(table: SteDatabase, tolerance: AllowedError, request: Request) -> Json:
     """Hold the errors of mean and peak-to-peak at and between all nodes of a table against the tolerance.
 
     Returns
@@ -92,19 +92,19 @@ def tolerance_receipt(table: SteDatabase, allowed: AllowedError, request: Reques
         of the sizes that the tolerance counts by; a bias is none. `between_nodes`: the worst interval of
         every axis that takes the table beyond the tolerance.
     """
-    shares = error_shares(table, allowed)
+    shares = error_shares(table, tolerance)
     _, lasting = reducible_shares(shares, request)
     if table.metadata.receipt.get("bias"):
         lasting[AT_NODES.index(PLANE)] = 0.0
     nodes = used_at_nodes(shares, request)
-    limits = {"relative": allowed.relative, "floor_m": allowed.floor}
+    limits = {"relative": tolerance.relative, "floor_m": tolerance.floor}
     if np.isnan(nodes).all():
         return limits | {"used": None, "used_at_nodes": None, "met": None}
     cells, between = _cells(nodes, shares)
     used = float(np.sqrt(cells**2 + np.square(between).sum(axis=0)).max())
     use = {"used": used if np.isfinite(used) else None, "met": used <= 1.0}
     use["used_at_nodes"] = float(nodes.max()) if np.isfinite(nodes).all() else None
-    use["lasting"] = allowed.relative * float(np.nanmax(all_sources(lasting)))
+    use["lasting"] = tolerance.relative * float(np.nanmax(all_sources(lasting)))
     return limits | use | {"between_nodes": _failing_intervals(table, cells, between)}
 
 

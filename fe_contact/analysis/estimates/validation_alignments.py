@@ -22,14 +22,15 @@ from fe_contact.analysis.estimates.inserted_places import (
     with_inserted_nodes,
 )
 from fe_contact.analysis.estimates.interval_goal import GoalOf
+from fe_contact.analysis.estimates.interval_halving import curve_differences, halved
 from fe_contact.analysis.estimates.tolerance_shares import allowed_errors
-from fe_contact.analysis.estimates.validation_loads import AWAY, halvings_reached
+from fe_contact.analysis.estimates.validation_loads import AWAY
 from fe_contact.analysis.pairs.contact_lines import deflected_operating_points
 from fe_contact.analysis.tables import SolvedTable
 from fe_contact.contact import Start
 from fe_contact.sampled import LOADS, sample_of, sampled_positions, spread
 from fe_contact.ste import SteDatabase
-from fe_contact.ste.curve_quantities import FIRST_HARMONIC, MEAN, OFF_MESH, PEAK_TO_PEAK, quantity_changes
+from fe_contact.ste.curve_quantities import MEAN, PEAK_TO_PEAK
 from fe_contact.ste.fields import CENTER_DISTANCE, GRID, MISALIGNMENT
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
@@ -72,22 +73,19 @@ class ValidationAlignments:
     goal_of: GoalOf | None
     """Function from the table to the goal that its intervals must meet; None: no nodes are inserted."""
 
-    def errors(self, made: SolvedTable) -> AlignmentErrors:
+    def errors(self, solved_table: SolvedTable) -> AlignmentErrors:
         """Measure the error of every interval of a table; with a goal insert nodes until it is met."""
         truths: dict[float, FloatArray] = {}
-        limit, halvings = "", 0
-        while (middles := self._middles_beyond(made, truths)).size:
-            if halvings == MAX_HALVINGS:
-                limit = halvings_reached(MAX_HALVINGS)
-                break
-            refined = with_inserted_nodes(made, self.axis, middles)
-            if refined is None:
-                limit = "a point between them has no solution"
-                break
-            made, halvings = refined, halvings + 1
-        self._solve(made, self._missing(made, truths, self._last_probes), truths)
-        error, change = self._spread(made, *self._errors(made, truths))
-        return AlignmentErrors(made, error, change, limit)
+        solved_table, limit = halved(
+            solved_table,
+            lambda table: self._middles_beyond(table, truths),
+            lambda table, middles: with_inserted_nodes(table, self.axis, middles),
+            MAX_HALVINGS,
+            "a point between them has no solution",
+        )
+        self._solve(solved_table, self._missing(solved_table, truths, self._last_probes), truths)
+        error, change = self._spread(solved_table, *self._errors(solved_table, truths))
+        return AlignmentErrors(solved_table, error, change, limit)
 
     @property
     def _last_probes(self) -> tuple[float, ...]:
@@ -97,39 +95,39 @@ class ValidationAlignments:
         """
         return MIDDLE if self.goal_of is None and self.axis == CENTER_DISTANCE else QUARTERS
 
-    def _middles_beyond(self, made: SolvedTable, truths: dict[float, FloatArray]) -> FloatArray:
+    def _middles_beyond(self, solved_table: SolvedTable, truths: dict[float, FloatArray]) -> FloatArray:
         """Return the middles of intervals that miss the goal, and add solutions that measure this."""
         if self.goal_of is None:
             return np.empty(0)
-        nodes = getattr(made.table, self.axis)
+        nodes = getattr(solved_table.table, self.axis)
         middles = nodes[:-1] + MIDDLE[0] * np.diff(nodes)
-        self._solve(made, self._missing(made, truths, MIDDLE), truths)
-        beyond = self._beyond(made, truths)
+        self._solve(solved_table, self._missing(solved_table, truths, MIDDLE), truths)
+        beyond = self._beyond(solved_table, truths)
         if not beyond.all():
-            self._solve(made, self._missing(made, truths, QUARTERS, ~beyond), truths)
-            beyond = self._beyond(made, truths)
+            self._solve(solved_table, self._missing(solved_table, truths, QUARTERS, ~beyond), truths)
+            beyond = self._beyond(solved_table, truths)
         return np.asarray(middles[beyond])
 
-    def _beyond(self, made: SolvedTable, truths: Mapping[float, FloatArray]) -> BoolArray:
+    def _beyond(self, solved_table: SolvedTable, truths: Mapping[float, FloatArray]) -> BoolArray:
         """Return the intervals (I,) of an axis that miss the goal; those without a solution do not count."""
         assert self.goal_of is not None
-        _, change = self._spread(made, *self._errors(made, truths))
-        goal = self.goal_of(made.table)
+        _, change = self._spread(solved_table, *self._errors(solved_table, truths))
+        goal = self.goal_of(solved_table.table)
         # from (2 quantities, F, M, D) to (2, nodes of the axis, F, nodes of the other axis)
-        allowed = np.moveaxis(allowed_errors(made.table, goal.tolerance), GRID.index(self.axis), 1)
+        allowed = np.moveaxis(allowed_errors(solved_table.table, goal.tolerance), GRID.index(self.axis), 1)
         minimum = np.minimum(allowed[:, 1:], allowed[:, :-1])  # (2, I, F, others)
         share = (change[[MEAN, PEAK_TO_PEAK]][..., None] / minimum).max(axis=(0, 2, 3))
         return np.asarray(share > goal.shares(self.axis))
 
     def _missing(
         self,
-        made: SolvedTable,
+        solved_table: SolvedTable,
         truths: Mapping[float, FloatArray],
         probes: tuple[float, ...],
         intervals: BoolArray | None = None,
     ) -> FloatArray:
         """Return the held-out alignments, m, not solved yet, of all or of the marked `intervals` (I,)."""
-        nodes = getattr(made.table, self.axis)
+        nodes = getattr(solved_table.table, self.axis)
         known = np.array([*truths, *nodes])
         marked = np.ones(nodes.size - 1, bool) if intervals is None else intervals
         low, width = nodes[:-1][marked, None], np.diff(nodes)[marked, None]
@@ -137,21 +135,23 @@ class ValidationAlignments:
         near = ROUNDING * np.diff(nodes).min()
         return np.array([value for value in alignments if not np.any(np.abs(known - value) <= near)])
 
-    def _solve(self, made: SolvedTable, alignments: FloatArray, truths: dict[float, FloatArray]) -> None:
+    def _solve(
+        self, solved_table: SolvedTable, alignments: FloatArray, truths: dict[float, FloatArray]
+    ) -> None:
         """Solve held-out alignments, m, and add the solutions to `truths`."""
         if not alignments.size:
             return
-        rows, loads = self._sample(made)
-        table = made.table
+        rows, loads = self._sample(solved_table)
+        table = solved_table.table
         other = np.array([self._other_node(table)])
-        points = alignment_points(made, {self.axis: alignments, self._other: other})
+        points = alignment_points(solved_table, {self.axis: alignments, self._other: other})
         starts = None
-        position = made.nodes.position
+        position = solved_table.nodes.position
         if self.axis == MISALIGNMENT:  # of one center distance, whose compliance the table has
             first = points.places[0]
-            take_compliance(made, first)
+            take_compliance(solved_table, first)
             first.contact.keep_rows(first.model, position, rows)
-            starts = [self._start(made, rows, loads, value) for value in alignments.tolist()]
+            starts = [self._start(solved_table, rows, loads, value) for value in alignments.tolist()]
         positions, load = [position[rows]] * alignments.size, table.force[loads]
         solved = deflected_operating_points(
             points.places, positions, load, None, points.workers, starts=starts
@@ -159,36 +159,36 @@ class ValidationAlignments:
         for alignment, curves in zip(alignments.tolist(), solved, strict=True):
             truths[alignment] = curves[..., 0]  # the transmission error
 
-    def _start(self, made: SolvedTable, rows: IntArray, loads: IntArray, misalignment: float) -> Start:
+    def _start(
+        self, solved_table: SolvedTable, rows: IntArray, loads: IntArray, misalignment: float
+    ) -> Start:
         """Return forces to start from at a misalignment, interpolated between its neighbor nodes."""
-        table = made.table
+        table = solved_table.table
         nodes, changes = table.misalignment, table.center_distance_change
         above = int(np.searchsorted(nodes, misalignment))
         part = (misalignment - nodes[above - 1]) / (nodes[above] - nodes[above - 1])
         nearest = int(np.argmin(np.abs(changes)))
         # solutions stand by misalignment, then by center distance
-        problem, lower = made.solved[(above - 1) * changes.size + nearest]
-        _, upper = made.solved[above * changes.size + nearest]
+        problem, lower = solved_table.solved[(above - 1) * changes.size + nearest]
+        _, upper = solved_table.solved[above * changes.size + nearest]
         first, second = lower.force[np.ix_(rows, loads)], upper.force[np.ix_(rows, loads)]
         return Start(problem.candidates, first + part * (second - first))
 
-    def _errors(self, made: SolvedTable, truths: Mapping[float, FloatArray]) -> tuple[FloatArray, FloatArray]:
+    def _errors(
+        self, solved_table: SolvedTable, truths: Mapping[float, FloatArray]
+    ) -> tuple[FloatArray, FloatArray]:
         """Return the largest differences (I, l) in intervals, and changes of the quantities (23, I, l), m.
 
         Differences are those of the table from the solutions `truths`, times `AWAY`.
         """
-        rows, loads = self._sample(made)
-        table, position = first_pitch(made.table), made.nodes.position[rows]
+        rows, loads = self._sample(solved_table)
+        table, position = first_pitch(solved_table.table), solved_table.nodes.position[rows]
         probes = np.array(sorted(truths))
         other = self._other_node(table)
         alignment = (probes[:, None], other) if self.axis == MISALIGNMENT else (other, probes[:, None])
         curves = table.ste(position[:, None, None], table.force[loads], *alignment)  # (R, probes, l)
         truth = np.stack([truths[value] for value in probes.tolist()], axis=1)
-        error = AWAY * np.abs(curves - truth).max(axis=0)
-        columns = curves.reshape(len(curves), -1), truth.reshape(len(truth), -1)
-        change = AWAY * quantity_changes(position, *columns, 1).reshape(-1, *truth.shape[1:])
-        # one pitch has no orders beside the mesh: they count as the harmonic that changes most
-        change[OFF_MESH] = change[FIRST_HARMONIC:].max(axis=0)
+        error, change = (AWAY * difference for difference in curve_differences(position, curves, truth))
         nodes = getattr(table, self.axis)
         inside = [(probes > low) & (probes < high) for low, high in pairwise(nodes.tolist())]
         return (
@@ -197,11 +197,11 @@ class ValidationAlignments:
         )
 
     def _spread(
-        self, made: SolvedTable, error: FloatArray, change: FloatArray
+        self, solved_table: SolvedTable, error: FloatArray, change: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
         """Interpolate errors (I, l) and changes (23, I, l) to all loads of a table, (I, F) and (23, I, F)."""
-        _, loads = self._sample(made)
-        force = made.table.force
+        _, loads = self._sample(solved_table)
+        force = solved_table.table.force
         return spread(force, loads, error, 1), spread(force, loads, change, 2)
 
     @property
@@ -213,10 +213,10 @@ class ValidationAlignments:
         """Return the node of the other axis that is nearest to zero."""
         return float(min(getattr(table, self._other).tolist(), key=abs))
 
-    def _sample(self, made: SolvedTable) -> tuple[IntArray, IntArray]:
+    def _sample(self, solved_table: SolvedTable) -> tuple[IntArray, IntArray]:
         """Return the indices of the positions (R,) and of the loads (l,) that are solved."""
-        rows = sampled_positions(made.nodes.position.size)
-        return rows, sample_of(made.table.force.size, LOADS)
+        rows = sampled_positions(solved_table.nodes.position.size)
+        return rows, sample_of(solved_table.table.force.size, LOADS)
 
 
 def first_pitch(table: SteDatabase) -> SteDatabase:

@@ -7,12 +7,13 @@ of an interval by more than a goal allows, the middle one becomes a node, and bo
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import pairwise
 
 import numpy as np
 
 from fe_contact.analysis.estimates.interval_goal import IntervalGoal
+from fe_contact.analysis.estimates.interval_halving import curve_differences, halved
 from fe_contact.analysis.pairs.contact_fields import carrying_pairs
 from fe_contact.analysis.pairs.contact_lines import solve_operating_points
 from fe_contact.analysis.pairs.operating_points import OperatingPoints
@@ -21,14 +22,7 @@ from fe_contact.analysis.table_fields import table_support
 from fe_contact.contact import Start
 from fe_contact.sampled import WIDE_INTERVALS, WIDE_PROBES
 from fe_contact.ste import SteDatabase
-from fe_contact.ste.curve_quantities import (
-    FIRST_HARMONIC,
-    MEAN,
-    OFF_MESH,
-    PEAK_TO_PEAK,
-    mean_of_curves,
-    quantity_changes,
-)
+from fe_contact.ste.curve_quantities import MEAN, PEAK_TO_PEAK, mean_of_curves
 from fe_contact.ste.support_loads import SupportLoads, with_support_loads
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
@@ -74,35 +68,39 @@ class ValidationLoads:
     def errors(self, goal: IntervalGoal | None = None) -> LoadErrors:
         """Measure the error of every interval; with a goal insert loads until it is met or halved enough."""
         force = self.table.force.tolist()
-        probes = self._solved(self._missing(force, np.empty(0)))
-        table, support, limit = self.table, None, ""
-        halvings = 0
-        while middles := self._middles(table, probes, goal):
-            if halvings == MAX_HALVINGS:
-                limit = halvings_reached(MAX_HALVINGS)
-                break
-            further = self._everywhere(np.array(middles))
-            if further is None:
-                limit = "a load between them has no solution"
-                break
-            halvings += 1
-            support = further if support is None else _joined(support, further)
-            table = with_support_loads(self.table, self._first_pitch(support))
-            missing = self._missing(_ends(table), probes.force)
-            probes = _joined(probes, self._solved(missing)) if missing.size else probes
-        error, change = self._errors(table, probes)
-        within = [_inside(probes.force, low, high) for low, high in pairwise(force)]
+        requested = _Loads(self.table, self._solved(self._missing(force, np.empty(0))))
+        loads, limit = halved(
+            requested,
+            partial(self._middles, goal=goal),
+            self._with_nodes,
+            MAX_HALVINGS,
+            "a load between them has no solution",
+        )
+        error, change = self._errors(loads.table, loads.probes)
+        within = [_inside(loads.probes.force, low, high) for low, high in pairwise(force)]
         return LoadErrors(
             np.array([error[inside].max() for inside in within]),
             np.stack([change[:, inside].max(axis=1) for inside in within], axis=1),
-            support,
+            loads.inserted,
             limit,
         )
 
-    def _middles(self, table: SteDatabase, probes: SupportLoads, goal: IntervalGoal | None) -> list[float]:
+    def _with_nodes(self, loads: _Loads, middles: FloatArray) -> _Loads | None:
+        """Return loads with further ones, N, and their held-out loads; None: one has no solution."""
+        further = self._everywhere(middles)
+        if further is None:
+            return None
+        inserted = further if loads.inserted is None else _joined_loads(loads.inserted, further)
+        table = with_support_loads(self.table, self._first_pitch(inserted))
+        missing = self._missing(_ends(table), loads.probes.force)
+        probes = _joined_loads(loads.probes, self._solved(missing)) if missing.size else loads.probes
+        return _Loads(table, probes, inserted)
+
+    def _middles(self, loads: _Loads, goal: IntervalGoal | None) -> list[float]:
         """Return the middle held-out loads of the intervals of a table that miss the goal."""
         if goal is None:
             return []
+        table, probes = loads.table, loads.probes
         allowed, middles = goal.shares("force"), []
         _, change = self._errors(table, probes)
         share = self._shares(probes, change, goal)
@@ -144,11 +142,7 @@ class ValidationLoads:
         change = float(self._at_rows.center_distance_change[0])
         curves = table.ste(position[:, None, None], probes.force[:, None], misalignment, change)
         truth = probes.deflection[..., 0]
-        error = np.abs(curves - truth).max(axis=0)
-        columns = curves.reshape(len(curves), -1), truth.reshape(len(truth), -1)
-        changes = quantity_changes(position, *columns, 1).reshape(-1, *truth.shape[1:])
-        # one pitch has no orders beside the mesh: they count as the harmonic that changes most
-        changes[OFF_MESH] = changes[FIRST_HARMONIC:].max(axis=0)
+        error, changes = curve_differences(position, curves, truth)
         # a kink passes the extremes of the curve at a load between those that are held out
         changes[PEAK_TO_PEAK] = np.maximum(changes[PEAK_TO_PEAK], error)
         return AWAY * error.max(axis=1), AWAY * changes.max(axis=2)
@@ -213,9 +207,14 @@ class ValidationLoads:
         return Start(problem.candidates, lower + part[:, None] * (upper - lower))
 
 
-def halvings_reached(limit: int) -> str:
-    """Return the text that intervals were halved as often as allowed."""
-    return f"the limit of {limit} halvings is reached"
+@dataclass(frozen=True)
+class _Loads:
+    """Loads of the first base pitch of a table, with solutions held out between them."""
+
+    table: SteDatabase
+    probes: SupportLoads
+    inserted: SupportLoads | None = None
+    """Solutions at inserted loads, in all base pitches."""
 
 
 def _ends(table: SteDatabase) -> list[float]:
@@ -223,7 +222,7 @@ def _ends(table: SteDatabase) -> list[float]:
     return sorted([*table.force.tolist(), *table.inserted_force.tolist()])
 
 
-def _joined(first: SupportLoads, second: SupportLoads) -> SupportLoads:
+def _joined_loads(first: SupportLoads, second: SupportLoads) -> SupportLoads:
     """Return the solutions of both, in order of load."""
     force = np.concatenate([first.force, second.force])
     order = np.argsort(force)

@@ -115,10 +115,10 @@ def deformed_pairs(
     )
 
 
-def _deformed_gears(solved: SolvedOperatingPoint, neighbors: int = 1) -> tuple[Both, ...]:
+def _deformed_gears(point: SolvedOperatingPoint, neighbors: int = 1) -> tuple[Both, ...]:
     """Expand a solution at all its positions; each gear in its own frame."""
-    contact, candidates = solved.contact, solved.problem.candidates
-    force, made = solved.solution.force[:, 0], contact.plan.discretization
+    contact, candidates = point.contact, point.problem.candidates
+    force, made = point.solution.force[:, 0], contact.plan.discretization
     gears, positions = contact.plan.bodies(contact.pair), range(candidates.position.size)
     if isinstance(made, FaceDiscretization):
         face, offset = contact.face, contact.pair.axial_offset

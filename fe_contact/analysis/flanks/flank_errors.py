@@ -43,7 +43,7 @@ largest pressure is within 0.5 % of full contact, the load at a tip edge within 
 
 
 def with_errors(
-    flanks: LoadDistribution, solved: SolvedOperatingPoint, cache: Path | None
+    flanks: LoadDistribution, point: SolvedOperatingPoint, cache: Path | None
 ) -> LoadDistribution:
     """Return flank results with the errors of their figures.
 
@@ -55,7 +55,7 @@ def with_errors(
         Directory of flank compliances: the coarse meshes are taken from it, or computed.
     """
     try:
-        changes = list(_changes(flanks, solved, cache))
+        changes = list(_changes(flanks, point, cache))
     except (MeshError, SolveError) as error:
         return replace(flanks, errors=FlankErrors(reason=f"the coarse mesh has no solution: {error}"))
     left = REMAINING * np.linalg.norm(changes, axis=0)
@@ -65,7 +65,7 @@ def with_errors(
         for name, part in zip(FIGURES, left.tolist(), strict=True)
         if name in model and np.isfinite(part)
     }
-    kink = _kink_length(flanks, solved.problem)
+    kink = _kink_length(flanks, point.problem)
     return replace(flanks, errors=FlankErrors(**errors, reason=reason, kink_length=kink))
 
 
@@ -92,12 +92,12 @@ def _model(flanks: LoadDistribution) -> tuple[dict[str, float], str]:
 
 
 def _changes(
-    flanks: LoadDistribution, solved: SolvedOperatingPoint, cache: Path | None
+    flanks: LoadDistribution, point: SolvedOperatingPoint, cache: Path | None
 ) -> Iterator[FloatArray]:
     """Yield the relative changes of the figures by rougher discretizations."""
     for half in halves(flanks.position):
         yield _change(flanks, flanks.at(half))
-    for solutions in rougher_solutions(solved, cache):
+    for solutions in rougher_solutions(point, cache):
         yield _change(*(load_distribution(s.pair, s.problem, s.solution) for s in solutions))
 
 

@@ -141,14 +141,14 @@ def root_stress(
     )
 
 
-def _histories(solved: SolvedOperatingPoint, cache: Path | None) -> list[RootStressHistory]:
+def _histories(point: SolvedOperatingPoint, cache: Path | None) -> list[RootStressHistory]:
     """Return the histories of both gears, with errors estimated from coarser discretizations."""
-    units = unit_stresses(solved.contact, coarse=False, cache=cache)
-    fine = pair_histories(solved, units)
-    rough = pair_histories(solved, unit_stresses(solved.contact, coarse=True, cache=cache))
+    units = unit_stresses(point.contact, coarse=False, cache=cache)
+    fine = pair_histories(point, units)
+    rough = pair_histories(point, unit_stresses(point.contact, coarse=True, cache=cache))
     # error of the fine mesh over the difference of both meshes
-    mesh_error_ratio = root_meshes(solved.contact.plan.discretization).remaining
-    changes = [mesh_error_ratio * _peak_changes(fine, rough), *_load_changes(solved, fine, units, cache)]
+    mesh_error_ratio = root_meshes(point.contact.plan.discretization).remaining
+    changes = [mesh_error_ratio * _peak_changes(fine, rough), *_load_changes(point, fine, units, cache)]
     errors = LOAD_SHARING + np.linalg.norm(changes, axis=0)
     return [
         replace(history, relative_error=error) for history, error in zip(fine, errors.tolist(), strict=True)
@@ -156,7 +156,7 @@ def _histories(solved: SolvedOperatingPoint, cache: Path | None) -> list[RootStr
 
 
 def _load_changes(
-    solved: SolvedOperatingPoint, fine: Histories, units: UnitStresses, cache: Path | None
+    point: SolvedOperatingPoint, fine: Histories, units: UnitStresses, cache: Path | None
 ) -> Iterator[FloatArray]:
     """Yield relative changes of the peaks of both gears (2,), one for each coarser contact solution.
 
@@ -165,7 +165,7 @@ def _load_changes(
     pinion, wheel = fine
     for half in halves(pinion.position):  # every second position, then the others
         yield _peak_changes(fine, (pinion.at(half), wheel.at(half)))
-    for solutions in rougher_solutions(solved, cache):
+    for solutions in rougher_solutions(point, cache):
         yield _peak_changes(pair_histories(solutions.finer, units), pair_histories(solutions.rougher, units))
 
 
@@ -202,15 +202,15 @@ def unit_stresses(contact: PairContact, coarse: bool, cache: Path | None) -> Uni
 
 
 def pair_histories(
-    solved: SolvedOperatingPoint, units: UnitStresses
+    point: SolvedOperatingPoint, units: UnitStresses
 ) -> tuple[RootStressHistory, RootStressHistory]:
     """Return the stress of both gears under the solved contact; `units` may be of any mesh."""
-    pair = solved.contact.pair
-    candidates = solved.problem.candidates
+    pair = point.contact.pair
+    candidates = point.problem.candidates
     carrying = np.unique(candidates.pair)
     # the teeth before the first and after the last pair feel their load, too
     stressed = np.arange(carrying[0] - 1, carrying[-1] + 2)
-    forces = _forces(solved, units, carrying)
+    forces = _forces(point, units, carrying)
     first, second = (
         RootStressHistory(
             position=candidates.position,
@@ -220,7 +220,7 @@ def pair_histories(
             face_position=unit.station_z + offset,
             # pair j is on tooth -j of the driving gear and on tooth j of the driven one
             stress=_superposed(unit, loads, direction * (stressed[:, None] - carrying)),
-            near_load=_near_load(solved, unit, patches, stressed, unit.station_z + offset),
+            near_load=_near_load(point, unit, patches, stressed, unit.station_z + offset),
             relative_error=np.nan,  # not estimated yet, see `_histories`
             critical_coordinate=critical_section(tooth_profile(gear)),
         )
@@ -238,15 +238,15 @@ def pair_histories(
 
 
 def _forces(
-    solved: SolvedOperatingPoint, units: UnitStresses, pairs: IntArray
+    point: SolvedOperatingPoint, units: UnitStresses, pairs: IntArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return the nodal forces on the teeth of `pairs` (K,) of both gears, > 0 into the flank, (P, K, n)."""
-    candidates = solved.problem.candidates
-    force = solved.solution.force[:, 0]  # at the only load
+    candidates = point.problem.candidates
+    force = point.solution.force[:, 0]  # at the only load
     out = [np.zeros((len(force), pairs.size, unit.stress.shape[-1])) for unit in units]
     for p in range(len(force)):
         if units[0].across_face:
-            offset = solved.contact.pair.axial_offset
+            offset = point.contact.pair.axial_offset
             gears = face_flank_forces(candidates, force, p, units, offset)
         else:
             gears = plane_flank_forces(candidates, force, p, units)
@@ -258,14 +258,14 @@ def _forces(
 
 
 def _near_load(
-    solved: SolvedOperatingPoint, unit: UnitRootStress, patches: Patches, stressed: IntArray, face: FloatArray
+    point: SolvedOperatingPoint, unit: UnitRootStress, patches: Patches, stressed: IntArray, face: FloatArray
 ) -> BoolArray:
     """Return whether stations lie in a loaded patch or within its half width of its ends, (P, N, p, q).
 
     `face` (q,) holds the positions of the stations across the face, m.
     """
-    candidates = solved.problem.candidates
-    force = solved.solution.force[:, 0]  # at the only load
+    candidates = point.problem.candidates
+    force = point.solution.force[:, 0]  # at the only load
     near = np.zeros((len(force), stressed.size, unit.station_s.size, face.size), dtype=bool)
     tooth = np.searchsorted(stressed, candidates.pair)
     for p, i in np.argwhere(force > 0.0):  # position and candidate

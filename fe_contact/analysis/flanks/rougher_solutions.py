@@ -35,7 +35,7 @@ def halves(position: FloatArray) -> tuple[BoolArray, ...]:
     return (even, ~even) if position.size >= FEWEST_POSITIONS else ()
 
 
-def rougher_solutions(solved: SolvedOperatingPoint, cache: Path | None) -> Iterator[Rougher]:
+def rougher_solutions(point: SolvedOperatingPoint, cache: Path | None) -> Iterator[Rougher]:
     """Yield changes by slices, load patches and meshes, at the first of the `halves` of the positions.
 
     Raises `MeshError`, `SolveError`: a rougher discretization has no mesh or no solution.
@@ -47,9 +47,9 @@ def rougher_solutions(solved: SolvedOperatingPoint, cache: Path | None) -> Itera
     cache : Path, optional
         Directory of flank compliances: the coarse meshes are taken from it, or computed.
     """
-    contact, plan, decimated = solved.contact, solved.plan, solved
-    for even in halves(solved.problem.candidates.position)[:1]:
-        decimated = _at(solved, even)
+    contact, plan, decimated = point.contact, point.plan, point
+    for even in halves(point.problem.candidates.position)[:1]:
+        decimated = _at(point, even)
     if plan.discretization.slices > 1:
         yield Rougher(decimated, _on(decimated, contact.in_slices(plan.discretization.coarse_slices)))
     plain = contact.in_plane_strain  # the coarse meshes have no correction for the finite width
@@ -60,23 +60,23 @@ def rougher_solutions(solved: SolvedOperatingPoint, cache: Path | None) -> Itera
     yield from (Rougher(*ends) for ends in pairwise(by_mesh))
 
 
-def _at(solved: SolvedOperatingPoint, keep: BoolArray) -> SolvedOperatingPoint:
+def _at(point: SolvedOperatingPoint, keep: BoolArray) -> SolvedOperatingPoint:
     """Return the operating point at some of the positions (P,)."""
     rows = np.flatnonzero(keep)
-    fields = {name: values[rows] for name, values in vars(solved.solution).items() if name != "load"}
+    fields = {name: values[rows] for name, values in vars(point.solution).items() if name != "load"}
     return replace(
-        solved, solved=[(solved.problem.rows(rows), ContactSolution(load=solved.solution.load, **fields))]
+        point, solved=[(point.problem.rows(rows), ContactSolution(load=point.solution.load, **fields))]
     )
 
 
-def _on(solved: SolvedOperatingPoint, contact: PairContact) -> SolvedOperatingPoint:
+def _on(point: SolvedOperatingPoint, contact: PairContact) -> SolvedOperatingPoint:
     """Return the operating point, solved at the same positions on another discretization."""
-    places = solved.places.on(contact)
-    position = solved.problem.candidates.position
+    places = point.places.on(contact)
+    position = point.problem.candidates.position
     pitch = np.floor(position).astype(np.int64)
     problem, solution = places.places[0].solve(
-        position - pitch, solved.solution.load, pitch if pitch.any() else None
+        position - pitch, point.solution.load, pitch if pitch.any() else None
     )
     if not solution.converged:
         raise SolveError("positions without a solution on a rougher discretization", partial=solution)
-    return replace(solved, places=places, solved=[(problem, solution)])
+    return replace(point, places=places, solved=[(problem, solution)])

@@ -51,9 +51,9 @@ def solved_point(
     """
     position = np.arange(POSITIONS) / POSITIONS if at is None else checked_positions(at)
 
-    def repeat(made: SolvedOperatingPoint, needed: Mapping[str, str]) -> SolvedOperatingPoint:
+    def repeat(point: SolvedOperatingPoint, needed: Mapping[str, str]) -> SolvedOperatingPoint:
         return solve_operating_point(
-            with_effects(made.checked, needed, check_size=False), position, clock, run
+            with_effects(point.checked, needed, check_size=False), position, clock, run
         )
 
     first = solve_operating_point(checked, position, clock, run)

@@ -158,7 +158,7 @@ class CondensedPair:
         with clock.stage("contact"):
             contacts.touch(model, sample)
             # only previews start from another solution: results do not depend on earlier questions
-            solved = _solved(checked, plan, points, nodes, self._latest.preview if preview else None)
+            solved = _solved_point(checked, plan, points, nodes, self._latest.preview if preview else None)
             if preview:
                 self._latest.preview = solved
             contact = SolvedContact.of(solved.pair, solved.problem, solved.solution)
@@ -190,7 +190,7 @@ class CondensedPair:
         Parameters and errors are those of `table`.
         """
         problem = self.contact_problem(pair, torques, misalignment, center_distance_change)
-        return _solved(problem.checked, problem.plan, problem.points, problem.nodes)
+        return _solved_point(problem.checked, problem.plan, problem.points, problem.nodes)
 
     def solve_rougher(
         self,
@@ -205,7 +205,7 @@ class CondensedPair:
         """
         problem = self.contact_problem(pair, torques, misalignment, center_distance_change)
         return tuple(
-            _solved(problem.checked, problem.plan, problem.points.on(rougher), problem.nodes)
+            _solved_point(problem.checked, problem.plan, problem.points.on(rougher), problem.nodes)
             for rougher in (problem.contacts.sliced, problem.contacts.coarse)
             if rougher is not None
         )
@@ -288,7 +288,7 @@ class CondensedPair:
         return self._by_distance[change]
 
 
-def _solved(
+def _solved_point(
     checked: Checked,
     plan: Plan,
     points: OperatingPoints,

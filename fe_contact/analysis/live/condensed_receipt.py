@@ -15,10 +15,10 @@ from model_studies.stage_clock import StageClock
 
 
 def condensed_receipt(
-    run: SolvedOperatingPoint, assessed: AssessedTable, assumptions: Sequence[Assumption], clock: StageClock
+    run: SolvedOperatingPoint, table: AssessedTable, assumptions: Sequence[Assumption], clock: StageClock
 ) -> Json:
     """Return the receipt of a condensed pair's table: errors by source, cost by stage, assumptions."""
-    errors = assessed.to_json()
+    errors = table.to_json()
     missing = [name for name in errors["not_estimated"] if name not in BETWEEN_NODES]
     known = {name: value for name, value in errors["curve_error"].items() if name not in BETWEEN_NODES}
     return (

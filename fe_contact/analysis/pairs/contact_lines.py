@@ -82,7 +82,7 @@ def _solved_lines(lines: Sequence[_Line], workers: Workers, report: Report = unr
     """Solve lines; their contacts keep the assembled compliances. `report` is called after each line."""
     solved: list[SolvedBlock] = []
     for line, blocks in zip(lines, _by_line(lines, workers, solve_block), strict=True):
-        joined = _joined(line, blocks)
+        joined = _joined_block(line, blocks)
         plain = replace(joined.contacts[0][0].problem, candidates=line.block.candidates)
         line.contact.take(line.block.models[0], plain)
         solved.append(joined)
@@ -110,7 +110,7 @@ def _by_line(
             yield [next(results) for _ in blocks]
 
 
-def _joined(line: _Line, blocks: list[SolvedBlock]) -> SolvedBlock:
+def _joined_block(line: _Line, blocks: list[SolvedBlock]) -> SolvedBlock:
     """Put the blocks of a line together; all models share one compliance."""
     # the same problem for all sets of loads: (blocks, models), and by model
     problems = [[contacts[0].problem for contacts in block.contacts] for block in blocks]
@@ -257,7 +257,7 @@ def deflected_operating_points(
     load: FloatArray,
     pitches: IntArray | None,
     workers: Workers,
-    known: Sequence[Candidates] | None = None,
+    candidates: Sequence[Candidates] | None = None,
     starts: Sequence[Start] | None = None,
 ) -> list[FloatArray]:
     """Return transmission error and load arm (T P, L, 2) in m of operating points.
@@ -276,9 +276,9 @@ def deflected_operating_points(
         Forces near the solution at each point; without `pitches`.
     """
     derived = pitches is not None and any(point.derived is not None for point in points)
-    lines = {} if derived else _sent_lines(workers, points, position, (load,), pitches, known)
+    lines = {} if derived else _sent_lines(workers, points, position, (load,), pitches, candidates)
     if not lines:
-        return list(_deflected_locally(points, position, load, pitches, known, starts))
+        return list(_local_curves(points, position, load, pitches, candidates, starts))
     if starts is not None:
         for key, (line, numbers) in lines.items():
             forces = tuple(starts[k].on(line.block.candidates) for k in numbers)
@@ -286,18 +286,18 @@ def deflected_operating_points(
     return _by_point(lines, _deflections([line for line, _ in lines.values()], workers))
 
 
-def _deflected_locally(
+def _local_curves(
     points: Sequence[OperatingPoint],
     position: Sequence[FloatArray],
     load: FloatArray,
     pitches: IntArray | None,
-    known: Sequence[Candidates] | None,
+    candidates: Sequence[Candidates] | None,
     starts: Sequence[Start] | None,
 ) -> Iterator[FloatArray]:
     """Yield the curves of points, solved in this process; parameters of `deflected_operating_points`."""
     for k, point in enumerate(points):
-        if known is not None:
-            point.contact.assemble(point.model, known[k])
+        if candidates is not None:
+            point.contact.assemble(point.model, candidates[k])
         if point.derived is not None and pitches is not None:
             yield point.derived.on(point, position[k], load)
         else:

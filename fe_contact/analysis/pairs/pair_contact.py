@@ -118,7 +118,7 @@ class PairContact:
     def candidates(self, model: ContactModel, position: FloatArray) -> Candidates:
         """Return where plain involutes can touch at positions (P,) in [0, 1); nothing is assembled."""
         problem = self.cached_problem(model, position)
-        return self._located(model, position) if problem is None else problem.candidates
+        return self._located_candidates(model, position) if problem is None else problem.candidates
 
     def cached_problem(self, model: ContactModel, position: FloatArray) -> ContactProblem | None:
         """Return the problem of plain involutes at positions (P,) if it is kept."""
@@ -167,14 +167,14 @@ class PairContact:
         """Return the problem of plain involutes, kept: gaps and loads do not change its compliance."""
         key = self.key(model, position)
         if key not in self._problems:
-            self._keep(model, self._located(model, position))
+            self._keep(model, self._located_candidates(model, position))
         problem = self._problems[key]
         if self.face is not None and not problem.tilt.size and (self.varied or model.sloped):
             problem = with_face_tilt(problem, self.face, self.pair.axial_offset, model.couple_teeth)
             self._problems[key] = problem
         return problem
 
-    def _located(self, model: ContactModel, position: FloatArray) -> Candidates:
+    def _located_candidates(self, model: ContactModel, position: FloatArray) -> Candidates:
         slices = Slices.of_pair(self.pair, self.plan.discretization.slices)
         return contact_candidates(self.pair, model, position, self.plan.patch, slices)
 

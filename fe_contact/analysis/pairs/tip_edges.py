@@ -47,10 +47,12 @@ def edge_depth(point: OperatingPoint, problem: ContactProblem, solution: Contact
     return np.asarray(np.max(closing - motion - gap[:, None, :], axis=(0, 2), initial=0.0))
 
 
-def _with_zeros(part: Candidates, whole: Candidates, force: FloatArray) -> FloatArray:
-    """Return the forces (P, L, m) on all candidates `whole`, from `force` (P, L, n) on `part` of them."""
-    column = {key: i for i, key in enumerate(zip(whole.pair.tolist(), whole.face_position, strict=True))}
-    carried = np.zeros((*force.shape[:2], whole.pair.size))
+def _with_zeros(part: Candidates, candidates: Candidates, force: FloatArray) -> FloatArray:
+    """Return the forces (P, L, m) on all `candidates`, from `force` (P, L, n) on `part` of them."""
+    column = {
+        key: i for i, key in enumerate(zip(candidates.pair.tolist(), candidates.face_position, strict=True))
+    }
+    carried = np.zeros((*force.shape[:2], candidates.pair.size))
     keys = zip(part.pair.tolist(), part.face_position, strict=True)
     carried[:, :, [column[key] for key in keys]] = force
     return carried

@@ -129,7 +129,7 @@ def decide(
 
 
 def _trial(
-    models: Sequence[Checked], chosen: MeshChoice, curves: ExpectedCurves | None
+    models: Sequence[Checked], choice: MeshChoice, curves: ExpectedCurves | None
 ) -> tuple[Checked, MeshOption] | None:
     """Return the most exact mesh whose cost is negligible against the chosen one, with its model, or None.
 
@@ -138,7 +138,7 @@ def _trial(
     would not try it.
     """
     usual = [_options(model, curves, usual=True) for model in models[-2:]]
-    works = [option.effort for options in usual for option in options if option.name == chosen.option.name]
+    works = [option.effort for options in usual for option in options if option.name == choice.option.name]
     cheap = [
         (model, option)
         for model, usual_options in zip(models[-2:], usual, strict=True)

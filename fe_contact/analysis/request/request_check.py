@@ -89,7 +89,7 @@ def neglecting(checked: Checked) -> Checked:
 
 
 def _without_neglected(
-    request: Request, composed: ContactModel, ledger: tuple[LedgerEntry, ...]
+    request: Request, model: ContactModel, ledger: tuple[LedgerEntry, ...]
 ) -> tuple[Request, ContactModel, tuple[LedgerEntry, ...]]:
     """Neglect effects that the tolerance does not need, unless that is decided, and compose the others."""
     if not (request.neglected or request.turned_on):
@@ -97,19 +97,19 @@ def _without_neglected(
         if neglected:
             request = replace(request, neglected=neglected)
             return request, *_composed(request)
-    return request, composed, ledger
+    return request, model, ledger
 
 
 def _checked(
-    request: Request, composed: ContactModel, ledger: tuple[LedgerEntry, ...], *, check_size: bool = True
+    request: Request, model: ContactModel, ledger: tuple[LedgerEntry, ...], *, check_size: bool = True
 ) -> Checked:
     """Refuse parts of a request that the composed model cannot hold."""
-    if composed.across_face:
+    if model.across_face:
         _refuse_thin_discs(request.pair, request.options.level)
     _refuse_distances(request)
     _refuse_idle_pitches(request)
-    cycle = _cycle_cost(request, composed) if check_size and composed.period > 1 else None
-    return Checked(request, composed, ledger, cycle)
+    cycle = _cycle_cost(request, model) if check_size and model.period > 1 else None
+    return Checked(request, model, ledger, cycle)
 
 
 def _composed(request: Request) -> tuple[ContactModel, tuple[LedgerEntry, ...]]:

@@ -26,12 +26,15 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, Run, TableAxes
 from fe_contact.types import FloatArray
 from model_studies import LeftOut, in_unit, run_variants
+from model_studies.progress import Report, by_cost, unreported
 from model_studies.workers import InProcess, pays
 
 HARMONICS = 5
 """Mesh harmonics that are compared."""
 FAILURES = (InputError, MeshError, SolveError)
 """Errors of a case with an effect toggled that leave the effect out."""
+_REQUEST = ""
+"""Name of the table of the request among those with an effect toggled."""
 
 
 @dataclass(frozen=True)
@@ -146,16 +149,19 @@ def ablate(
     checked = Ablation.request(pair, axes, options)
     names = chosen("only", only, [effect.name for effect in EFFECTS])
     checked = _on_one_mesh(checked, run.cache)
-    nominal = _figures(checked, run)
+    costs = {name: table.seconds for name, table in _predicted_tables(checked, names, run.cache).items()}
+    variants = sum(costs.values()) - costs[_REQUEST]
+    done = by_cost(partial(run.progress, "ablation"), {"request": costs[_REQUEST], "variants": variants})
+    nominal = _figures(checked, run, partial(done, "request"))
     estimates = estimated_influences(checked, names)
 
     ledger = {entry.name: entry for entry in checked.ledger if entry.name in names}
     seconds = checked.predicted(checked.planned(run.cache), run.cache, with_errors=False).cpu_seconds
     by_blocks = pays(run.workers, seconds)
     single_run, workers = (run, InProcess()) if by_blocks else (Run(cache=run.cache), run.workers)
-    toggle = partial(_toggled, checked, nominal, estimates, single_run)
+    toggle = partial(_toggled_ablation, checked, nominal, estimates, single_run)
     seconds *= sum(not entry.verdict.neutral for entry in ledger.values())
-    effects, omitted = run_variants("ablation", ledger, toggle, FAILURES, run.progress, workers, seconds)
+    effects, omitted = run_variants("variants", ledger, toggle, FAILURES, done, workers, seconds, costs)
     request = checked.request
     misalignment = request.complete_scene.largest_misalignment
     return Ablation(nominal, tuple(effects.values()), omitted, request.torque, request.load, misalignment)
@@ -173,7 +179,31 @@ def predicted_ablation(checked: Checked, only: Sequence[str] | None, cache: Path
     """Predict the table of a request and one with each of the effects toggled; gears are condensed once."""
     names = chosen("only", only, [effect.name for effect in EFFECTS])
     checked = _on_one_mesh(checked, cache)
-    bodies, contacts, memory = dict[Any, float](), list[float](), 0
+    tables = _predicted_tables(checked, names, cache).values()
+    memory = max((table.bytes for table in tables), default=0)
+    return PredictedTables(
+        sum(table.bodies for table in tables), tuple(table.contact for table in tables), memory
+    )
+
+
+class _PredictedTable(NamedTuple):
+    """CPU seconds to condense the gears that no table before it has, and of its contact; memory."""
+
+    bodies: float
+    contact: float
+    bytes: int
+
+    @property
+    def seconds(self) -> float:
+        """CPU seconds of the table."""
+        return self.bodies + self.contact
+
+
+def _predicted_tables(
+    checked: Checked, names: Sequence[str], cache: Path | None
+) -> dict[str, _PredictedTable]:
+    """Predict the table of the request, and by effect those with it toggled that can be computed."""
+    tables, condensed = dict[str, _PredictedTable](), set[Any]()
     for entry in (None, *checked.ledger):
         if entry is not None and (entry.name not in names or entry.verdict.neutral):
             continue
@@ -184,13 +214,14 @@ def predicted_ablation(checked: Checked, only: Sequence[str] | None, cache: Path
             mesh = plan.discretization
             # tables of equal bodies on equal meshes share their compliance
             key = plan.bodies(variant.request.pair), mesh.recipes, mesh.corrected
-            bodies[key] = complete.stages["compliance"]
-            contacts.append(complete.stages["contact"])
-            memory = max(memory, complete.memory_bytes)
-    return PredictedTables(sum(bodies.values()), tuple(contacts), memory)
+            bodies = 0.0 if key in condensed else complete.stages["compliance"]
+            condensed.add(key)
+            name = _REQUEST if entry is None else entry.name
+            tables[name] = _PredictedTable(bodies, complete.stages["contact"], complete.memory_bytes)
+    return tables
 
 
-def _toggled(
+def _toggled_ablation(
     checked: Checked,
     nominal: Figures,
     estimates: Mapping[str, Influence | None],
@@ -214,13 +245,15 @@ def _on_one_mesh(checked: Checked, cache: Path | None) -> Checked:
     )
 
 
-def _figures(checked: Checked, run: Run) -> Figures:
+def _figures(checked: Checked, run: Run, report: Report = unreported) -> Figures:
+    """Return the figures of a table; `report` takes its fraction done."""
     request = checked.request
-    table = compute_database(checked, request.to_json(), run.silent)
+    predicted = checked.predicted(checked.planned(run.cache), None)
+    reported = replace(run.silent, progress=by_cost(report, predicted.stages))
+    table = compute_database(checked, request.to_json(), reported)
     table.require_complete()
     skew = checked.request.complete_scene.largest_misalignment
     curves = [table.curve(force=float(force), misalignment=skew) for force in table.force]
-    predicted = checked.predicted(checked.planned(run.cache), None)
     return Figures(
         mean=np.array([curve.mean.value for curve in curves]),
         peak_to_peak=np.array([curve.peak_to_peak.value for curve in curves]),

@@ -131,6 +131,7 @@ def frontier(
         partial(_complete_table, checked),
         (MeshError, SolveError),
         progress,
+        predicted_frontier(checked, names, None),
     )
     read = [Outcome(outcome.fidelity, fidelity_result(outcome), outcome.cpu_seconds) for outcome in outcomes]
     errors = against_finest(read, fidelity_errors, remaining_errors)

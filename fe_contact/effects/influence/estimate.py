@@ -32,13 +32,13 @@ class EstimatedInfluence:
     """
 
 
-def largest_part(extent: Extent, mean: FloatArray, ripple: FloatArray, allowed: AllowedError) -> float:
+def largest_part(extent: Extent, mean: FloatArray, ripple: FloatArray, tolerance: AllowedError) -> float:
     """Return the bound of the changes of mean and peak-to-peak by gaps that are left out.
 
     In parts of the sizes that a tolerance counts by: means and ripples (L, ...) in m.
     """
-    of_mean = np.max(extent.reach / allowed.scale(mean))
-    return float(max(of_mean, np.max(extent.span / allowed.scale(ripple))))
+    of_mean = np.max(extent.reach / tolerance.scale(mean))
+    return float(max(of_mean, np.max(extent.span / tolerance.scale(ripple))))
 
 
 def estimate_influence(
@@ -90,7 +90,7 @@ def estimate_influences(
             return influence_of(scene.effect(width))
         if effect.name == face or effect.called_for(scene).neutral:
             # with nothing across the face the corrected plane stands in for three dimensions
-            return _compared(curves(decision), curves(decision), minimum)
+            return _estimated_influence(curves(decision), curves(decision), minimum)
         with_it, without = (
             curves(
                 decision
@@ -99,7 +99,7 @@ def estimate_influences(
             )
             for choice in ("on", "off")
         )
-        return _compared(with_it, without, minimum)
+        return _estimated_influence(with_it, without, minimum)
 
     return {effect.name: influence_of(effect) for effect in scene.registry if effect.name in names}
 
@@ -120,7 +120,7 @@ def _curves(scene: ContactScene, choices: Mapping[str, str], springs: Springs) -
     return [curves[model] for model in models]
 
 
-def _compared(
+def _estimated_influence(
     with_it: Sequence[EstimatedCurve], without: Sequence[EstimatedCurve], minimum: float
 ) -> EstimatedInfluence:
     """Take differences of the last curves, and the largest relative one of all."""

@@ -16,17 +16,17 @@ from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.units import factor, unit_name
 
 
-def case_warnings(checked: CheckedCase) -> list[Json]:
+def case_warnings(case: CheckedCase) -> list[Json]:
     """Return warnings about implausible values of a case, before anything is computed.
 
     Raises `BadInput`: no such pair, or a complaint about an order that no part of the pair causes.
     """
-    if checked.case.complaint is not None:
-        load("lineofaction.gearbox.convert.complaint:complaint_of_case")(checked.case)
-    pair, axes = checked.pair, checked.axes
+    if case.case.complaint is not None:
+        load("lineofaction.gearbox.convert.complaint:complaint_of_case")(case.case)
+    pair, axes = case.pair, case.axes
     alignments = axes.misalignment, axes.center_distance_change
     findings = pair_findings(pair, axes.load(pair), *alignments, loads_as=axes.loads_as)
-    return phrased_for(checked.case, [finding.to_json() for finding in findings])
+    return phrased_for(case.case, [finding.to_json() for finding in findings])
 
 
 def phrased_for(case: Case, findings: Iterable[Json]) -> list[Json]:

@@ -93,10 +93,10 @@ class CheckedCase:
         return made
 
 
-def across_face(checked: CheckedCase) -> CheckedCase:
+def across_face(case: CheckedCase) -> CheckedCase:
     """Return a case in three dimensions."""
-    across = checked.case.accuracy.model_copy(update={"model": "3d"})
-    return CheckedCase(checked.case.model_copy(update={"accuracy": across}))
+    across = case.case.accuracy.model_copy(update={"model": "3d"})
+    return CheckedCase(case.case.model_copy(update={"accuracy": across}))
 
 
 class CheckedCases:

@@ -331,9 +331,9 @@ def sentence(complaint: Complaint) -> str:
     return f"{subject} is {cause_words(complaint, first)}, {offset_text(complaint, first[0])}"
 
 
-def cause_words(complaint: Complaint, alike: Sequence[Passing]) -> str:
+def cause_words(complaint: Complaint, passings: Sequence[Passing]) -> str:
     """Return the order of the complaint's shaft and the harmonic together, of what `grouped` returns."""
-    return order_words(alike[0].order, complaint.shaft, harmonic_label(alike))
+    return order_words(passings[0].order, complaint.shaft, harmonic_label(passings))
 
 
 def grouped(every: Iterable[Passing]) -> list[tuple[Passing, ...]]:
@@ -346,19 +346,19 @@ def grouped(every: Iterable[Passing]) -> list[tuple[Passing, ...]]:
     return [tuple(group) for group in groups.values()]
 
 
-def harmonic_label(alike: Sequence[Passing]) -> str:
+def harmonic_label(passings: Sequence[Passing]) -> str:
     """Name a harmonic of one part, or of several as `grouped` returns them."""
-    of = alike[0].excitation
+    of = passings[0].excitation
     if of.kind == MESH and of.name == PAIR:
-        return f"harmonic {alike[0].harmonic}"
+        return f"harmonic {passings[0].harmonic}"
     kind = _SEVERAL[of.kind]
-    if len(alike) == 1:
+    if len(passings) == 1:
         kind = MESH if of.kind == SIDEBAND else of.kind
-    names = ", ".join(f'"{line.excitation.name}"' for line in alike)
+    names = ", ".join(f'"{line.excitation.name}"' for line in passings)
     number = "order" if of.kind == SHAFT else "harmonic"
     if of.kind == SIDEBAND:
-        return f"{of.part} sideband by the planets of harmonic {alike[0].harmonic} of {kind} {names}"
-    return f"{number} {alike[0].harmonic} of {f'the {of.part} of ' if of.part else ''}{kind} {names}"
+        return f"{of.part} sideband by the planets of harmonic {passings[0].harmonic} of {kind} {names}"
+    return f"{number} {passings[0].harmonic} of {f'the {of.part} of ' if of.part else ''}{kind} {names}"
 
 
 def offset_text(complaint: Complaint, line: Passing) -> str:

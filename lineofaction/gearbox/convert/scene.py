@@ -189,7 +189,7 @@ def _moving(
         tuple(geometry[mesh.name].base_pitch for mesh in scene.meshes),
         tuple(mesh.name in bent for mesh in scene.meshes),
     )
-    without_copies = _assembled(scene, geometry, meshes, housings)
+    without_copies = _assembled_scene(scene, geometry, meshes, housings)
     with named(""):
         check_motion(without_copies)
     complete = _with_all_planets(scene, without_copies)
@@ -198,7 +198,7 @@ def _moving(
     return complete
 
 
-def _assembled(
+def _assembled_scene(
     scene: SceneInput,
     geometry: Mapping[str, PairGeometry],
     meshes: tuple[GearMesh, ...],

@@ -86,7 +86,9 @@ def reduced_housings(
             mesh = _mesh(part, cache)
             parts(part.name, _MESHED)
             reduced[part.name] = reduced_housing(
-                _meshed(part, scene, mesh), cache, expected=partial(announce, progress, STAGE, part.name)
+                _meshed_housing(part, scene, mesh),
+                cache,
+                expected=partial(announce, progress, STAGE, part.name),
             )
             parts(part.name, 1.0)
     return reduced
@@ -127,8 +129,8 @@ def _mesh(housing: HousingInput, cache: Path | None) -> TetrahedralMesh:
         try:
             if field == "step_file":
                 size = housing.element_size_mm
-                return _placed(housing, meshed_step(file, None if size is None else size * MM, cache))
-            return _placed(housing, read_mesh(file, str(housing.mesh_unit)))
+                return _placed_mesh(housing, meshed_step(file, None if size is None else size * MM, cache))
+            return _placed_mesh(housing, read_mesh(file, str(housing.mesh_unit)))
         except InputError as error:
             if error.value != file.name:
                 raise
@@ -137,7 +139,7 @@ def _mesh(housing: HousingInput, cache: Path | None) -> TetrahedralMesh:
             raise InputError(error.field, content.name, error.bound, error.suggestion) from None
 
 
-def _placed(housing: HousingInput, mesh: TetrahedralMesh) -> TetrahedralMesh:
+def _placed_mesh(housing: HousingInput, mesh: TetrahedralMesh) -> TetrahedralMesh:
     """Turn and move a mesh from the frame of its file into that of the scene."""
     if housing.origin_mm is None and housing.x_axis is None and housing.z_axis is None:
         return mesh
@@ -145,7 +147,7 @@ def _placed(housing: HousingInput, mesh: TetrahedralMesh) -> TetrahedralMesh:
     return replace(mesh, points=placement.points(mesh.points))
 
 
-def _meshed(housing: HousingInput, scene: SceneInput, mesh: TetrahedralMesh) -> MeshedHousing:
+def _meshed_housing(housing: HousingInput, scene: SceneInput, mesh: TetrahedralMesh) -> MeshedHousing:
     loss, ratios = housing.loss_factor, housing.modal_damping or (housing.damping_ratio,)
     assert housing.material is not None  # the schema has refused that
     return MeshedHousing(

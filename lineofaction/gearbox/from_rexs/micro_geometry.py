@@ -21,17 +21,17 @@ _LEAST_CHAMFER = 1e-9
 """Height of a tip chamfer, m, below which it is the rounding of diameters."""
 
 
-def micro_geometry(gear: Toothing, loaded: LoadedFlank) -> Table:
+def micro_geometry(gear: Toothing, flank: LoadedFlank) -> Table:
     """Return the fields of the loaded flank's modifications, empty for an involute helicoid.
 
     Modifications without a field of the case, or whose field another one has already, are summed on the
     case's `flank_grid`; the account states the grid's largest difference. `gear` is without modifications.
     """
-    if loaded.flank is None:
+    if flank.flank is None:
         return {}
-    helicoid = PlainFlank(gear, loaded)
-    entries = _at_both_ends(helicoid, list(_modifications(helicoid, loaded.flank)))
-    fields: Table = _tip_edge(helicoid, loaded.flank)
+    helicoid = PlainFlank(gear, flank)
+    entries = _at_both_ends(helicoid, list(_modifications(helicoid, flank.flank)))
+    fields: Table = _tip_edge(helicoid, flank.flank)
     rest: list[Modification] = []
     for entry in entries:
         if entry.fields and not set(entry.fields) & set(fields):
@@ -47,7 +47,7 @@ def micro_geometry(gear: Toothing, loaded: LoadedFlank) -> Table:
         names = ", ".join(entry.part.name for entry in rest)
         lines = f"{raster.counts[0]} roll lengths by {raster.counts[1]} face positions"
         difference = f"differs by at most {engineering(raster.difference / UM, 2)} µm"
-        loaded.flank.say("flank_grid", "derived", f"{names} on {lines}; {difference}")
+        flank.flank.say("flank_grid", "derived", f"{names} on {lines}; {difference}")
     return fields
 
 

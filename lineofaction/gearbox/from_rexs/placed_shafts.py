@@ -44,7 +44,7 @@ class PlacedShaft:
         rows = tuple(_rows(part))
         sense = axes.sense(placement)
         begin = rows[0][0] if rows else 0.0
-        sections = tuple(section if sense > 0 else _turned(section) for _, section in rows)
+        sections = tuple(section if sense > 0 else _turned_section(section) for _, section in rows)
         end = begin + sum(section.length for section in sections)
         along_z = sections if sense > 0 else sections[::-1]
         return cls(part, placement, axes.point(placement.origin), sense, begin, end, along_z)
@@ -140,7 +140,7 @@ def _material(shaft: Part) -> dict[str, float]:
     return {}
 
 
-def _turned(section: BeamSection) -> BeamSection:
+def _turned_section(section: BeamSection) -> BeamSection:
     """Return a section seen from its other end."""
     if section.end_outer_diameter is None:
         return section

@@ -21,9 +21,8 @@ from lineofaction.gearbox.from_rexs.scene_gears import scene_discs, scene_gears
 from lineofaction.gearbox.from_rexs.scene_parts import SceneParts, scene_parts
 from lineofaction.gearbox.from_rexs.scene_shafts import SceneShafts
 from lineofaction.gearbox.from_rexs.stage_case import StageCase
+from lineofaction.gearbox.units import STANDARD_GRAVITY
 
-STANDARD_GRAVITY = 9.80665
-"""Standard gravity, m/s^2."""
 PERIODS = 10
 """Number of periods of the slowest mesh in the run of the scene."""
 
@@ -90,11 +89,11 @@ def _by_stage(cases: Sequence[StageCase]) -> dict[int, StageCase]:
 
 
 def _say_without_mesh(
-    layout: Layout, cases: Sequence[StageCase], computed: Sequence[GearStage], shafts: SceneShafts
+    layout: Layout, cases: Sequence[StageCase], stages: Sequence[GearStage], shafts: SceneShafts
 ) -> None:
     """State the stages with a case but without a mesh in the scene, except stages of equal planets."""
     meshed = {stage.stage.id for stage in shafts.stages}
-    meshed |= {s.stage.id for s in computed} & {equal for case in cases for equal in case.equal}
+    meshed |= {s.stage.id for s in stages} & {equal for case in cases for equal in case.equal}
     on_shafts = {stage.stage.id for stage in layout.stages}
     for number in _by_stage(cases).keys() - meshed:
         text = "it has a case and no mesh: its shafts are not parallel to those of the first stage, nothing "

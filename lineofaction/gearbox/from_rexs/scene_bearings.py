@@ -159,7 +159,7 @@ class SceneBearings:
             full = np.zeros((6, 6))
             full[:5, :5] = self._turned(entry.part, entry.inner, stiffness.matrix)
         entry.part.say("", "taken", "bearing between two shafts")
-        return self._joint(entry) | _coupled(0.0, full)
+        return self._joint(entry) | _coupled_table(0.0, full)
 
     def _joint(self, entry: Connection) -> Table:
         sides = (entry.inner, entry.outer)
@@ -180,10 +180,10 @@ class SceneBearings:
         torsion = _limited(entry.part, "rotational_stiffness", RIGID_TORSION)
         entry.part.say("", "taken", "coupling")
         matrix = np.diag([radial, radial, axial, tilt, tilt, 0.0])
-        self.couplings.append(self._joint(entry) | _coupled(torsion or RIGID_TORSION, matrix))
+        self.couplings.append(self._joint(entry) | _coupled_table(torsion or RIGID_TORSION, matrix))
 
 
-def _coupled(torsion: float, matrix: FloatArray) -> Table:
+def _coupled_table(torsion: float, matrix: FloatArray) -> Table:
     return {"torsional_stiffness_n_m_per_rad": torsion, "stiffness_matrix": matrix.tolist()}
 
 
@@ -208,4 +208,4 @@ def _stub_couplings(shafts: SceneShafts) -> Iterator[Table]:
     for number, stub in enumerate(shafts.stubs.values(), 1):
         main = shafts.by_rotor[stub.rotor]
         joint = {"first": main.name, "second": stub.name, "position_mm": main.position_mm(stub.begin)}
-        yield {"name": f"stub {number}", **joint, **_coupled(RIGID_TORSION, matrix)}
+        yield {"name": f"stub {number}", **joint, **_coupled_table(RIGID_TORSION, matrix)}

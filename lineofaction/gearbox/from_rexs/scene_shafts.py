@@ -110,14 +110,14 @@ def _shaft(layout: Layout, rotor: int, names: Names) -> SceneShaft:
     return SceneShaft(names.of(part), rotor, {"name": names.of(part), **body})
 
 
-def _body(placed: PlacedShaft, part: Part) -> dict[str, Any]:
+def _body(shaft: PlacedShaft, part: Part) -> dict[str, Any]:
     """Return place, length and sections of a shaft; without sections it is rigid and has no mass."""
-    origin = tuple(map(float, placed.origin))
-    if not placed.sections:
+    origin = tuple(map(float, shaft.origin))
+    if not shaft.sections:
         part.say("shaft_section", "defaulted", "no sections: a rigid shaft without mass")
         return rigid_section(origin, 1.0, Inertia())
-    sections = [_section(section) for section in placed.sections]
-    return rigid_line(origin, placed.length) | {"sections": sections}
+    sections = [_section(section) for section in shaft.sections]
+    return rigid_line(origin, shaft.length) | {"sections": sections}
 
 
 def _section(section: BeamSection) -> dict[str, Any]:

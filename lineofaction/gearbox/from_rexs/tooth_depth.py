@@ -198,9 +198,9 @@ def _cutter(tool: Part | None, sign: int) -> Mapping[str, int | float]:
     return fields if shift is None else fields | {"cutter_profile_shift_coefficient": rounded(shift)}
 
 
-def _tool(loaded: LoadedFlank) -> Part | None:
+def _tool(flank: LoadedFlank) -> Part | None:
     """Return the tool that makes the root: the first step of the loaded flank, else of the gear."""
-    for part in (*loaded.flanks, loaded.gear):
+    for part in (*flank.flanks, flank.gear):
         tools = (
             *part.related("manufacturing_step", "workpiece", "tool"),
             *part.related("ordered_reference", "origin", "referenced"),

@@ -29,9 +29,9 @@ class ToothingData:
     """Profile shift coefficient; None: the file states none."""
 
     @classmethod
-    def of(cls, loaded: LoadedFlank) -> ToothingData:
+    def of(cls, flank: LoadedFlank) -> ToothingData:
         """Return the numbers of a gear."""
-        gear = loaded.gear
+        gear = flank.gear
         teeth = gear.required("number_of_teeth", "teeth")
         ring = gear.type == "ring_gear"
         if teeth != round(teeth) or teeth == 0.0 or (teeth < 0.0 and not ring):
@@ -39,14 +39,14 @@ class ToothingData:
             remedy = "" if teeth > 0.0 else "A ring gear is a component of the type ring_gear."
             raise gear.refusal("number_of_teeth", teeth, bound, remedy)
         return cls(
-            loaded=loaded,
+            loaded=flank,
             sign=-1 if ring else 1,
             teeth=abs(round(teeth)),
             normal_module=gear.positive("normal_module", "normal_module_mm"),
-            pressure_angle=_pressure_angle(loaded),
+            pressure_angle=_pressure_angle(flank),
             helix_angle=_helix_angle(gear),
             face_width=gear.positive("face_width", "face_width_mm"),
-            profile_shift_coefficient=_of_flanks(loaded, SHIFT, "profile_shift_coefficient"),
+            profile_shift_coefficient=_of_flanks(flank, SHIFT, "profile_shift_coefficient"),
         )
 
     @property
@@ -65,16 +65,16 @@ class ToothingData:
         return math.atan(math.tan(self.pressure_angle) / math.cos(self.helix_angle))
 
 
-def _pressure_angle(loaded: LoadedFlank) -> float:
+def _pressure_angle(flank: LoadedFlank) -> float:
     """Return the normal pressure angle of the loaded flank, else of the other, else of the gear."""
     item, field = "normal_pressure_angle", "normal_pressure_angle_deg"
-    value = _of_flanks(loaded, item, field)
+    value = _of_flanks(flank, item, field)
     if value is None:
-        value = loaded.gear.number(item, field)
+        value = flank.gear.number(item, field)
         if value is not None:
-            _say_difference(loaded, item, value)
+            _say_difference(flank, item, value)
     if value is None:
-        loaded.gear.say(item, "defaulted", "20 deg (ISO 53)")
+        flank.gear.say(item, "defaulted", "20 deg (ISO 53)")
         return math.radians(20.0)
     return value
 
@@ -95,9 +95,9 @@ def _helix_angle(gear: Part) -> float:
     return value + 0.0  # -0.0 becomes 0.0
 
 
-def _say_difference(loaded: LoadedFlank, item: str, value: float) -> None:
+def _say_difference(flank: LoadedFlank, item: str, value: float) -> None:
     """State that a value of the unloaded flank is left aside where it differs."""
-    other = loaded.other
+    other = flank.other
     value_of_other = None if other is None else other.number(item, "as of the loaded flank")
     if other is not None and value_of_other is not None and value_of_other != value:
-        other.say(item, "ignored", f"the case has the loaded {loaded.side} flank's")
+        other.say(item, "ignored", f"the case has the loaded {flank.side} flank's")

@@ -23,7 +23,7 @@ Bearings = Mapping[str, FloatArray]
 
 def placements(bores: Sequence[Bore], bearings: Bearings) -> Iterator[Placement]:
     """Yield the placements in which two bores are about two shafts."""
-    shafts = _once(np.array([position[:2] for position in bearings.values()]))
+    shafts = _distinct_points(np.array([position[:2] for position in bearings.values()]))
     distance = np.linalg.norm(shafts[:, None] - shafts[None], axis=-1)
     if not distance.any():
         return
@@ -32,13 +32,13 @@ def placements(bores: Sequence[Bore], bearings: Bearings) -> Iterator[Placement]
         middles = np.array([bore.position for bore in bores if _along(bore, direction)])
         for sense in (1.0, -1.0):
             frame = _frame(sense * direction)
-            lines = _once((middles @ frame)[:, :2])
+            lines = _distinct_points((middles @ frame)[:, :2])
             for axes, across in _turned(frame, lines, pair):
                 for along in _offsets(middles @ axes.T, across, bearings):
                     yield Placement(axes, np.array([*across, along]))
 
 
-def _once(points: FloatArray) -> FloatArray:
+def _distinct_points(points: FloatArray) -> FloatArray:
     """Return points without duplicates, to 1 µm."""
     _, first = np.unique(np.round(points, 6), axis=0, return_index=True)
     return points[first]

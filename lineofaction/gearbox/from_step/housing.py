@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from dynamics.housings import FlatFace, StepSolid
+from bounds import engineering
+from dynamics.housings import FlatFace, StepSolid, usual_edge
 from dynamics.solid_housing import MATERIALS
 from dynamics.types import FloatArray
 from lineofaction.gearbox.convert.placement import Placement
@@ -25,8 +26,14 @@ DIRECTIONS = {
     for sign in "+-"
 }
 """Outward normals of a foot, as they are typed."""
+_REACH = 1.5
+"""Largest extent of an element of a bore's wall along its axis, over the edge that the mesher keeps to."""
+_FINEST = 0.5
+"""Least edge of elements for the sake of a seat over the usual one: half: eight times as many."""
 _FACING = 5e-3
 """Sine of the angle between normals that are the same."""
+_EVEN = 1e-5
+"""Distance of a bearing from the middle of its bore that is none, m."""
 _LEVEL = 1e-5
 """Height within which faces are in one plane, m."""
 
@@ -65,8 +72,8 @@ def step_housing(
 ) -> StepHousing:
     """Return the housing that a solid is in a scene: its bearings are in bores, it stands on outermost faces.
 
-    Raises `BadInput`: the scene has no bearings, no placement fits, no bearing is in a bore, or no face looks
-    where it should stand.
+    Raises `BadInput`: the scene has no bearings, no placement fits, no bearing is in a bore, a bearing is so
+    near to an end of its bore that no mesh resolves its seat, or no face looks where it should stand.
 
     Parameters
     ----------
@@ -85,10 +92,13 @@ def step_housing(
     if not seating.bores:
         remedy = "Leave --origin-mm, --x-axis and --z-axis out: the bores say where it stands."
         raise BadInput.of("--origin-mm", seating.placement.fields, "such that a bearing is in a bore", remedy)
+    wall = 2.0 * solid.volume / solid.surface
+    element_size = _element_size(seating, wall)
     stand = _stand(solid, seating.placement, stands_on)
     point = [as_typed(float(np.round(value, 8)) + 0.0, MM) for value in stand.point]
     fields = {
         "material": material,
+        **({} if element_size is None else {"element_size_mm": as_typed(element_size, MM)}),
         **seating.placement.fields,
         "feet": [{"name": "base", "point_mm": point, "normal": (stand.normal + 0.0).tolist()}],
         "seats": [_seat(name, seating) for name in seating.bores],
@@ -97,7 +107,7 @@ def step_housing(
     modeled = (part for part in scene.housings if not part.is_measured)
     replaced = tuple(part.name for part in modeled if seating.bores.keys() & {*part.bushings})
     mass = MATERIALS[material].density * solid.volume
-    return StepHousing(fields, seating, omitted, replaced, stand, mass, 2.0 * solid.volume / solid.surface)
+    return StepHousing(fields, seating, omitted, replaced, stand, mass, wall)
 
 
 def _bearings(scene: SceneInput) -> Bearings:
@@ -122,6 +132,30 @@ def even_length(seating: Seated, name: str) -> float:
     """Return the length of a bore that lies evenly about its bearing, m."""
     bore = seating.bores[name]
     return float(bore.length - 2.0 * abs(bore.position[2] - seating.bearings[name][2]))
+
+
+def _element_size(seating: Seated, wall: float) -> float | None:
+    """Return the edge of elements that the seats need, to 10 µm; None: the usual mesh of such walls will do.
+
+    A seat has to be as long as the elements of its bore are along the axis. Raises `BadInput` for a seat that
+    needs much smaller ones.
+    """
+    sizes = []
+    for name, bore in seating.bores.items():
+        length = even_length(seating, name)
+        usual = usual_edge(wall, bore.diameter)
+        if length >= min(_REACH * usual, bore.length - 2.0 * _EVEN):
+            continue
+        if length < _FINEST * _REACH * usual:
+            part, least, whole = (
+                f"{engineering(value / MM, 3)} mm"
+                for value in (length, _FINEST * _REACH * usual, bore.length)
+            )
+            bound = f"evenly in at least {least} of its bore, which is {whole} long"
+            remedy = "Move it towards the middle of the bore, or write seats and element_size_mm by hand."
+            raise BadInput.of(f'bearing "{name}"', part, bound, remedy)
+        sizes.append(np.floor(1e5 * length / _REACH) / 1e5)
+    return min(sizes, default=None)
 
 
 def _stand(solid: StepSolid, placement: Placement, stands_on: str) -> Stand:

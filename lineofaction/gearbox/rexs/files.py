@@ -70,12 +70,12 @@ def serialized(document: Document, name: str) -> bytes:
 
 
 def _check(model: Model) -> None:
-    faults = [*_repeated(model), *_dangling(model), *_cycles(model)]
+    faults = [*_repeated_faults(model), *_dangling(model), *_cycles(model)]
     if faults:
         raise BadInput(faults[:_MAX_FAULTS])
 
 
-def _repeated(model: Model) -> Iterator[Fault]:
+def _repeated_faults(model: Model) -> Iterator[Fault]:
     lists = {
         "component": [component.id for component in model.components],
         "relation": [relation.id for relation in model.relations],

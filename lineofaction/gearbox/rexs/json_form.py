@@ -94,7 +94,7 @@ class _Table(Element):
         if kinds[0].endswith(_CODED):
             body = _Table.of(plain, location)
             code = body.text("code")
-            value = body._decoded(kind, code)
+            value = body._decoded_value(kind, code)
         else:
             value = _value(kind, plain, location)
         unit, origin = self.optional_text("unit"), self.optional_text("origin")
@@ -102,7 +102,7 @@ class _Table(Element):
             id=name, kind=kind, value=value, unit=unit, code=code, origin=origin, extra=self.extra()
         )
 
-    def _decoded(self, kind: str, code: str) -> Value:
+    def _decoded_value(self, kind: str, code: str) -> Value:
         """Return the value of an array or a matrix in base64."""
         entry = entry_kind(kind)
         # a single entry is never coded; int32 is the one code of integers

@@ -87,13 +87,13 @@ def quantity(component: Component, name: str, location: str) -> float | None:
     location : str
         The component, for the error.
     """
-    attribute = _only(component, name, location)
+    attribute = _sole_attribute(component, name, location)
     return None if attribute is None else _number(attribute.value, attribute, f"{location}, {name}")
 
 
 def quantities(component: Component, name: str, location: str) -> tuple[float, ...] | None:
     """Return an array of numbers of a component in SI, as `quantity` a number."""
-    attribute = _only(component, name, location)
+    attribute = _sole_attribute(component, name, location)
     if attribute is None:
         return None
     if not isinstance(attribute.value, tuple):
@@ -101,7 +101,7 @@ def quantities(component: Component, name: str, location: str) -> tuple[float, .
     return tuple(_number(entry, attribute, f"{location}, {name}") for entry in attribute.value)
 
 
-def _only(component: Component, name: str, location: str) -> Attribute | None:
+def _sole_attribute(component: Component, name: str, location: str) -> Attribute | None:
     """Return the attribute of a name, None if there is none or it has no value."""
     named = [attribute for attribute in component.attributes if attribute.id == name]
     if len(named) > 1:

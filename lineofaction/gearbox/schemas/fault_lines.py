@@ -21,7 +21,7 @@ def located(file: InputFile) -> Iterator[None]:
     try:
         yield
     except BadInput as error:
-        raise BadInput(_placed(fault, file) for fault in error.faults) from None
+        raise BadInput(_placed_fault(fault, file) for fault in error.faults) from None
 
 
 def line_of_field(text: str, field: str) -> int | None:
@@ -38,7 +38,7 @@ def line_of_field(text: str, field: str) -> int | None:
     return None
 
 
-def _placed(fault: Fault, file: InputFile) -> Fault:
+def _placed_fault(fault: Fault, file: InputFile) -> Fault:
     """Return a fault with its place, if it has none and the file is TOML that holds it."""
     part = fault.field.partition("[")[0]
     if fault.location or file.path.suffix == ".json" or any(o.path.startswith(part) for o in file.overrides):

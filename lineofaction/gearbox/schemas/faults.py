@@ -180,12 +180,12 @@ def _bound(item: Mapping[str, Any], info: FieldInfo | None) -> str:
     return texts[kind]() if kind in texts else f"valid ({item.get('msg', '')})"
 
 
-def _advice_on_unknown(name: str, place: Loc, model: type[BaseModel], table: type[BaseModel]) -> str:
+def _advice_on_unknown(name: str, location: Loc, model: type[BaseModel], table: type[BaseModel]) -> str:
     """Return a suggestion for a name of which the `table` at a place of `model` has no field.
 
     It names other tables that have such a field, or else the nearest names in this table.
     """
-    path = [part for part in place if isinstance(part, str) and part not in _ALTERNATIVES]
+    path = [part for part in location if isinstance(part, str) and part not in _ALTERNATIVES]
     if tables := _nearest_tables(_tables_by_field(model).get(name, ()), path):
         return f"{name} is a field of {' and '.join(tables)}."
     close = difflib.get_close_matches(name[:_LONGEST_GUESS], table.model_fields, n=1)

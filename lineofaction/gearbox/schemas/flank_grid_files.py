@@ -24,7 +24,9 @@ def with_flank_grids(
 
     `read_text` returns the text of a file, by its name for errors, or raises `BadInput`.
     """
-    resolved = {key: _inside(value, find, read_text, _joined(prefix, key)) for key, value in table.items()}
+    resolved = {
+        key: _with_inner_grids(value, find, read_text, _joined(prefix, key)) for key, value in table.items()
+    }
     if FIELD not in table:
         return resolved
     field, name = _joined(prefix, FIELD), resolved.pop(FIELD)
@@ -40,12 +42,14 @@ def with_flank_grids(
     return resolved | {"flank_grid": flank_grid(text, field, name)}
 
 
-def _inside(value: object, find: Find, read_text: Callable[[Path, str], str], prefix: str) -> object:
+def _with_inner_grids(
+    value: object, find: Find, read_text: Callable[[Path, str], str], prefix: str
+) -> object:
     """Look for grids inside a table or a list."""
     if isinstance(value, dict):
         return with_flank_grids(value, find, read_text, prefix)
     if isinstance(value, list):
-        return [_inside(item, find, read_text, f"{prefix}[{i}]") for i, item in enumerate(value)]
+        return [_with_inner_grids(item, find, read_text, f"{prefix}[{i}]") for i, item in enumerate(value)]
     return value
 
 

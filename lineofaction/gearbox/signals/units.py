@@ -6,9 +6,8 @@ import math
 from dataclasses import dataclass
 
 from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.units import STANDARD_GRAVITY
 
-STANDARD_GRAVITY = 9.80665
-"""Standard gravity, m/s^2 (ISO 80000-3)."""
 _TURN = 2.0 * math.pi
 ACCELERATION = "acceleration"
 VELOCITY = "velocity"
@@ -18,16 +17,6 @@ SPEED = "speed"
 TORQUE = "torque"
 TIME = "time"
 ANGLE = "angle"
-SI_UNITS = {
-    ACCELERATION: "m/s²",
-    VELOCITY: "m/s",
-    FORCE: "N",
-    LENGTH: "m",
-    SPEED: "rad/s",
-    TORQUE: "N m",
-    TIME: "s",
-    ANGLE: "rad",
-}
 _SPELLINGS: dict[tuple[str, float], tuple[str, ...]] = {
     (ACCELERATION, 1.0): ("m/s²", "m/s2", "m/s^2", "m/s**2", "m s-2", "ms-2", "m s^-2"),
     (ACCELERATION, 1e-3): ("mm/s²", "mm/s2", "mm/s^2"),

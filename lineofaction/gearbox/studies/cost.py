@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 from bounds import engineering
+from lineofaction.gearbox.stages import LOADING
 
 _SMALL = 0.02
 """Share of the total cost below which a part is not named."""
+_UNPLANNED = 0.02
+"""Largest share of a stage that a planned cost does not name."""
 LONG = 3600.0
 """CPU seconds above which a cost is also written in hours, and a study adds a remedy to it."""
 
@@ -24,6 +27,8 @@ class Work(NamedTuple):
     name: str
     piece_seconds: float
     pieces: float = 1.0
+    stage: str = ""
+    """Stage of the study whose progress this work reports; empty: of none."""
 
     @property
     def seconds(self) -> float:
@@ -55,6 +60,27 @@ class StudyCost:
         """CPU seconds of all parts."""
         return sum(part.seconds for part in self.parts)
 
+    def shares(
+        self, stages: Sequence[tuple[str, float]], loading_seconds: float = 0.0
+    ) -> tuple[tuple[str, float], ...]:
+        """Return names of stages with their shares of this cost; as they are if it names none of them.
+
+        A stage that it does not name keeps its usual share, at most `_UNPLANNED`. `loading_seconds`: CPU
+        seconds of loading within the first stage, as the share of `LOADING`.
+        """
+        planned = {name: sum(part.seconds for part in self.parts if part.stage == name) for name, _ in stages}
+        total = sum(planned.values())
+        if total <= 0.0:
+            return tuple(stages)
+        named = {part.stage for part in self.parts}
+        shares = [
+            (name, planned[name] / total if name in named else min(usual, _UNPLANNED))
+            for name, usual in stages
+        ]
+        shares.insert(0, (LOADING, loading_seconds / total))
+        whole = sum(share for _, share in shares)
+        return tuple((name, share / whole) for name, share in shares)
+
     @property
     def text(self) -> str:
         """Return the cost as text: "about 40 CPU s, 1.2 GiB: gears 3.2 s, 24 values at 1.6 s"."""
@@ -71,7 +97,7 @@ class StudyCost:
         for name in dict.fromkeys(part.name for part in self.parts):
             parts = [part for part in self.parts if part.name == name]
             count = sum(part.pieces for part in parts)
-            yield Work(name, sum(part.seconds for part in parts) / max(count, 1.0), count)
+            yield Work(name, sum(part.seconds for part in parts) / max(count, 1.0), count, parts[0].stage)
 
     def __add__(self, later: StudyCost) -> StudyCost:
         """Return the cost of this work and another after it."""

@@ -22,11 +22,14 @@ Receipt = Literal["minimal", "full"]
 
 
 def runs_cost(
-    scene: SceneInput, runs: Callable[[Scene], tuple[list[float], float]], receipt: Receipt | None = None
+    scene: SceneInput,
+    runs: Callable[[Scene], tuple[list[float], float]],
+    stage: str,
+    receipt: Receipt | None = None,
 ) -> StudyCost | None:
     """Return the cost of runs of a scene: number of runs times steps, and CPU seconds outside the steps.
 
-    None: nothing predicts it.
+    `stage`: the stage that reports the runs. None: nothing predicts the cost.
     """
     cost = run_cost(scene, receipt=receipt)
     before = None if cost is None else moving_before_tables(scene)
@@ -37,7 +40,7 @@ def runs_cost(
     except (InputError, SolveError):
         return None
     per_run = cost.seconds * float(np.mean(times)) + extra_seconds if times else 0.0
-    return StudyCost((Work("runs", per_run, len(times)),))
+    return StudyCost((Work("runs", per_run, len(times), stage),))
 
 
 def run_cost(scene: SceneInput, runs: int = 1, receipt: Receipt | None = None) -> StudyCost | None:
@@ -61,9 +64,9 @@ def run_cost(scene: SceneInput, runs: int = 1, receipt: Receipt | None = None) -
 
 
 @lru_cache(1)
-def _probed(written: SceneText) -> ProbedRun:
+def _probed(text: SceneText) -> ProbedRun:
     from dynamics.simulation.run_cost import probe_run  # noqa: PLC0415 (start-up time)
 
-    before = scene_in_motion(written)
+    before = scene_in_motion(text)
     assert before is not None  # checked by the caller
     return probe_run(before)

@@ -54,9 +54,9 @@ def moving_before_tables(scene: SceneInput) -> Scene | None:
 
 
 @lru_cache(2)
-def scene_in_motion(written: SceneText) -> Scene | None:
+def scene_in_motion(text: SceneText) -> Scene | None:
     """Return a scene on usual tables in the motion of its run; None: a mesh names a table."""
-    scene = written.scene
+    scene = text.scene
     pairs = _pairs(scene)
     if pairs is None:
         return None
@@ -84,7 +84,7 @@ def sized(scene: SceneInput, highest_hz: float | None = None) -> System:
 
 
 @lru_cache(4)
-def _system(written: SceneText, highest_hz: float | None) -> System:
-    before = scene_before_tables(written.scene)
+def _system(text: SceneText, highest_hz: float | None) -> System:
+    before = scene_before_tables(text.scene)
     assert before is not None  # checked by the callers
     return assemble(before if highest_hz is None else replace(before, highest_frequency=highest_hz))

@@ -275,7 +275,7 @@ def solve(problem: Problem, total: float) -> _Answer:
             if falls.any():
                 step_length = min(step_length, 0.99 * float(np.min(-x[falls] / dx[falls])))
         force, slack, d = force + step_length * df, slack + step_length * ds, d + step_length * dd
-    return _polished(problem, law, total, touch, gap, force, slack, unit, iterations)
+    return _polished_answer(problem, law, total, touch, gap, force, slack, unit, iterations)
 
 
 def _balanced(
@@ -304,7 +304,7 @@ def _balanced(
     return force, float(d)
 
 
-def _polished(
+def _polished_answer(
     problem: Problem,
     law: _GuardedLaw,
     total: float,

@@ -36,7 +36,7 @@ def _module_of(module: float) -> Sequence[Measured]:
     scale = module / _MODULE
     figures = []
     for model in ("plane_strain", "3d"):
-        plain, scaled = (_scaled(factor, model) for factor in (1.0, scale))
+        plain, scaled = (_scaled_case(factor, model) for factor in (1.0, scale))
         position = even_positions(40)
         problem, solution = scaled.solve(position)
         expected = scale * plain.ste(position)
@@ -134,7 +134,7 @@ def _faces() -> Sequence[Measured]:
     )
 
 
-def _scaled(scale: float, model: str) -> ContactCase:
+def _scaled_case(scale: float, model: str) -> ContactCase:
     """Return the nominal pair with all lengths scaled, under the same strain."""
     gear = Gear(
         teeth=20, normal_module=scale * _MODULE, face_width=scale * _WIDTH, bore_diameter=scale * 40e-3

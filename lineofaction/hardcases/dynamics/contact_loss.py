@@ -111,7 +111,9 @@ def _impacts() -> Sequence[Measured]:
     """Throw a gear between both flanks, without load or damping, twenty times to and fro."""
     coarse, fine = _TOLERANCE, 1e-2 * _TOLERANCE
     runs = {
-        (method, tolerance): _thrown(method, tolerance) for method in METHODS for tolerance in (coarse, fine)
+        (method, tolerance): _thrown_trajectory(method, tolerance)
+        for method in METHODS
+        for tolerance in (coarse, fine)
     }
     off = {
         key: rms(_transmission_error(run) - bounce(run.time, _BACKLASH, _SPEED, NATURAL))
@@ -146,7 +148,7 @@ def _impacts() -> Sequence[Measured]:
     )  # fmt: skip
 
 
-def _thrown(method: str, tolerance: float) -> Trajectory:
+def _thrown_trajectory(method: str, tolerance: float) -> Trajectory:
     """Let the gear leave the driving flank at `_SPEED`, and integrate over all impacts."""
     duration = 0.5 * _IMPACTS * cycle(_BACKLASH, _SPEED, NATURAL)
     scene = torsional(

@@ -62,12 +62,12 @@ def _in_legs(scene: Scene, path: Path) -> int:
     """Run in legs of seven blocks, each from the checkpoint of the one before; return how many it took."""
     legs, status = 0, RunStatus.CANCELLED
     while status is RunStatus.CANCELLED:
-        status = simulate_to_file(scene, path, resume=legs > 0, cancel=_after(7))
+        status = simulate_to_file(scene, path, resume=legs > 0, cancel=_stop_after(7))
         legs += 1
     return legs
 
 
-def _after(blocks: int) -> Callable[[], bool]:
+def _stop_after(blocks: int) -> Callable[[], bool]:
     """Return a function that is False until its last call of `blocks`, when it requests the stop."""
     left = iter(range(blocks - 1))
     return lambda: next(left, None) is None

@@ -40,7 +40,7 @@ _WAVE = 0.2e-6  # amplitude of the teeth's error, m
 def _one_without_load() -> Sequence[Measured]:
     """Set one pin back so far that its planet touches nothing, and run."""
     gears = _set()
-    scene = _driven(gears)
+    scene = _driven_scene(gears)
     start = static_equilibrium(assemble(scene))
     shares = start.mesh_force[::2] / _SUN_FORCE  # meshes with sun and ring alternate, planet by planet
     expected = np.array([0.0, *[1.0 / (_PLANETS - 1)] * (_PLANETS - 1)])
@@ -78,7 +78,7 @@ def _set() -> PlanetarySet:
     )
 
 
-def _driven(gears: PlanetarySet) -> Scene:
+def _driven_scene(gears: PlanetarySet) -> Scene:
     """Return the set with its sun driven, its ring held and its carrier loaded."""
     parts = gears.parts()
     ratio = 1.0 + gears.teeth[2] / gears.teeth[0]

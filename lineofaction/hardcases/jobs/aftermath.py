@@ -126,10 +126,10 @@ def _left(service: JobService) -> tuple[Measured, ...]:
 
 
 def _others(
-    service: JobService, ended: list[Job], before: FloatArray, *, overtaken: bool
+    service: JobService, jobs: list[Job], before: FloatArray, *, overtaken: bool
 ) -> tuple[Measured, ...]:
     """Return figures on the jobs behind the disturbed one, and on a repetition of the small one."""
-    disturbed, dismissed, after = ended
+    disturbed, dismissed, after = jobs
     as_wished = (dismissed.status, dismissed.attempts, after.status) == ("dismissed", 0, "successful")
     served = disturbed.status != "successful" and service.store.find(disturbed.key, "database") is not None
     # RFC 3339 in UTC: the order of the texts is that of the instants

@@ -130,7 +130,7 @@ def _levels(sides: tuple[_Side, ...], orders: tuple[int, ...]) -> Figure:
     )
 
 
-def _spectra(sides: tuple[_Side, ...], measured: MeasuredOrders | None) -> Figure:
+def _spectra(sides: tuple[_Side, ...], orders: MeasuredOrders | None) -> Figure:
     lines = []
     for side, color in zip(sides, COLORS, strict=False):
         window = spectrum_window(side.run.time)
@@ -142,10 +142,10 @@ def _spectra(sides: tuple[_Side, ...], measured: MeasuredOrders | None) -> Figur
     signal = sides[0].signal
     caption = "90 to 95 % of the duration, over multiples of the mesh frequency in its middle; "
     caption += f"{signal.scale} values."
-    if measured is not None:
-        measured.require(signal.quantity.unit)
-        inside = measured.order <= _HIGHEST_ORDER
-        order, amplitude = measured.order[inside], measured.amplitude[inside]
+    if orders is not None:
+        orders.require(signal.quantity.unit)
+        inside = orders.order <= _HIGHEST_ORDER
+        order, amplitude = orders.order[inside], orders.amplitude[inside]
         lines.append(Line("measured", order, amplitude, palette.INK, "dash", 1.2))
         caption += " Measured: as read."
     top = max(float(line.y.max()) for line in lines)

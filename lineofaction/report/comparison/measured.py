@@ -244,18 +244,18 @@ class Aligned:
     """Correlation of both curves after the shift."""
 
 
-def aligned_to(measured: MeasuredCurve, computed: FloatArray) -> Aligned:
+def aligned_to(curve: MeasuredCurve, computed: FloatArray) -> Aligned:
     """Shift a measured ripple to where its circular correlation with `computed` (PER_PITCH,), µm, is largest.
 
     The shift must be found, because the zero of a measured position is that of an encoder.
     """
     target = computed - computed.mean()
-    correlations = np.fft.irfft(np.fft.rfft(target) * np.conj(np.fft.rfft(measured.ripple)), PER_PITCH)
+    correlations = np.fft.irfft(np.fft.rfft(target) * np.conj(np.fft.rfft(curve.ripple)), PER_PITCH)
     steps = int(np.argmax(correlations))
-    ripple = np.roll(measured.ripple, steps)
+    ripple = np.roll(curve.ripple, steps)
     sizes = float(np.linalg.norm(ripple) * np.linalg.norm(target))
     return Aligned(
-        measured,
+        curve,
         ripple,
         shift=steps / PER_PITCH,
         rms=float(np.sqrt(np.mean((ripple - target) ** 2))),

@@ -153,7 +153,7 @@ def _um(estimate: Estimate) -> Estimate:
 def _ripples(curves: dict[str, Curve], torque: float, measured: MeasuredCurve | None) -> Figure:
     position = np.arange(2 * PER_PITCH + 1) / PER_PITCH  # two base pitches, both ends included
     lines = [
-        Line(name, position, _twice(_ripple(curve)), color, band=0.5 * _UM * curve.peak_to_peak.error)
+        Line(name, position, _two_pitches(_ripple(curve)), color, band=0.5 * _UM * curve.peak_to_peak.error)
         for (name, curve), color in zip(curves.items(), COLORS, strict=False)  # more colors than curves
     ]
     caption = "STE less its mean. Bands: half the error of peak-to-peak on either side."
@@ -162,7 +162,7 @@ def _ripples(curves: dict[str, Curve], torque: float, measured: MeasuredCurve | 
         name = next(iter(curves))
         match = aligned_to(measured, _ripple(curves[name]))
         lines.append(
-            Line("measured", position, _twice(match.ripple), palette.INK, "dash", band=measured.spread)
+            Line("measured", position, _two_pitches(match.ripple), palette.INK, "dash", band=measured.spread)
         )
         caption += (
             f" Measured: mean of {measured.pitches} base pitches, less its mean, moved by {match.shift:.3f} "
@@ -180,7 +180,7 @@ def _ripples(curves: dict[str, Curve], torque: float, measured: MeasuredCurve | 
     )
 
 
-def _twice(ripple: FloatArray) -> FloatArray:
+def _two_pitches(ripple: FloatArray) -> FloatArray:
     """Return a ripple over two base pitches, closed by its first value."""
     return np.concatenate([ripple, ripple, ripple[:1]])
 
@@ -220,7 +220,7 @@ def _significant_torques(curves: dict[float, dict[str, Curve]]) -> str:
     )
 
 
-def _harmonics(curves: dict[str, Curve], torque: float, measured: MeasuredOrders | None) -> Figure:
+def _harmonics(curves: dict[str, Curve], torque: float, orders: MeasuredOrders | None) -> Figure:
     order = np.arange(1.0, MAX_HARMONICS + 1.0)
     lines, columns = [], {}
     for index, (name, curve) in enumerate(curves.items()):
@@ -230,13 +230,11 @@ def _harmonics(curves: dict[str, Curve], torque: float, measured: MeasuredOrders
         lines.append(Line(name, abscissa, value, COLORS[index], width=0.0, markers=True))
         columns[f"{name}, µm"] = [with_error(amplitude.value, amplitude.error) for amplitude in amplitudes]
     caption = "Amplitudes of the mesh harmonics of STE."
-    if measured is not None:
-        measured.require("µm")
-        drawn = measured.order <= MAX_HARMONICS + 0.5  # half an order beyond the last harmonic
-        lines.append(
-            Line("measured", measured.order[drawn], measured.amplitude[drawn], palette.INK, width=1.2)
-        )
-        columns["measured, µm"] = [number(measured.near(float(k)), 3) for k in order]
+    if orders is not None:
+        orders.require("µm")
+        drawn = orders.order <= MAX_HARMONICS + 0.5  # half an order beyond the last harmonic
+        lines.append(Line("measured", orders.order[drawn], orders.amplitude[drawn], palette.INK, width=1.2))
+        columns["measured, µm"] = [number(orders.near(float(k)), 3) for k in order]
         caption += " Measured: as read; the table has its largest line within a tenth of each order."
     # A row is a harmonic and its cell of every column.
     rows = tuple((f"{k:g}", *cells) for k, *cells in zip(order, *columns.values(), strict=True))

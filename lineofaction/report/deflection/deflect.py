@@ -13,7 +13,7 @@ from lineofaction.gearbox.studies.deflect.figures import mesh_names
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks
 from lineofaction.gearbox.studies.deflect.run import RUN
 from lineofaction.gearbox.units import MM, UM
-from lineofaction.report.deflection.gearbox_drawing import gearbox_drawing, largest_motion
+from lineofaction.report.deflection.gearbox_drawing import gearbox_drawing, largest_motion, micrometers
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Bars, Dash, Figure, HeatMap, Line, Panel, Table, number
 from lineofaction.report.drawing.page import Headline, Page, Section
@@ -44,6 +44,15 @@ def _drawn_case(result: GearboxDeflection) -> CaseDeflection:
 
 def _mesh_of(case: CaseDeflection, name: str) -> MeshAlignment:
     return next(mesh for mesh in case.meshes if mesh.name == name)
+
+
+def _case(result: GearboxDeflection, name: str) -> CaseDeflection:
+    return next(case for case in result.deflection.cases if case.name == name)
+
+
+def _under(case: CaseDeflection) -> str:
+    """Return a load case with its torque, in words."""
+    return f'under the load case "{case.name}", {number(case.torque)} N m'
 
 
 def _mesh_table(result: GearboxDeflection) -> Table:
@@ -78,8 +87,8 @@ def _force_table(result: GearboxDeflection) -> Table | None:
 
 def _row(name: str, case: CaseDeflection, flanks: MeshFlanks | None, acting: BoolArray) -> tuple[str, ...]:
     mesh = _mesh_of(case, name)
-    columns = (name, _titled(case), number(case.torque), number(mesh.misalignment / UM, 3))
-    parts = tuple("0" if part == 0.0 else number(float(part) / UM, 3) for part in mesh.causes[acting])
+    columns = (name, _titled(case), number(case.torque), micrometers(mesh.misalignment))
+    parts = tuple(micrometers(float(part)) for part in mesh.causes[acting])
     if flanks is None:
         return (*columns, *parts, "none", "none", "none")
     ripple = with_error(flanks.peak_to_peak / UM, flanks.peak_to_peak_error / UM)
@@ -141,13 +150,13 @@ def _life_table(result: GearboxDeflection) -> Table:
 def _causes_figure(result: GearboxDeflection) -> Figure:
     names, cases = _meshes_worst_first(result), result.deflection.cases
     worst = _worst_case(result, names[0])
-    largest = number(_mesh_of(worst, names[0]).misalignment / UM, 3)
+    largest = micrometers(_mesh_of(worst, names[0]).misalignment).replace("< ", "less than ")
     return Figure(
         key="misalignment_by_cause",
         title="Misalignment of each mesh by cause",
         caption="Growth of the gap over the common face in the plane of action, positive along z of the "
         "pinion. Parts of either sign are stacked from zero, points are their sum.",
-        alternative=f'Mesh {names[0]} runs at up to {largest} µm, under the load case "{worst.name}".',
+        alternative=f"Mesh {names[0]} is misaligned most, by {largest} µm, {_under(worst)}.",
         content=tuple(_causes_panel(name, cases) for name in names),
     )
 
@@ -188,7 +197,7 @@ def _face_load_figure(result: GearboxDeflection) -> Figure | None:
         key="mesh_face_load",
         title="Load along the face",
         caption="Force of all pairs per width of face, mean over the mesh cycle; 0: mid-face of the pinion.",
-        alternative=f"The most uneven is mesh {largest.mesh} under {largest.case}: K_Hbeta "
+        alternative=f"The most uneven is mesh {largest.mesh} {_under(_case(result, largest.case))}: K_Hbeta "
         f"{number(largest.face_load_factor, 3)}.",
         content=tuple(panels),
     )
@@ -224,17 +233,18 @@ def _headlines(result: GearboxDeflection) -> tuple[Headline, ...]:
     """Return the worst mesh and the most uneven load; without meshes how far the axes move."""
     case = _drawn_case(result)
     if not case.meshes:
-        size = f"{number(largest_motion(case) / UM, 3)} µm"
-        return (Headline("largest displacement of an axis", size, case.name),)
+        size = f"{micrometers(largest_motion(case))} µm"
+        return (Headline("largest displacement of an axis", size, _under(case)),)
     name = _meshes_worst_first(result)[0]
     mesh = _mesh_of(case, name)
     maximum = f"; most by the {CAUSES[int(np.argmax(np.abs(mesh.causes)))]}" if np.any(mesh.causes) else ""
-    size = f"{number(mesh.misalignment / UM, 3)} µm"
-    lines = [Headline("largest misalignment", size, f"mesh {name}, {case.name}{maximum}")]
+    size = f"{micrometers(mesh.misalignment)} µm"
+    lines = [Headline("largest misalignment", size, f"mesh {name}, {_under(case)}{maximum}")]
     factors = [part for part in result.flanks if np.isfinite(part.face_load_factor)]
     if factors:
         worst = max(factors, key=lambda part: part.face_load_factor)
-        remark = f"mesh {worst.mesh}, {worst.case}; error not estimated: flanks of a case are solved once"
+        where = f"mesh {worst.mesh}, {_under(_case(result, worst.case))}"
+        remark = f"{where}; error not estimated: flanks of a case are solved once"
         lines.append(Headline("largest K_Hbeta", number(worst.face_load_factor, 3), remark))
     return tuple(lines)
 

@@ -31,11 +31,20 @@ NEAR = 0.04
 """Distance over the size of the drawing below which names cover each other."""
 VIEWS = np.array([(math.cos(a), math.sin(a)) for a in np.radians(sorted(range(-89, 91), key=abs))])
 """Directions across z, the directions near x first."""
+_FINEST = 1e-9
+"""Length below which a motion is not written out, m: no deflection is known to that."""
 COAXIAL = 1e-6
 """Distance in m below which two axes are one."""
 EDGE = 0.04
 """Margin of a plot's axis beyond its contents, over their span."""
 CIRCLE = np.linspace(0.0, 2.0 * math.pi, 91)
+
+
+def micrometers(length: float) -> str:
+    """Write a length in m with three digits in µm; below a nanometer it is only said to be so."""
+    if 0.0 < abs(length) < _FINEST:
+        return "< 0.001"
+    return "0" if length == 0.0 else number(length / UM, 3)
 
 
 def largest_motion(case: CaseDeflection) -> float:
@@ -101,7 +110,7 @@ def _finding(case: CaseDeflection) -> str:
     if not case.meshes:
         return f"The axes move by up to {number(largest_motion(case) / UM, 3)} µm."
     worst = max(case.meshes, key=lambda mesh: abs(mesh.misalignment))
-    size = number(worst.misalignment / UM, 3)
+    size = micrometers(worst.misalignment).replace("< ", "less than ")
     return f"Mesh {worst.name} has the largest misalignment, {size} µm over its face."
 
 

@@ -10,7 +10,7 @@ from bounds import engineering
 from bounds.error_digits import error_text, to_error
 from lineofaction.gearbox.convert.boundary_names import boundary_name
 from lineofaction.gearbox.studies.optimize.result import HeardOptimization
-from lineofaction.gearbox.units import UM, factor
+from lineofaction.gearbox.units import RPM, UM, factor
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Bars, Figure, Panel, Table, number
 from lineofaction.report.drawing.page import Headline, Page, Section
@@ -22,6 +22,20 @@ _WIDTH = 0.32
 
 def _loads(result: HeardOptimization) -> tuple[str, ...]:
     return tuple(f"{torque:.4g} N m" for torque in result.torque)
+
+
+def _counted(result: HeardOptimization) -> str:
+    """Return the speeds and loads over which the minimized level counts, in words."""
+    speeds, loads = result.speed / RPM, result.torque
+    at_speed = f"at {speeds[0]:.4g} rpm"
+    if speeds.size > 1:
+        over = result.over_speeds.replace("_", " ")
+        at_speed = f"{over} over {speeds.size} speeds from {speeds.min():.4g} to {speeds.max():.4g} rpm"
+    at_load = f"at {loads[0]:.4g} N m"
+    if loads.size > 1:
+        over = result.over_loads.replace("_", " ")
+        at_load = f"{over} over {loads.size} loads from {loads.min():.4g} to {loads.max():.4g} N m"
+    return f"{result.quantity.replace('_', ' ')}, {at_speed}, {at_load}"
 
 
 def _levels_figure(result: HeardOptimization) -> Figure:
@@ -109,8 +123,8 @@ def _text(result: HeardOptimization) -> Iterator[Table | str]:
 def _page(result: HeardOptimization) -> Page:
     gain = f"± {engineering(result.gain.error, 2)} dB"
     heads = (
-        Headline("before", f"{result.start.objective.value:.1f} {result.unit}"),
-        Headline("after", f"{result.optimum.objective.value:.1f} {result.unit}"),
+        Headline("before", f"{result.start.objective.value:.1f} {result.unit}", _counted(result)),
+        Headline("after", f"{result.optimum.objective.value:.1f} {result.unit}", _counted(result)),
         Headline("gain", f"{result.gain.value:.1f} dB", gain),
     )
     outcome = f"{result.reason}.", result.within_tolerances(), result.costs(), result.ended()

@@ -172,7 +172,8 @@ def _run_table(result: Optimization) -> Table:
 def _optimization_page(result: Optimization) -> Page:
     before, after = result.start.objective, result.optimum.objective
     harmonic = result.request["objective"].get("harmonic")  # None: the peak-to-peak counts
-    heads = [_headline("before", before), _headline("after", after)]
+    counted = _counted(result)
+    heads = [_headline("before", before, counted), _headline("after", after, counted)]
     heads.insert(len(heads) if harmonic is None else 0, _gain(result, harmonic))
     lead = f"{result.reason}; {result.evaluations} designs of {len(result.variables)} variables"
     figure = Section("Harris map", "", (replace(_harris(result), table=None),), (_ripple_table(result),))
@@ -202,9 +203,21 @@ def _gain(result: Optimization, harmonic: int | None) -> Headline:
     return Headline(name, f"{value} dB", f"± {error}, {outcome}")
 
 
-def _headline(name: str, objective: Estimate) -> Headline:
+def _counted(result: Optimization) -> str:
+    """Return what of the transmission error counts, and at which loads, in words."""
+    objective, torque = result.request["objective"], result.torque
+    harmonic = objective.get("harmonic")
+    what = "expected peak to peak" if harmonic is None else f"harmonic {harmonic}"
+    if torque.size == 1:
+        return f"{what} at {thousands(torque.tolist())[0]} N m"
+    ends = thousands([float(torque.min()), float(torque.max())])
+    over = str(objective["objective"]).replace("_", " ")
+    return f"{what}, {over} over {torque.size} loads from {ends[0]} to {ends[1]} N m"
+
+
+def _headline(name: str, objective: Estimate, counted: str) -> Headline:
     value, error = _value(objective.value, objective.error)
-    return Headline(name, f"{value} µm", f"± {error} µm")
+    return Headline(name, f"{value} µm", f"± {error} µm; {counted}")
 
 
 def _text(result: Optimization) -> Iterator[Table | str]:

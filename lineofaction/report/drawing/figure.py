@@ -127,13 +127,19 @@ class Reference:
 
 @dataclass(frozen=True)
 class Note:
-    """A short text above right of a point, moved up by text heights (`row`), or to its left."""
+    """A short text above right of a point, moved up by text heights (`row`), or to its left.
+
+    `tail`: values on the axes at which the text begins, at half its height, in place of row and side; a
+    leader of the note's `color` goes from there to the point.
+    """
 
     x: float
     y: float
     text: str
     row: int = 0
     left: bool = False
+    tail: tuple[float, float] | None = None
+    color: str = palette.MUTED
 
 
 @dataclass(frozen=True)
@@ -392,6 +398,8 @@ def _fits_half(figure: Figure) -> bool:
         if panel.equal or not _few_marks(panel.shade) or labels > _SHORT:
             return False
         if len(panel.references) + len(panel.notes) > _FEW_MARKS:
+            return False
+        if any(note.tail for note in panel.notes):
             return False
     return True
 

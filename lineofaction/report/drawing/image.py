@@ -369,7 +369,13 @@ def _finish(ax: Axes, panel: Panel) -> None:
 
 
 def _write_note(ax: Axes, note: Note, *, boxed: bool) -> None:
-    """Write a note at its point, in a white box where colors lie under it."""
+    """Write a note at its point or at the tail of its leader, in a white box where colors lie under it."""
+    if note.tail is not None:
+        leader = {"arrowstyle": "-", "color": note.color, "lw": 1.2}
+        leader |= {"relpos": (0, 0.5), "shrinkA": 0, "shrinkB": 0}
+        box: dict[str, Any] = {"bbox": _BOX if boxed else None, "va": "center", "fontsize": 8}
+        ax.annotate(note.text, (note.x, note.y), note.tail, arrowprops=leader, **box)
+        return
     right = -5 if note.left else 5  # points
     above = 4 + _NOTE_ROW * note.row
     if note.row < 0:

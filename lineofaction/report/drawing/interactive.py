@@ -19,6 +19,7 @@ from lineofaction.report.drawing.figure import (
     Figure,
     HeatMap,
     Line,
+    Note,
     Panel,
     Reference,
     Strokes,
@@ -296,17 +297,33 @@ def _panel_title(panel: Panel, suffix: str) -> list[Json]:
 
 
 def _notes(panel: Panel, suffix: str) -> list[Json]:
-    """Put short texts at their points; annotations count decades on a logarithmic axis."""
+    """Put short texts at their points or at the tails of their leaders."""
     notes = []
     for note in panel.notes:
         annotation = {"xref": "x" + suffix, "yref": "y" + suffix, "showarrow": False, "text": note.text}
-        for name, axis, value in (("x", panel.x, note.x), ("y", panel.y, note.y)):
-            annotation[name] = float(np.log10(value)) if axis.scale == "log" else value
-        shifts = {"xshift": -4 if note.left else 4, "yshift": _NOTE_ROW * note.row}
-        side = {"xanchor": "right" if note.left else "left", "yanchor": "bottom"}
+        annotation |= {"x": _position(panel.x, note.x), "y": _position(panel.y, note.y)}
         box = {} if panel.shade is None else {"bgcolor": _BOX}
-        notes.append(annotation | shifts | side | box | {"font": {"size": 12}})
+        where = _beside(note) if note.tail is None else _led(note, note.tail, panel, suffix)
+        notes.append(annotation | where | box | {"font": {"size": 12}})
     return notes
+
+
+def _position(axis: Axis, value: float) -> float:
+    """Return a value as annotations have it: they count decades on a logarithmic axis."""
+    return float(np.log10(value)) if axis.scale == "log" else value
+
+
+def _beside(note: Note) -> Json:
+    shifts = {"xshift": -4 if note.left else 4, "yshift": _NOTE_ROW * note.row}
+    return shifts | {"xanchor": "right" if note.left else "left", "yanchor": "bottom"}
+
+
+def _led(note: Note, tail: tuple[float, float], panel: Panel, suffix: str) -> Json:
+    """Return the leader of a note, whose text begins at the tail."""
+    at = {"axref": "x" + suffix, "ax": _position(panel.x, tail[0])}
+    at |= {"ayref": "y" + suffix, "ay": _position(panel.y, tail[1])}
+    look = {"arrowhead": 0, "arrowwidth": 1.4, "arrowcolor": note.color}
+    return {"showarrow": True, "xanchor": "left", "yanchor": "middle", "borderpad": 0} | at | look
 
 
 def _add_reference(layout: Json, reference: Reference, panel: Panel, suffix: str) -> None:

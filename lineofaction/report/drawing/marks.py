@@ -104,7 +104,7 @@ def marked(figure: Figure, marks: Marks) -> Figure:
     What lies beyond an axis is said in the caption.
     """
     panels = tuple(_marked_panel(panel, marks) for panel in figure.content)
-    beyond = dict.fromkeys(text for panel in figure.content for text in _beyond(panel, marks))
+    beyond = dict.fromkeys(text for panel in figure.content for text in _unreached_values(panel, marks))
     return replace(figure, content=panels, caption=" ".join([figure.caption, *beyond]))
 
 
@@ -154,7 +154,7 @@ def _reaches(panel: Panel, axis: Axis, direction: str, value: float) -> bool:
     return bool(known.size and known.min() <= value <= known.max())
 
 
-def _beyond(panel: Panel, marks: Marks) -> list[str]:
+def _unreached_values(panel: Panel, marks: Marks) -> list[str]:
     """Return sentences on the values of the complaint that a panel does not reach."""
     return [
         f"The {NAME}, {_value_label(axis, value)}, lies beyond this axis."

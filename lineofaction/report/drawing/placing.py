@@ -25,6 +25,11 @@ _MARGIN = 0.05
 beyond the margin runs into the title or the axis."""
 _PLACES = [(row, left) for row in (0, -1, 1, -2, 2, -3, 3) for left in (False, True)]
 """Rows above (> 0) or below a note's usual place, and whether the text ends at the point."""
+_STACKED = 0.085
+"""Least distance of texts that stand above each other, over the height of a wide panel: that of an 8 point
+text in its white box."""
+_TAIL = 0.02  # length of a leader over the width of the panel
+_WIDE_CHARACTER = 0.0095  # width of a character over that of a panel beside a color bar, or on a page
 _ROOM = 0.05  # share of the height above and below the curves of an axis without limits
 _LEADING = 0.3  # distance of two labels, in rows of text
 Description = TypeVar("Description")
@@ -85,19 +90,74 @@ def placed(notes: Sequence[Note], x: Axis, y: Axis, y_range: tuple[float, float]
     return tuple(shifted)
 
 
-def _text(text: str, x: float, y: float, row: int, left: bool) -> _Box:
+def _text(text: str, x: float, y: float, row: int, left: bool, character: float = _CHARACTER) -> _Box:
     """Return the box of a text at the point (x, y)."""
-    width = _CHARACTER * len(text)
+    width = character * len(text)
     low = y + row * _HEIGHT - 0.5 * _HEIGHT + (_RISE if row >= 0 else 0.0)
     start = x - _GAP - width if left else x + _GAP
     return _Box(left=start, right=start + width, low=low, high=low + _HEIGHT)
 
 
-def _is_free(box: _Box, taken: Sequence[_Box], lowest: float) -> bool:
+def _is_free(box: _Box, boxes: Sequence[_Box], lowest: float) -> bool:
     """Whether a text lies in the panel and covers nothing."""
     across = box.left >= 0.0 and box.right <= 1.0
     along = box.low >= lowest and box.high <= 1.0 + _MARGIN
-    return across and along and not any(box.covers(other) for other in taken)
+    return across and along and not any(box.covers(other) for other in boxes)
+
+
+def stacked(notes: Sequence[Note], x: Axis, y: Axis) -> tuple[Note, ...]:
+    """Return notes at the left edge of a panel, each with a leader to a text that covers no other.
+
+    The texts stand above each other in the order of their points and as near to them as they can. Both axes
+    have limits and are linear.
+    """
+    left, right = x.limits or (0.0, 1.0)
+    low, high = y.limits or (0.0, 1.0)
+    height = min(_STACKED, 1.0 / max(len(notes), 1))
+    middles = spread_positions(
+        y.fraction(np.array([note.y for note in notes]), (low, high)), np.full(len(notes), height)
+    )
+    start = left + _TAIL * (right - left)
+    return tuple(
+        replace(note, tail=(start, float(low + middle * (high - low))))
+        for note, middle in zip(notes, middles, strict=True)
+    )
+
+
+def named_along(
+    curves: Sequence[tuple[str, FloatArray, FloatArray]], x: Axis, y: Axis, others: Sequence[Note] = ()
+) -> tuple[Note, ...]:
+    """Return a note with the name of each curve, above left of one of its points, none over another.
+
+    A name stands at the first point of its curve where it covers neither an earlier name nor a text of the
+    `others`, which have tails; a curve without such a point has none. Both axes have limits.
+
+    Parameters
+    ----------
+    curves : sequence of (str, (n,) array, (n,) array)
+        Name, and points of the curve, the best place for its name first.
+    """
+    x_ends, y_ends = x.limits or (0.0, 1.0), y.limits or (0.0, 1.0)
+    taken = [_tailed(note, x, y) for note in others]
+    notes = []
+    for name, at, height in curves:
+        across, along = x.fraction(at, x_ends), y.fraction(height, y_ends)
+        for k in range(len(at)):
+            box = _text(name, float(across[k]), float(along[k]), 0, left=True, character=_WIDE_CHARACTER)
+            if _is_free(box, taken, 0.0):
+                taken.append(box)
+                notes.append(Note(float(at[k]), float(height[k]), name, left=True))
+                break
+    return tuple(notes)
+
+
+def _tailed(note: Note, x: Axis, y: Axis) -> _Box:
+    """Return the box of a text that begins at its tail."""
+    start, middle = note.tail or (note.x, note.y)
+    left = float(x.fraction(np.array(start), x.limits or (0.0, 1.0)))
+    at = float(y.fraction(np.array(middle), y.limits or (0.0, 1.0)))
+    right = left + _WIDE_CHARACTER * len(note.text)
+    return _Box(left=left, right=right, low=at - 0.5 * _STACKED, high=at + 0.5 * _STACKED)
 
 
 class _LineLabel(NamedTuple):

@@ -96,9 +96,9 @@ def effect_table(caption: str, rows: Iterable[EffectRow]) -> Table:
     return Table(caption, ("effect", "in", "simulated", "without it", "because"), tuple(cells))
 
 
-def effects_section(text: str, rows: Iterable[EffectRow], folded: tuple[Table, ...]) -> Section:
+def effects_section(text: str, rows: Iterable[EffectRow], tables: tuple[Table, ...]) -> Section:
     """Show effects under a sentence on their influences."""
-    return Section("Effects", text, tables=(effect_table("Effects", rows),), folded=folded, part=Part.EFFECTS)
+    return Section("Effects", text, tables=(effect_table("Effects", rows),), folded=tables, part=Part.EFFECTS)
 
 
 def one_effects_section(sections: Sequence[Section]) -> tuple[Section, ...]:

@@ -139,7 +139,7 @@ def contact_pattern_figure(flanks: LoadDistribution) -> Figure:
     pressures = (pressure_map(flanks, roll) for roll in (flanks.roll_length_1, flanks.roll_length_2))
     maps = [(1e3 * rows, 1e-6 * pressure) for rows, pressure in pressures]
     count = flanks.face_position.size
-    drawn = _shaded if count > 1 else _curve
+    drawn = _shaded_panel if count > 1 else _curve
     teeth = "/".join(map(str, flanks.scene.geometry.teeth))
     stretches = f" and {count} stretches of the face; blank: nothing touches" if count > 1 else ""
     return Figure(
@@ -171,7 +171,7 @@ def _roll_marks(
     )
 
 
-def _shaded(flanks: LoadDistribution, gear: Gear, pattern: _Map) -> Panel:
+def _shaded_panel(flanks: LoadDistribution, gear: Gear, pattern: _Map) -> Panel:
     roll, pressure = pattern
     largest = 1e-6 * float(flanks.pressure.max())
     face = 1e3 * flanks.face_position

@@ -19,12 +19,12 @@ from lineofaction.report.drawing.figure import (
     Figure,
     FloatArray,
     Line,
-    Note,
     Panel,
     Table,
     number,
 )
 from lineofaction.report.drawing.page import Headline
+from lineofaction.report.drawing.placing import named_along
 from lineofaction.report.drawing.surface_view import shape_figure
 from lineofaction.report.presentation import dynamics_presentation
 from lineofaction.report.response.mode_lines import mode_bars, whirl_name
@@ -34,9 +34,8 @@ MAX_PARTS = 2
 MAX_MODES, PRINTED_MODES = 10, 20
 HEADROOM = 1.15  # top of the plot over the highest mode or order; modes that no order reaches are not drawn
 MIN_TOP = 1.0  # least top of the plot, Hz
-ROOM = 0.03  # share of the width for the name of an order; orders that end closer have no name
 NOTE_TOP = 0.97  # height up to which the name of an order stands, over that of the plot
-NOTE_DROP = 0.985  # height of the name of an order over that of its line, where they begin
+PLACES = 40  # points of the line of an order at which its name may stand
 WHIRLS: dict[str, tuple[str, Dash]] = {
     "forward whirl": (palette.BLUE, "solid"),
     "backward whirl": (palette.VERMILLION, "dash"),
@@ -73,13 +72,14 @@ def _campbell(modes: ModalAnalysis) -> Figure:
         lines.append(Line("critical speeds", *points, palette.INK, width=0.0, markers=True))
     x = Axis.over(f"speed of {modes.metadata['leading_shaft']}, rpm", speed)
     y = Axis("frequency, Hz", limits=(0.0, top))
+    names = named_along([*_named_orders(modes, speed, top)], x, y)
     return Figure(
         key="modal_campbell",
         title="Campbell diagram: whirl modes over speed",
         caption="Damped frequencies about the static equilibrium with gyroscopic, Coriolis and centripetal "
         "terms of each speed. Dotted: multiples of the mesh frequency. Points: critical speeds.",
         alternative=_alternative(modes),
-        content=(Panel(x, y, tuple(lines), notes=tuple(_order_notes(modes, speed, top))),),
+        content=(Panel(x, y, tuple(lines), notes=names),),
         table=_critical_table(modes),
     )
 
@@ -103,18 +103,18 @@ def _different(modes: ModalAnalysis) -> list[int]:
     return different
 
 
-def _order_notes(modes: ModalAnalysis, speed: FloatArray, top: float) -> Iterator[Note]:
-    meshes, width = _different(modes), float(np.ptp(speed))
+def _named_orders(
+    modes: ModalAnalysis, speed: FloatArray, top: float
+) -> Iterator[tuple[str, FloatArray, FloatArray]]:
+    """Yield the names of the orders and points of their lines, from where they leave the plot downwards."""
+    meshes = _different(modes)
     for mesh in meshes:
         rate = float(modes.mesh_frequency[mesh, -1] / speed[-1])
-        last = np.inf
         for order in range(1, int(modes.metadata["orders"]) + 1):
             end = min(float(speed[-1]), NOTE_TOP * top / (order * rate))
-            if end <= speed[0] or last - end < ROOM * width:
-                continue
-            last = end
+            points = np.linspace(end, float(speed[0]), PLACES) if end > speed[0] else np.empty(0)
             name = f"{order}x {modes.mesh[mesh]}" if len(meshes) > 1 else f"{order}x"
-            yield Note(end - ROOM * width, NOTE_DROP * order * rate * end, name)
+            yield name, points, order * rate * points
 
 
 def _modes(modes: ModalAnalysis, speed: FloatArray) -> Iterator[Line]:

@@ -25,7 +25,7 @@ from lineofaction.report.drawing.figure import (
     number,
     unit_of,
 )
-from lineofaction.report.drawing.placing import placed
+from lineofaction.report.drawing.placing import named_along, stacked
 from lineofaction.report.response.mode_lines import (
     MODES_CAPTION,
     ModeLine,
@@ -225,22 +225,29 @@ def _panel(
     visible = (np.where(height <= top, height, np.nan) for height in heights)
     lines = [Line("mesh orders", along, height, ORDER_COLOUR, "dot", 1.0) for height in visible]
     lines += [Line(mode.name, along, mode.frequency, mode.color, "dash", 1.4) for mode in modes]
-    notes = list(_order_notes(blocks, along, top))
-    slowest = int(np.argmin(along))
-    for mode in modes:
-        hertz = float(mode.frequency[slowest])
-        notes.append(Note(float(along[slowest]), hertz, f"{mode.moves} {number(hertz, 4)} Hz"))
     x, y = Axis.over(axis.label, shade.x), Axis("frequency, Hz", limits=(0.0, top))
-    return Panel(x, y, tuple(lines), shade=shade, notes=placed(notes, x, y, (0.0, top)))
+    edge = int(np.argmin(along))
+    names = [_mode_note(mode, edge, along) for mode in modes]
+    labels = stacked(names, x, y)
+    orders = named_along([*_named_orders(blocks, along, top)], x, y, labels)
+    return Panel(x, y, tuple(lines), shade=shade, notes=(*labels, *orders))
 
 
-def _order_notes(blocks: Waterfall, along: FloatArray, top: float) -> Iterator[Note]:
-    """Yield the names of the orders at their ends."""
+def _mode_note(mode: ModeLine, edge: int, along: FloatArray) -> Note:
+    """Return the name of a mode where its line begins, at the block `edge`."""
+    hertz = float(mode.frequency[edge])
+    return Note(float(along[edge]), hertz, f"{mode.moves} {number(hertz, 4)} Hz", color=mode.color)
+
+
+def _named_orders(
+    blocks: Waterfall, along: FloatArray, top: float
+) -> Iterator[tuple[str, FloatArray, FloatArray]]:
+    """Yield the names of the orders and their points below the top, from the highest frequency down."""
     for order in range(1, ORDERS + 1):
         height = order * blocks.mesh_frequency
-        last = int(np.argmax(np.where(height <= 0.97 * top, height, -1.0)))
-        if 0.0 < height[last] <= top:
-            yield Note(float(along[last]), float(height[last]), f"{order}×", left=True)
+        visible = np.flatnonzero((height > 0.0) & (height <= 0.97 * top))
+        points = visible[np.lexsort((-along[visible], -height[visible]))]
+        yield f"{order}×", along[points], height[points]
 
 
 def _campbell_text(

@@ -50,7 +50,6 @@ _STANDARD = (
 _MAX_NAMES = 8  # most pairs that are named in full
 _SHARING_MARGIN = 1.12  # top of the axis over the largest share, with room for names
 _END = 0.03  # share of the width within which a high part of a curve counts as its end
-_CHARACTER = 0.008  # width of a name's character over the panel's width
 _CARRIES = 1e-6  # a pair with less than this share nowhere carries load
 _BUDGET_MARGIN = 1.2  # top of the axis over the largest part, with room for numbers
 _NOTE = 0.4  # room over the distance of bars for the number of the last bar on a narrow screen

@@ -194,7 +194,7 @@ def test_the_verb_says_more_than_a_moment_on_standard_error(seconds, case, monke
     monkeypatch.setattr(run_study, "study_cost", lambda *_: StudyCost((Work("values", seconds / 8.0, 8),)))
     monkeypatch.setattr("lineofaction.cli.costs.host_slowness", lambda _: 2.0)
     targets = Path("sensitivity.nc"), Path("sensitivity.html")  # one is drawn
-    run_study._announce_cost(STUDIES["sensitivity"], [run_study._Subject(case, Path())], None, {}, targets)
+    run_study._announced_cost(STUDIES["sensitivity"], [run_study._Subject(case, Path())], None, {}, targets)
     printed = capsys.readouterr()
     assert printed.out == ""
     said = "loa sensitivity: about 48 CPU s: 8 values at 5 s, program and files 8.4 s\n"
@@ -305,6 +305,24 @@ def test_a_vibration_costs_the_response_where_something_vibrates_and_no_run_is_n
     response = STUDIES["response"]
     alike = study_cost(response, *scene_of(housed), validated(response.inputs, inputs))
     assert costs == [alike, None, None] and alike is not None
+
+
+def test_nodes_and_limits_of_a_search_are_in_its_cost():
+    """Every node is a contact, also in the analyses; a limit may need a search on between the positions."""
+    case = CheckedCase(read_model(Case, EXAMPLES / "palermo_spur_20_20.toml"))
+    whole = tomllib.loads((EXAMPLES / "optimize_tip_relief.toml").read_text(encoding="utf-8"))
+    free = {name: value for name, value in whole.items() if name not in ("scatter", "limits")}
+    study = STUDIES["optimize"]
+
+    def parts(fields):
+        cost = study.run.predicted(case, validated(study.inputs, fields), None)
+        return {part.name: part for part in cost.parts}
+
+    alone, scattered, limited = map(parts, (free, free | {"scatter": whole["scatter"]}, whole))
+    for name in ("designs", "analyses"):
+        assert scattered[name].seconds == pytest.approx(9.0 * alone[name].seconds)
+    assert "designs within limits" not in scattered and limited["designs within limits"].seconds > 0.0
+    assert limited["analyses"].pieces == scattered["analyses"].pieces + 1.0
 
 
 def test_the_band_of_a_sound_costs_as_many_responses_as_it_has(housed, monkeypatch):

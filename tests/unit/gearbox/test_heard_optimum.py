@@ -30,6 +30,7 @@ from lineofaction.gearbox.studies.optimize.result import HeardOptimization
 from lineofaction.gearbox.studies.optimize.run import RUN, request_of
 from lineofaction.gearbox.studies.optimize.sound_problem import HeardMerit, HeardProblem, Powers
 from lineofaction.gearbox.studies.optimize.sound_search import LINEARIZED, misalignments, sound_problem
+from lineofaction.gearbox.units import RPM
 from lineofaction.gearbox.workbench import tabled
 from lineofaction.report.design.optimize import PAGE
 from model_studies.spread import quantiles
@@ -247,6 +248,24 @@ def test_a_quantile_of_the_pairs_is_minimized():
     ends = own.start.objective.value, own.optimum.objective.value
     np.testing.assert_allclose(levels, ends, atol=1e-6)
     assert levels[1] < levels[0]
+
+
+def test_the_level_that_is_stated_is_that_of_all_orders_in_the_table():
+    """Whatever the positions of the search: 8 of them alone are off by more than a decibel."""
+    few: Json = {"search": FEW | {"positions": 8}, "heard": HEARD | {"load_cases": [{"name": "whole"}]}}
+    own = searched({"variables": FREE, **few})
+    for design in (own.start, own.optimum):
+        assert design.objective.value == pytest.approx(design.level[0, 0], abs=1e-9)
+
+
+def test_levels_before_and_after_name_their_speeds_and_loads():
+    own = found()
+    before, after, _ = PAGE.page(own).headlines
+    assert before.remark == after.remark
+    speeds, loads = own.speed / RPM, own.torque
+    assert f"from {speeds.min():.4g} to {speeds.max():.4g} rpm" in before.remark
+    ends = {f"{torque:.4g}" for torque in (loads.min(), loads.max())}
+    assert ends <= set(before.remark.split()) and before.remark.endswith("N m")
 
 
 def test_a_mesh_that_states_its_misalignment_is_heard_at_it():

@@ -12,6 +12,7 @@ from housing_solid import housed_scene, housing, write_block
 
 from dynamics.housings import Bore
 from lineofaction.gearbox.convert.placement import Placement
+from lineofaction.gearbox.convert.solid_housings import reduced_housings
 from lineofaction.gearbox.from_step.placement import best_seating, placed_bore, seated
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
@@ -193,6 +194,36 @@ def test_a_revision_takes_the_place_of_the_file_of_the_folder(block, scene, tmp_
         assert ended.exit_code == 0, ended.output
         assert (tmp_path / "block.step").read_bytes() == step.read_bytes()
         assert [part["step_file"] for part in tomllib.loads(scene.read_text())["housings"]] == ["block.step"]
+
+
+@pytest.mark.parametrize(
+    ("off", "length", "size"), [(3.0, 24.0, None), (5.0, 20.0, None), (7.0, 16.0, None), (11.0, 8.0, 5.33)]
+)
+def test_the_housing_that_is_written_is_one_that_is_reduced(block, scene, tmp_path, off, length, size):
+    """Of a bearing off the middle of its bore of 30 mm; elements of the wall are up to 10 mm long."""
+    table = tomllib.loads(scene.read_text())
+    for bushing in table["bushings"]:
+        bushing["position_mm"] += off
+    scene.write_text(toml_text(table))
+    ended = loa("housing", scene, block, "--material", "gray_cast_iron", "-o", tmp_path / "housed.toml")
+    assert ended.exit_code == 0, ended.output
+    (part,) = tomllib.loads((tmp_path / "housed.toml").read_text())["housings"]
+    assert [seat["bore_length_mm"] for seat in part["seats"]] == [length, length]
+    assert part.get("element_size_mm") == size
+    assert ("as fine as the shortest" in ended.output) == (size is not None)
+    reduced = reduced_housings(read_model(SceneInput, tmp_path / "housed.toml"), None)
+    assert reduced["housing"].seats[0].position[2] == pytest.approx(1e-3 * (100.0 + off))
+
+
+def test_a_bearing_at_the_end_of_its_bore_is_refused_by_name(block, scene, tmp_path):
+    table = tomllib.loads(scene.read_text())
+    table["bushings"][1]["position_mm"] += 13.5
+    scene.write_text(toml_text(table))
+    ended = loa("housing", scene, block, "--material", "gray_cast_iron", "-o", tmp_path / "housed.toml")
+    assert ended.exit_code == 2
+    words = " ".join(ended.stderr.split())
+    assert 'bearing "output left"' in words and "evenly in at least 7.85 mm of its bore, which is 30" in words
+    assert not (tmp_path / "housed.toml").exists()
 
 
 def test_a_bearing_in_no_bore_is_the_first_line(block, scene, tmp_path):

@@ -4,6 +4,8 @@ import os
 import resource
 import signal
 import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
 
@@ -41,6 +43,31 @@ def child(request, tmp_path):
     yield made
     made.end()
     launcher.close()
+
+
+def test_a_closed_launcher_starts_no_process_even_for_who_waits_in_it(tmp_path, monkeypatch):
+    """The launch that waits for a warm process ends at the close; an opened launcher launches again."""
+    (tmp_path / "long_to_load.py").write_text("import time\ntime.sleep(600)\n")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path), prepend=os.pathsep)
+    launcher = Launcher(WORK, ["long_to_load"], tmp_path / "warm.log", print)
+    with (tmp_path / "log").open("wb") as log, ThreadPoolExecutor(1) as threads:
+        launched = partial(Child, log=log.fileno(), workspace=tmp_path)
+        waits = threads.submit(launched, partial(launcher.launch, warm_within=600.0))
+        until(lambda: launcher._server is not None)
+        warm = launcher._server._process
+        time.sleep(0.2)  # it waits by now
+        launcher.close()
+        assert warm.poll() is not None
+        for refused in (waits.result, partial(launched, launcher.launch), launcher.warm_up):
+            with pytest.raises(OSError, match="closed"):
+                refused()
+        assert launcher._server is None
+        launcher.open()
+        made = launched(partial(launcher.launch, warm_within=0.0))
+        assert made.send(Frame("echo", b"again"))
+        assert answers(made, 1) == [Frame("echo", b"again")]
+        made.end()
+        launcher.close()
 
 
 def answers(child: Child, count: int) -> list[Frame]:

@@ -116,3 +116,11 @@ def test_a_variant_may_say_itself_that_it_says_nothing():
     assert (results, left_out) == ({"one": 1, "three": 3}, {"two": "it is even"})
     assert [stage for stage, _ in seen] == ["count"] * 4 and seen[-1][1] == 1.0
     assert run_variants("none", {}, compute, (), lambda *_: None) == ({}, {})
+
+
+def test_the_fraction_done_of_variants_follows_their_predicted_costs():
+    seen: list[float] = []
+    costs = {"dear": 6.0, "cheap": 1.0, "last": 3.0}
+    variants = {"dear": 1, "free": 2, "cheap": 3, "last": 4}
+    run_variants("stage", variants, str, (), lambda _, fraction: seen.append(fraction), costs=costs)
+    assert seen == pytest.approx([0.0, 0.6, 0.6, 0.7, 1.0])

@@ -155,7 +155,7 @@ def interrupted(_shared: None, _item: Any) -> None:
     raise KeyboardInterrupt
 
 
-@pytest.mark.parametrize("task", ["_assess", "_linearized_nodes", "_walked", "_confirmed"])
+@pytest.mark.parametrize("task", ["_assess", "_linearized_nodes", "_walked", "_confirmed_design"])
 def test_an_interrupted_optimization_of_a_single_start_gives_the_best_so_far(
     pair, compliances, pool, task, monkeypatch
 ):
@@ -168,8 +168,8 @@ def test_an_interrupted_optimization_of_a_single_start_gives_the_best_so_far(
     best = optimize(request, Run(workers=workers, cache=compliances), cancel=workers.stop.is_set)
     assert workers.stop.is_set()
     (run,) = best.runs
-    assert (run.ended is Ended.CANCELLED) is (task != "_confirmed")
-    assert ("interrupted" in best.reason) is (task != "_confirmed")
+    assert (run.ended is Ended.CANCELLED) is (task != "_confirmed_design")
+    assert ("interrupted" in best.reason) is (task != "_confirmed_design")
     assert best.optimum.objective.value <= best.start.objective.value
 
 

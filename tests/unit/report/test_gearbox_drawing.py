@@ -11,7 +11,12 @@ from two_stage_scenes import two_stages
 from dynamics.deflection import deflect
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, Outline
 from lineofaction.gearbox.studies.deflect.run import _pattern
-from lineofaction.report.deflection.gearbox_drawing import _gear_names, _view_direction, gearbox_drawing
+from lineofaction.report.deflection.gearbox_drawing import (
+    _gear_names,
+    _view_direction,
+    gearbox_drawing,
+    micrometers,
+)
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, panel_height
 from lineofaction.report.drawing.interactive import plotly_figure
 
@@ -20,6 +25,14 @@ from lineofaction.report.drawing.interactive import plotly_figure
 def outline():
     found = Outline.of(two_stages())
     return replace(found, gears=("first pinion", "wheel of the first stage", "second pinion", "second wheel"))
+
+
+@pytest.mark.parametrize(
+    ("length", "written"),
+    [(0.0, "0"), (-8.81e-11, "< 0.001"), (1e-9, "0.00100"), (-1.2345e-5, "-12.3")],
+)
+def test_a_length_below_a_nanometer_is_not_written_out(length, written):
+    assert micrometers(length) == written
 
 
 def test_no_name_of_a_gear_touches_a_circle_or_another_name(outline):

@@ -1,5 +1,7 @@
 """The fraction reported of work follows the time that its stages take, and of a table its CPU time."""
 
+import ast
+import importlib
 import itertools
 import math
 import resource
@@ -11,8 +13,10 @@ import numpy as np
 import pytest
 
 from lineofaction.gearbox.convert.checked_case import CheckedCase
+from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas import Case, validated
-from lineofaction.gearbox.stages import PacedFraction, TableFraction
+from lineofaction.gearbox.stages import LOADING, PacedFraction, TableFraction
+from lineofaction.gearbox.studies.cost import StudyCost, Work
 from service.worker.order import WorkOrder
 from service.worker.simulation_work import database_of
 
@@ -62,6 +66,50 @@ def test_usual_times_are_reported_as_they_are():
 def test_stages_that_are_left_out_have_no_share(seconds):
     for _, spent, fraction in reported(seconds):
         assert fraction == pytest.approx(spent, abs=0.01)
+
+
+PLANNED = (
+    Work("gears", 6.0, stage="analysis"),
+    Work("runs", 0.5, 40, "runs"),
+    Work("repeats", 4.0, stage="runs"),
+    Work("program and files", 2.0),
+)
+
+
+def test_shares_of_a_planned_cost_are_those_of_the_time_that_it_takes():
+    shares = dict(StudyCost(PLANNED).shares(tuple(SHARES.items()), 2.0))
+    assert sum(shares.values()) == pytest.approx(1.0)
+    assert shares["analysis"] / shares["runs"] == pytest.approx(6.0 / 24.0)
+    assert shares[LOADING] / shares["analysis"] == pytest.approx(2.0 / 6.0)
+    assert 0.0 < shares["confirmation"] < 0.03  # the plan does not name it
+    unplanned = StudyCost((Work("orders", 3.0),)).shares(tuple(SHARES.items()), 2.0)
+    assert unplanned == tuple(SHARES.items())
+
+
+@pytest.mark.parametrize("slowness", [0.5, 1.0, 3.0])
+def test_what_is_left_is_the_plan_scaled_by_what_was_paid_for_the_part_done(slowness):
+    """Also where loading is most of the time so far."""
+    paced = PacedFraction([(LOADING, 0.2), ("analysis", 0.3), ("runs", 0.5)])
+    whole_s = 20.0 * slowness
+    paced.at("analysis", 0.0, 0.0)
+    for stage, fraction, planned in (("analysis", 0.1, 0.23), ("analysis", 1.0, 0.5), ("runs", 0.5, 0.75)):
+        passed_s = planned * whole_s
+        done = paced.at(stage, fraction, passed_s)
+        assert done is not None
+        assert passed_s * (1.0 - done) / done == pytest.approx(whole_s - passed_s, rel=1e-6)
+
+
+@pytest.mark.parametrize("study", STUDIES.values(), ids=lambda study: study.name)
+def test_a_plan_names_only_stages_of_its_study(study):
+    """The stages of works are written in the source of the study's package."""
+    package = importlib.import_module(f"lineofaction.gearbox.studies.{study.package}")
+    folder = Path(str(package.__file__)).parent
+    nodes = [node for file in folder.glob("*.py") for node in ast.walk(ast.parse(file.read_text("utf-8")))]
+    works = [node for node in nodes if isinstance(node, ast.Call) and ast.unparse(node.func) == "Work"]
+    stated = [*(work.args[3] for work in works if len(work.args) > 3)]
+    stated += [keyword.value for work in works for keyword in work.keywords if keyword.arg == "stage"]
+    named = {node.value for node in stated if isinstance(node, ast.Constant)}
+    assert named <= {name for name, _ in study.stages}
 
 
 def test_an_undeclared_stage_says_nothing():

@@ -398,6 +398,15 @@ def test_a_scheduler_that_does_not_answer_is_refused(tmp_path, monkeypatch):
     assert "a Dask scheduler that answers" in text and "dask scheduler --port 1" in text
 
 
+def test_a_caller_with_an_event_loop_of_its_own_is_refused_alike(tmp_path, monkeypatch):
+    monkeypatch.setattr(dask_cluster, "CONNECT_S", 0.5)
+
+    async def called() -> str:
+        return refused("tcp://127.0.0.1:1", tmp_path)
+
+    assert "a Dask scheduler that answers" in asyncio.run(called())
+
+
 def test_missing_and_other_workers_are_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(dask_cluster, "CONNECT_S", 0.5)
     names = tmp_path / "names" / "lineofaction-0.0.9.dist-info"

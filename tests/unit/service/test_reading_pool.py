@@ -29,7 +29,7 @@ from service.app import create_app
 from service.folders import locked_folder, remove_left
 from service.live.order import LiveOrder
 from service.live.question_pool import QuestionPool
-from service.live.turns import Asker
+from service.live.turns import Asker, Question
 from service.reading.course import Course
 from service.reading.reader import AT_ONCE, LIMITS, reading_pool
 from service.settings import Settings, load_settings
@@ -142,6 +142,19 @@ def test_cpu_time_ends_a_question_and_nobody_else_waits_for_it(pool, monkeypatch
         with pytest.raises(LiveUnavailable, match="stops"):
             future.result(timeout=PATIENCE_S)
     assert not left(pool)
+
+
+def test_a_service_that_has_ended_starts_no_reader_until_it_starts_again(tmp_path):
+    app = create_app(Settings(data_directory=tmp_path), REGISTRY)
+    reader = app.state.context.reader
+    for word in "ab":
+        with TestClient(app):
+            assert answer(reader.ask(order("echo", word=word)))["word"] == word
+        with pytest.raises(LiveUnavailable, match="stops"):
+            reader.ask(order("echo", word="late"))
+        with pytest.raises(LiveUnavailable, match="stops"):  # a question that was on its way to a reader
+            reader._workers[0].answer(Question(order("echo", word="late"), Asker()))
+        assert not left(reader)
 
 
 @pytest.mark.nightly

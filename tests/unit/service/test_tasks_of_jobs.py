@@ -107,7 +107,7 @@ def test_these_jobs_give_their_tasks_to_the_cluster(process, further, task, tmp_
         assert address == ADDRESS
         return recording
 
-    monkeypatch.setattr(cluster, "_connected", connected)
+    monkeypatch.setattr(cluster, "_connected_cluster", connected)
     done(process, {"case": CASE, **further}, tmp_path, ADDRESS)
     assert task in recording.functions and recording.closed
 
@@ -129,7 +129,7 @@ def test_a_job_whose_cluster_is_away_is_done_here_and_says_so(data, monkeypatch,
 
 def test_a_job_without_tasks_does_not_look_for_the_cluster(data, monkeypatch):
     monkeypatch.setattr(dispatch, "START_SECONDS", 1e3)
-    monkeypatch.setattr(cluster, "_connected", None)  # were it called, it would be a TypeError
+    monkeypatch.setattr(cluster, "_connected_cluster", None)  # were it called, it would be a TypeError
     assert done(ANALYZE, {"case": CASE}, data, ADDRESS).exists()
 
 

@@ -48,11 +48,11 @@ class _AblateStudy(
     ) -> StudyCost | None:
         """Return the cost of a case's tables or a scene's runs: with all effects, and without each."""
         if isinstance(subject, SceneInput):
-            return runs_cost(subject, lambda scene: runs_of_ablation(scene, inputs.only))
+            return runs_cost(subject, lambda scene: runs_of_ablation(scene, inputs.only), "ablation")
         with boundary_errors():
             tables = predicted_ablation(subject.request(_table, inputs), inputs.only, cache)
-        contacts = Work("contacts", float(np.mean(tables.contacts)), len(tables.contacts))
-        return StudyCost((Work("gears", tables.bodies), contacts), tables.bytes)
+        contacts = Work("contacts", float(np.mean(tables.contacts)), len(tables.contacts), "ablation")
+        return StudyCost((Work("gears", tables.bodies, stage="ablation"), contacts), tables.bytes)
 
     def compute(
         self, subject: CheckedCase | TabledScene, inputs: Inputs, means: Means

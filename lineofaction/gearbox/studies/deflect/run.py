@@ -61,18 +61,19 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
         """
         count = len(inputs.load_cases)
         deflections = count * (1 + USUAL_PASSES)
-        cost = StudyCost((Work("deflections", CASE_SECONDS * host_slowness(cache), deflections),))
+        seconds = CASE_SECONDS * host_slowness(cache)
+        cost = StudyCost((Work("deflections", seconds, deflections, "deflection"),))
         cases = [case for mesh in scene.meshes if isinstance(case := mesh.case, Case)]
         for case in {case.model_dump_json(): case for case in cases}.values():
             with boundary_errors():
                 design = predicted = predicted_designs(CASES.of(case).checked, cache)
                 if not design.across_face and case.accuracy.model not in PLANE:
                     predicted = predicted_designs(across_face(CASES.of(case)).checked, cache)
-                    gears = Work("gears", predicted.bodies)  # otherwise those of its table
+                    gears = Work("gears", predicted.bodies, stage="flanks")  # otherwise those of its table
                     cost += StudyCost((gears,), predicted.bytes)
             knots = FIRST_KNOTS + count * USUAL_PASSES if predicted.across_face else 0
             contact = predicted.design + predicted.errors
-            cost += StudyCost((Work("contacts", contact, knots + count),), predicted.bytes)
+            cost += StudyCost((Work("contacts", contact, knots + count, "flanks"),), predicted.bytes)
         return cost
 
     def compute(self, tabled: TabledScene, inputs: Inputs, means: Means) -> GearboxDeflection:
@@ -105,7 +106,7 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
 
     def motions(self, result: GearboxDeflection) -> list[OfferedMotion]:
         """Return the deflection under every load case."""
-        return [_offered(result.outline.shafts, case) for case in result.deflection.cases]
+        return [_offered_motion(result.outline.shafts, case) for case in result.deflection.cases]
 
     def failure(self, result: GearboxDeflection) -> str:
         """Say which load cases have no equilibrium, or how far meshes and bodies disagree."""
@@ -123,7 +124,7 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
         return ""
 
 
-def _offered(shafts: tuple[str, ...], case: CaseDeflection) -> OfferedMotion:
+def _offered_motion(shafts: tuple[str, ...], case: CaseDeflection) -> OfferedMotion:
     lines = case.shafts
     state = "" if case.status == "converged" else f", {case.status.replace('_', ' ')}"
     name = f"{case.name}, {engineering(case.torque, 4)} N m{state}"
@@ -140,46 +141,49 @@ def scene_of(inputs: SceneInput) -> Json:
     return table
 
 
-def _with_case(tabled: TabledScene) -> Iterator[tuple[str, MeshInput]]:
+def _with_case(scene: TabledScene) -> Iterator[tuple[str, MeshInput]]:
     """Yield the name and the input of every mesh whose case is known, copies of planets too."""
-    by_name = {mesh.name: mesh for mesh in tabled.inputs.meshes}
-    tables = {id(mesh.table): by_name[mesh.name] for mesh in tabled.scene.meshes if mesh.name in by_name}
-    for mesh in tabled.scene.meshes:
+    by_name = {mesh.name: mesh for mesh in scene.inputs.meshes}
+    tables = {id(mesh.table): by_name[mesh.name] for mesh in scene.scene.meshes if mesh.name in by_name}
+    for mesh in scene.scene.meshes:
         known = by_name.get(mesh.name) or tables.get(id(mesh.table))
         if known is not None and known.case is not None:
             yield mesh.name, known
 
 
-def _contacts(tabled: TabledScene, cases: tuple[CaseDeflection, ...], means: Means) -> dict[str, MeshContact]:
+def _contacts(scene: TabledScene, cases: tuple[CaseDeflection, ...], means: Means) -> dict[str, MeshContact]:
     """Return the contacts of all meshes with a case, by name, at the torques on their pinions."""
     torques: dict[str, list[float]] = {}
-    inputs = dict(_with_case(tabled))
+    inputs = dict(_with_case(scene))
     for case in cases:
         for mesh in case.meshes:
             if mesh.name in inputs:
                 name = inputs[mesh.name].name
-                radius = tabled.databases[name].geometry.base_radius[0]
+                radius = scene.databases[name].geometry.base_radius[0]
                 torques.setdefault(name, []).append(mesh.force * radius)
     made: dict[str, MeshContact] = {}
     for mesh_input in {known.name: known for known in inputs.values()}.values():
-        database, mesh_torques = tabled.databases[mesh_input.name], torques[mesh_input.name]
+        database, mesh_torques = scene.databases[mesh_input.name], torques[mesh_input.name]
         assert isinstance(mesh_input.case, Case)
         made[mesh_input.name] = MeshContact.of(mesh_input.case, database, mesh_torques, means.analysis)
     return {name: made[known.name] for name, known in inputs.items()}
 
 
-def _usual_seconds(tabled: TabledScene) -> float:
+def _usual_seconds(scene: TabledScene) -> float:
     """Return the CPU seconds of a table at one misalignment, about those of the contact of one mesh."""
-    stages = [table.metadata.receipt.get("stages", {}) for table in tabled.databases.values()]
+    stages = [table.metadata.receipt.get("stages", {}) for table in scene.databases.values()]
     return max((stage["contact"]["cpu_seconds"] for stage in stages if "contact" in stage), default=0.0)
 
 
 def _flanks(
-    agreed: Agreement, contacts: Mapping[str, MeshContact], means: Means, seconds: float
+    agreement: Agreement, contacts: Mapping[str, MeshContact], means: Means, seconds: float
 ) -> Iterator[MeshFlanks]:
     """Yield the results on the flanks; each is predicted to take so many CPU seconds."""
     items = [
-        (case.name, mesh) for case in agreed.deflection.cases for mesh in case.meshes if mesh.name in contacts
+        (case.name, mesh)
+        for case in agreement.deflection.cases
+        for mesh in case.meshes
+        if mesh.name in contacts
     ]
     flanks = divided(means.workers, _on_flanks, contacts, items, seconds * len(items))
     for done, mesh_flanks in enumerate(flanks, 1):

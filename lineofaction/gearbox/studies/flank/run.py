@@ -45,8 +45,11 @@ class _FlankStudy(PointStudy[FlankFigures, LoadDistribution]):
         """Return the cost of the bodies and of one solution with its errors."""
         with boundary_errors():
             predicted = predicted_designs(case.at_point, cache)
-        contact = Work("contact", predicted.design), Work("its errors", predicted.errors)
-        return StudyCost((Work("gears", predicted.bodies), *contact), predicted.bytes)
+        contact = (
+            Work("contact", predicted.design, stage="contact"),
+            Work("its errors", predicted.errors, stage="contact"),
+        )
+        return StudyCost((Work("gears", predicted.bodies, stage="compliance"), *contact), predicted.bytes)
 
     def compute(self, case: CheckedCase, _inputs: FlankPoint, means: Means) -> LoadDistribution:
         return flanks_of(case, means.analysis)

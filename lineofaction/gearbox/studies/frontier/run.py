@@ -62,10 +62,10 @@ class _FrontierStudy(
         """Return the cost of the requested fidelities; a scene's follows from the steps of each tolerance."""
         names = _requested(inputs, of_scene=not isinstance(subject, CheckedCase))
         if isinstance(subject, SceneInput):
-            return runs_cost(subject, lambda scene: runs_of_frontier(scene, names), "minimal")
+            return runs_cost(subject, lambda scene: runs_of_frontier(scene, names), "ladder", "minimal")
         with boundary_errors():
             seconds = predicted_frontier(subject.request(_table, inputs), names, cache)
-        return StudyCost(tuple(Work(name, cost) for name, cost in seconds.items()))
+        return StudyCost(tuple(Work(name, cost, 1.0, "ladder") for name, cost in seconds.items()))
 
     def compute(
         self, subject: CheckedCase | TabledScene, inputs: Inputs, means: Means

@@ -91,7 +91,7 @@ class _ModesStudy(SceneStudy[Inputs, ModesFigures, ModalAnalysis]):
         energies = modes.natural_strain_energy, modes.natural_kinetic_energy
         rest = zip(modes.natural_frequency, modes.natural_damping_ratio, *energies, strict=True)
         shapes = modes.natural_shape
-        offered = [_offered(modes, "at rest", row, shapes[k]) for k, row in enumerate(rest)]
+        offered = [_offered_motion(modes, "at rest", row, shapes[k]) for k, row in enumerate(rest)]
         if not modes.speed.size:
             return offered
         for at in chosen_rows(modes.speed.size, MAX_GROUPS):
@@ -100,11 +100,11 @@ class _ModesStudy(SceneStudy[Inputs, ModesFigures, ModalAnalysis]):
             whirl = zip(modes.frequency[at], modes.damping_ratio[at], *energies, strict=True)
             for k, row in enumerate(whirl):
                 if np.isfinite(row[0]):
-                    offered.append(_offered(modes, group, row, modes.shape[at, k]))
+                    offered.append(_offered_motion(modes, group, row, modes.shape[at, k]))
         return offered
 
 
-def _offered(modes: ModalAnalysis, group: str, row: Any, shape: Any) -> OfferedMotion:
+def _offered_motion(modes: ModalAnalysis, group: str, row: Any, shape: Any) -> OfferedMotion:
     """Return the motion of a mode from its frequency, damping ratio, strain and kinetic energies."""
     hertz, damping, strain, kinetic = row
     kind = modes.kind(strain, kinetic)

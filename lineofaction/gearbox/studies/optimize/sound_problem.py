@@ -62,12 +62,12 @@ class HeardAt:
         """Return the counted power of a table at each speed (S,)."""
         return np.asarray(self.case.power(self.case.with_table(table).excitation) @ self.counted)
 
-    def powers(self, tabled: TabledLoads) -> Powers:
+    def powers(self, loads: TabledLoads) -> Powers:
         """Return the counted powers of designs about a table, to first order of the excitation."""
         transfer, form = self.case.transfer, self.case.form
-        largest = np.abs(tabled.by["static_transmission_error"]).max(axis=(1, 2))
+        largest = np.abs(loads.by["static_transmission_error"]).max(axis=(1, 2))
         steps = STEP / np.where(largest > 0.0, largest, 1.0)
-        nominal, *shifted = tabled.force_tables(np.vstack([np.zeros(steps.size), np.diag(steps)]))
+        nominal, *shifted = loads.force_tables(np.vstack([np.zeros(steps.size), np.diag(steps)]))
         flanks = self.case.others.with_table(nominal)
         excitation = flanks.excitation
         inputs = transfer.inputs(excitation)
@@ -194,7 +194,7 @@ class HeardProblem(SearchProblem):
             d = point.size
             still = Powers(np.zeros(1), np.zeros((1, d)), np.zeros((1, d, d)))  # no step leads away from here
             return self._with_merit(math.inf, math.inf), HeardMerit(still, (), PENALTY)
-        powers = _stacked([part.powers for part in parts])
+        powers = _stacked_powers([part.powers for part in parts])
         objective, weight = self._over_nodes(powers.constant)
         expected = Powers(*(np.tensordot(weight, power, 1) for power in powers))
         violation = self._violation([figures for part in parts for figures in part.figures])
@@ -202,7 +202,7 @@ class HeardProblem(SearchProblem):
         start = self.sound.at[0].case.form.reference * 10.0 ** (level / 10.0)
         rows = Powers(*(self.sound.rows(power) / start for power in expected))
         ranges = self.ranges
-        limits = _joined([part.limits for part in parts])
+        limits = _joined_rows([part.limits for part in parts])
         scaled = Powers(rows.constant, rows.slope * ranges, rows.bend * ranges[:, None] * ranges)
         merit = HeardMerit(scaled, tuple((value, by * ranges) for value, by in limits), PENALTY)
         return self._with_merit(objective, violation), merit
@@ -285,18 +285,18 @@ def _linearized_nodes(
     for node in nodes:
         tabled = list(tabled_loads(problem.evaluator, values, (node,), problem.names, problem.limits))
         at = zip(problem.sound.at, problem.tables_of(tabled), strict=True)
-        powers = _stacked([load.powers(case) for load, case in at])
-        limits = _joined([case.limits for case in tabled])
+        powers = _stacked_powers([load.powers(case) for load, case in at])
+        limits = _joined_rows([case.limits for case in tabled])
         parts.append(_LinearizedNode([part.figures for part in tabled], powers, limits))
     return parts
 
 
-def _stacked(powers: Sequence[Powers]) -> Powers:
+def _stacked_powers(powers: Sequence[Powers]) -> Powers:
     """Return several powers as one, along a new first axis."""
     return Powers(*(np.stack(part) for part in zip(*powers, strict=True)))
 
 
-def _joined(limits: Sequence[tuple[Rows, ...]]) -> tuple[Rows, ...]:
+def _joined_rows(limits: Sequence[tuple[Rows, ...]]) -> tuple[Rows, ...]:
     """Return the rows of each limit of several tables, in one."""
     return tuple(
         (np.concatenate([part[0] for part in rows]), np.concatenate([part[1] for part in rows]))

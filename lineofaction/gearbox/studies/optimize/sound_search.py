@@ -114,7 +114,9 @@ def sound_optimum(
     with clock.stage("search"):
         start = dict(zip(setup.problem.names, request.start_design, strict=True))
         sample = setup.sample
-        problem = _scaled(setup.problem if question.quantile is None or sample is None else sample, start)
+        problem = _scaled_problem(
+            setup.problem if question.quantile is None or sample is None else sample, start
+        )
         expected = _expected_seconds(problem, start, request.search)
         cancel = means.cancel or never
         announce(means.report, "search", expected)
@@ -124,7 +126,7 @@ def sound_optimum(
     designs = start, problem.values(runs[best].coordinates)
     with clock.stage("confirmation"):
         searched = replace(setup, problem=problem)
-        before, after = (_confirmed(searched, values, run.cache) for values in designs)
+        before, after = (_confirmed_design(searched, values, run.cache) for values in designs)
     with clock.stage("pairs"):
         rough = None if sample is None or cancel() else sample.at(request.search.exploration)
         pairs = [np.zeros(0) if rough is None else rough.levels(values, means.workers) for values in designs]
@@ -154,7 +156,7 @@ def sound_optimum(
     )
 
 
-def _scaled(problem: HeardProblem, start: dict[str, float]) -> HeardProblem:
+def _scaled_problem(problem: HeardProblem, start: dict[str, float]) -> HeardProblem:
     """Return a problem whose objective is relative to the level of the start, dB.
 
     Raises `SolveError`: the contact of the start has no solution.
@@ -211,12 +213,12 @@ def sound_cost(
     nodes = request.scatter.nodes().weight.size if question.quantile is None else pairs.samples
     coarse_designs, full_designs = usual_sound_designs(search)
     parts = [
-        Work("gears", predicted.bodies),
-        Work("transfer functions", levels.transfer),
-        Work("designs", rough, coarse_designs),
-        Work("designs", full, full_designs * nodes),
-        Work("analyses", share * (predicted.design + predicted.errors), 2),
-        Work("pairs", rough, 2 * pairs.samples),
+        Work("gears", predicted.bodies, stage="compliance"),
+        Work("transfer functions", levels.transfer, stage="transfer functions"),
+        Work("designs", rough, coarse_designs, "search"),
+        Work("designs", full, full_designs * nodes, "search"),
+        Work("analyses", share * (predicted.design + predicted.errors), 2, "confirmation"),
+        Work("pairs", rough, 2 * pairs.samples, "confirmation"),
     ]
     cost = StudyCost(tuple(parts), predicted.bytes)
     scene_misalignment = levels.scene.meshes[mesh_index(levels.scene, mesh.name)].misalignment
@@ -277,10 +279,10 @@ def sound_problem(
     )
     objective = HeardObjective(at, question.over_speeds == "worst", question.over_loads == "worst")
     problem = HeardProblem(evaluator, request.variables, request.limits, 0.0, sound=objective)
-    return SoundSearch(problem, _sampled(problem, mesh.case, question), bodies, torque, misalignment)
+    return SoundSearch(problem, _sampled_problem(problem, mesh.case, question), bodies, torque, misalignment)
 
 
-def _sampled(problem: HeardProblem, case: Case, question: HeardObjectiveInput) -> HeardProblem | None:
+def _sampled_problem(problem: HeardProblem, case: Case, question: HeardObjectiveInput) -> HeardProblem | None:
     """Return the problem with a sample of pairs within tolerances as nodes, to count by a quantile of them.
 
     None: the standard has no tolerances for these gears. Deviations whose effect is off in the case are 0.
@@ -333,8 +335,11 @@ def _evaluator(
     return replace(study.evaluator, load=load, misalignment=alignment)
 
 
-def _confirmed(setup: SoundSearch, values: dict[str, float], cache: Path | None) -> HeardDesign:
-    """Return a design with errors: changes by rougher contacts, which have fewer slices or coarser meshes."""
+def _confirmed_design(setup: SoundSearch, values: dict[str, float], cache: Path | None) -> HeardDesign:
+    """Return a design with errors: changes by rougher contacts, which have fewer slices or coarser meshes.
+
+    Its level is that of tables at all their positions, with scatter that of the positions of the search.
+    """
     problem = setup.problem
     pair = modified(setup.bodies.checked.request.pair, values)
     points = list(zip(np.outer(setup.torque, LOAD_FACTORS), setup.misalignment, strict=True))
@@ -344,6 +349,8 @@ def _confirmed(setup: SoundSearch, values: dict[str, float], cache: Path | None)
     levels = np.stack([contact.level for contact in contacts])
     objectives = np.array([contact.objective for contact in contacts])
     objective, violation = problem.evaluated(values)
+    if problem.quantile is None and problem.evaluator.nodes.weight.size == 1:
+        objective = float(objectives[0])
     figures = confirmed_figures(problem.evaluator, values, cache)
     nominal_loads = slice(1, None, LOAD_FACTORS.size)  # the load case itself, the second of its loads
     ripple = [table.peak_to_peak(force=float(table.force[1])) for table in tables]

@@ -64,12 +64,12 @@ class _RootStressStudy(PointStudy[RootStressFigures, Roots]):
             checked = case.at_point
             plan = checked.planned(cache)
             prediction = checked.predicted(plan, cache)
-            stresses = Work("stresses", stress_seconds(case.pair, plan, cache))
+            stresses = Work("stresses", stress_seconds(case.pair, plan, cache), stage="root stress")
             rougher = prediction.parts["error estimate"]
-        gears = Work("gears", prediction.stages["compliance"] + rougher["bodies"])
+        gears = Work("gears", prediction.stages["compliance"] + rougher["bodies"], stage="compliance")
         contact = (
-            Work("contact", prediction.parts["contact"]["table"]),
-            Work("its errors", rougher["solutions"]),
+            Work("contact", prediction.parts["contact"]["table"], stage="contact"),
+            Work("its errors", rougher["solutions"], stage="contact"),
         )
         return StudyCost((gears, *contact, stresses), prediction.memory_bytes)
 

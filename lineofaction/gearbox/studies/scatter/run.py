@@ -89,15 +89,15 @@ class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
         work, loads = predicted.work, len(request.torques)
         points = sampling.positions * loads * sampling.tangents * len(request.tolerances.widths)
         parts = [
-            Work("gears", predicted.bodies),
-            Work("compliance", work.of(sampling.positions, 0)),  # all pairs share it
-            Work("pairs", work.of_flanks(sampling.positions, loads), solved),
-            Work("samples", _ADDED * points, sampling.samples),
-            Work("table", predicted.table),
+            Work("gears", predicted.bodies, stage="compliance"),
+            Work("compliance", work.of(sampling.positions, 0), stage="samples"),  # all pairs share it
+            Work("pairs", work.of_flanks(sampling.positions, loads), solved, "samples"),
+            Work("samples", _ADDED * points, sampling.samples, "confirmation"),
+            Work("table", predicted.table, stage="confirmation"),
         ]
         if request.teeth is not None:
             revolution = work.in_pitches(sampling.positions, (loads,), request.teeth.teeth)
-            parts.append(Work("revolutions", _DRAWN_TEETH * revolution, sampling.solved))
+            parts.append(Work("revolutions", _DRAWN_TEETH * revolution, sampling.solved, "confirmation"))
         return StudyCost(tuple(parts), predicted.bytes)
 
     def compute(self, case: CheckedCase, inputs: Inputs, means: Means) -> ToleranceStudy:
@@ -124,17 +124,17 @@ class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
         }
 
 
-def scatter_request(checked: CheckedCase, inputs: Inputs) -> ToleranceRequest:
+def scatter_request(case: CheckedCase, inputs: Inputs) -> ToleranceRequest:
     """Return the study of a case: tolerances, number of pairs solved without tangents, and limit."""
-    request = tolerance_request(checked, inputs)
+    request = tolerance_request(case, inputs)
     sampling = replace(request.sampling, exact=inputs.exact)
     limit = None if inputs.limit is None else order_limit(inputs.limit)
-    teeth = None if limit is None or not limit.gear else _teeth(checked, inputs, limit.gear)
+    teeth = None if limit is None or not limit.gear else _teeth(case, inputs, limit.gear)
     request = replace(request, sampling=sampling, limit=limit, teeth=teeth)
-    return _measured(request, checked, inputs.population) if inputs.population else request
+    return _measured_request(request, case, inputs.population) if inputs.population else request
 
 
-def _measured(request: ToleranceRequest, checked: CheckedCase, rows: Row[Drawn]) -> ToleranceRequest:
+def _measured_request(request: ToleranceRequest, case: CheckedCase, rows: Row[Drawn]) -> ToleranceRequest:
     """Return the request with figures of measured gears; in the plane helices do not deviate."""
     mean: dict[str, float] = {}
     deviation: dict[str, float] = {}
@@ -142,7 +142,7 @@ def _measured(request: ToleranceRequest, checked: CheckedCase, rows: Row[Drawn])
     for text in rows:
         names, values = _population_row(text)
         across_face = any(name.partition(".")[2] in ACROSS_FACE for name in names)
-        if across_face and checked.case.accuracy.model in PLANE:
+        if across_face and case.case.accuracy.model in PLANE:
             continue
         if len(names) == 2:
             correlation[names[0], names[1]] = values[0]
@@ -171,13 +171,13 @@ def _population_row(text: str) -> tuple[list[str], list[float]]:
     return [_TOLERATED[name] for name in names], [float(value) * unit for value in values]
 
 
-def _teeth(checked: CheckedCase, inputs: Inputs, gear: str) -> ToothTolerances:
+def _teeth(case: CheckedCase, inputs: Inputs, gear: str) -> ToothTolerances:
     """Return the tolerances of the differences between the teeth of a gear of the class."""
     return iso1328_tooth_tolerances(
-        checked.pair,
+        case.pair,
         gear,
         inputs.tolerance_class,
-        across_face=checked.case.accuracy.model not in PLANE,
+        across_face=case.case.accuracy.model not in PLANE,
         distribution=inputs.distribution,
         finishing=inputs.finishing,
     )

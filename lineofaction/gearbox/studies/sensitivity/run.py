@@ -123,13 +123,14 @@ class _SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
         axes = checked.request.misalignment, checked.request.center_distance_change
         values = 2 * sum(np.union1d(np.zeros(1), axis).size for axis in axes)
         per_value = predicted.design + predicted.errors
-        parts = (Work("gears", predicted.bodies), Work("values", per_value, values))
+        parts = (Work("gears", predicted.bodies, 1.0, "tables"), Work("values", per_value, values, "tables"))
         return StudyCost(parts, predicted.bytes)
 
     def compute(self, case: CheckedCase, inputs: Inputs, means: Means) -> Studies:
         """Study a case at its highest load; its own misalignments and center distances do not count."""
         gears = case.case.pair
-        tables = _TableByTable(means.report)
+        predicted = self.predicted(case, inputs, means.analysis.cache)
+        tables = _TableByTable(means.report, predicted.seconds)
         run = replace(means.analysis, progress=tables.progress, on_plan=tables.plan)
         checked = case.request(_tables, inputs)
         with boundary_errors():
@@ -148,48 +149,55 @@ class _SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
 
 
 class _TableByTable:
-    """Progress of the study from the progress of each table."""
+    """Progress of the study from the progress of each table; `seconds` are predicted for all of them."""
 
-    def __init__(self, report: Progress) -> None:
+    def __init__(self, report: Progress, seconds: float) -> None:
         self._report = report
-        self._tables: list[TableFraction] = []
+        self._whole = seconds
+        self._table = TableFraction()
+        self._seconds: list[float] = []  # predicted, of the tables so far
 
     def plan(self, stages: Mapping[str, float]) -> None:
         """Begin a table."""
-        self._tables.append(TableFraction())
-        self._tables[-1].plan(stages)
+        self._table = TableFraction()
+        self._table.plan(stages)
+        self._seconds.append(sum(stages.values()))
 
     def progress(self, stage: str, fraction: float) -> None:
-        """Report the fraction done of the study."""
-        done = len(self._tables) - 1 + self._tables[-1].at(stage, fraction)
-        self._report("tables", min(done / TABLES, 1.0))
+        """Report the fraction done of the study, by predicted cost."""
+        *before, current = self._seconds
+        done = sum(before) + current * self._table.at(stage, fraction)
+        whole = self._whole
+        if len(self._seconds) == TABLES:  # the last one ends the work, whatever was predicted
+            whole = sum(before) + current
+        self._report("tables", min(done / max(whole, done, 1e-9), 1.0))
 
 
-def _changes(checked: CheckedCase, inputs: Inputs) -> tuple[float, ...]:
+def _changes(case: CheckedCase, inputs: Inputs) -> tuple[float, ...]:
     """Return the changes of the center distance in per cent: the named ones, or usual ones that mesh."""
 
     def meshes(changes: tuple[float, ...]) -> bool:
         with suppress(InputError):
-            return bool(_at_changes(checked, inputs, changes))
+            return bool(_at_changes(case, inputs, changes))
         return False
 
     return tuple(inputs.center_distance_change_percent) or next(filter(meshes, _USUAL), _USUAL[0])
 
 
-def _tables(checked: CheckedCase, inputs: Inputs) -> Checked:
+def _tables(case: CheckedCase, inputs: Inputs) -> Checked:
     """Return the request at the highest load of the case over both deviations."""
-    return _at_changes(checked, inputs, _changes(checked, inputs))
+    return _at_changes(case, inputs, _changes(case, inputs))
 
 
-def _at_changes(checked: CheckedCase, inputs: Inputs, percent: tuple[float, ...]) -> Checked:
-    pair, load = checked.pair, checked.case.load
+def _at_changes(case: CheckedCase, inputs: Inputs, percent: tuple[float, ...]) -> Checked:
+    pair, load = case.pair, case.case.load
     forces = load.normal_force_n or [float(pair.normal_force((load.torque_n_m or ())[-1]))]
     axes = TableAxes(
         normal_forces=[forces[-1]],
         misalignments=[value * UM for value in inputs.misalignment_um],
         center_distance_changes=[0.01 * value * pair.center_distance for value in percent],
     )
-    return Sensitivity.request(pair, axes, study_options(checked.options))
+    return Sensitivity.request(pair, axes, study_options(case.options))
 
 
 def _curves(study: PairStudy) -> Iterator[tuple[Any, ...]]:

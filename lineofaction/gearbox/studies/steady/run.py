@@ -120,8 +120,8 @@ def _motion(states: SteadyStates, index: int) -> tuple[Any, ...]:
 
 
 def _study_cost(cost: SteadyCost) -> StudyCost:
-    motions = Work("motions", cost.motion, cost.motions)
-    return StudyCost((motions, Work("points of the branch", cost.point, cost.points)))
+    sweeps = (Work("motions", cost.motion, cost.motions / 2.0, sweep) for sweep in ("up", "down"))
+    return StudyCost((*sweeps, Work("points of the branch", cost.point, cost.points, "branch")))
 
 
 def _remedy(single: SteadyCost, rpm: float) -> str:

@@ -64,7 +64,7 @@ class _ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):
             if runs is None:
                 return None
             probed.append(runs.seconds / count)
-        return cost + StudyCost((Work("runs", float(np.mean(probed)), count),)) if probed else None
+        return cost + StudyCost((Work("runs", float(np.mean(probed)), count, "runs"),)) if probed else None
 
     def compute(self, tabled: TabledScene, inputs: Inputs, means: Means) -> Study:
         places = factor_places(tabled.inputs, inputs)
@@ -135,8 +135,8 @@ def _flank_tables(
         if case is not None:
             with boundary_errors():
                 predicted = predicted_designs(CASES.of(case).checked, cache)
-            contacts = Work("contacts", predicted.design, different)
-            cost += StudyCost((Work("gears", predicted.bodies), contacts), predicted.bytes)
+            contacts = Work("contacts", predicted.design, different, "runs")
+            cost += StudyCost((Work("gears", predicted.bodies, stage="runs"), contacts), predicted.bytes)
     return cost
 
 

@@ -111,14 +111,14 @@ def axis_of_text(case: CheckedCase, text: str) -> SweepAxis:
     Raises `BadInput`: an unknown name, or values that are invalid or do not increase.
     """
     typed, equals, values = text.partition("=")
-    swept = _named(text, typed.strip())
+    swept = _named_variable(text, typed.strip())
     numbers = number_list(f"over {typed.strip()}", values) if equals else _usual(case, swept)
     if any(later <= earlier for earlier, later in pairwise(numbers)):
         raise BadInput.of("over", text, "over increasing values", "For example torque=50:300:50.")
     return SweepAxis(swept.name, tuple(value * swept.factor for value in numbers))
 
 
-def _named(text: str, name: str) -> _Swept:
+def _named_variable(text: str, name: str) -> _Swept:
     for swept in SWEEPABLE.values():
         if name in swept.spellings:
             return swept
@@ -138,21 +138,23 @@ def _usual(checked: CheckedCase, swept: _Swept) -> list[float]:
         reference_value = max(abs(figure(pair, name)) for name in variables) or float(declared.example)
         size = swept.what.boundary_value(reference_value)
         if declared.kind is Kind.LENGTH:
-            return _evenly(0.5 * size, 1.5 * size)
-        return _evenly(-2.0 * size if declared.kind is Kind.DEVIATION else 0.0, 2.0 * size)
+            return _even_values(0.5 * size, 1.5 * size)
+        return _even_values(-2.0 * size if declared.kind is Kind.DEVIATION else 0.0, 2.0 * size)
     if swept.name == TORQUE:
         forces = case.load.normal_force_n or ()
         loads = case.load.torque_n_m or [float(pair.torque(force)) for force in forces]
-        return list(loads) if len(loads) >= _MIN_TORQUES else _evenly(_LEAST_TORQUE * loads[-1], loads[-1])
+        return (
+            list(loads) if len(loads) >= _MIN_TORQUES else _even_values(_LEAST_TORQUE * loads[-1], loads[-1])
+        )
     if swept.name == CENTER_DISTANCE:
         changes = case.errors.center_distance_change_mm
         maximum = _DISTANCE * pair.center_distance / swept.factor
-        return list(changes) if len(changes) > 1 else _evenly(0.0, maximum)
+        return list(changes) if len(changes) > 1 else _even_values(0.0, maximum)
     maximum = max(map(abs, case.errors.misalignment_um)) or _SKEW_UM
-    return _evenly(-maximum, maximum)
+    return _even_values(-maximum, maximum)
 
 
-def _evenly(first: float, last: float) -> list[float]:
+def _even_values(first: float, last: float) -> list[float]:
     """Return `STEPS` evenly spaced values, rounded to six digits."""
     return [float(f"{value:.6g}") for value in np.linspace(first, last, STEPS)]
 
@@ -247,8 +249,8 @@ class _SweepStudy(CaseStudy[Inputs, SweepFigures, SweepResult]):
         with boundary_errors():
             request = case.request(_request, inputs)
             predicted = predicted_designs(request.checked, cache)
-        designs = Work("designs", predicted.design, len(request.designs))
-        return StudyCost((Work("gears", predicted.bodies), designs), predicted.bytes)
+        designs = Work("designs", predicted.design, len(request.designs), "contact")
+        return StudyCost((Work("gears", predicted.bodies, 1.0, "compliance"), designs), predicted.bytes)
 
     def compute(self, case: CheckedCase, inputs: Inputs, means: Means) -> SweepResult:
         """Sweep a case; an unswept load is the highest, an unswept deviation the nearest to zero."""

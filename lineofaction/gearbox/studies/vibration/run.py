@@ -191,15 +191,15 @@ def _vibrates(housing: HousingInput) -> bool:
     return housing.has_surface or housing.is_measured
 
 
-def _chosen(tabled: TabledScene, name: str | None) -> tuple[str, ReducedHousing]:
+def _chosen(scene: TabledScene, name: str | None) -> tuple[str, ReducedHousing]:
     """Return the housing of a name, or the first with a surface or points."""
-    if name is not None and name not in tabled.housings:
-        known = ", ".join(part.name for part in tabled.inputs.housings if _vibrates(part))
+    if name is not None and name not in scene.housings:
+        known = ", ".join(part.name for part in scene.inputs.housings if _vibrates(part))
         raise BadInput.of("housing", name, f"one of {known or 'none'}", _REMEDY)
-    for housing_name, housing in tabled.housings.items():
+    for housing_name, housing in scene.housings.items():
         if housing_name == name or (name is None and (housing.surface is not None or housing.points)):
             return housing_name, housing
-    raise BadInput.of("housings", len(tabled.housings), "a housing with a surface or points", _REMEDY)
+    raise BadInput.of("housings", len(scene.housings), "a housing with a surface or points", _REMEDY)
 
 
 def _point(vibration: HousingVibration, point: int) -> PointVelocity:

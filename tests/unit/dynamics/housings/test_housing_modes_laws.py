@@ -252,6 +252,23 @@ def test_the_motion_of_a_seat_is_weighted_by_area():
     assert found == pytest.approx([middle**2 + spread, 0.0, 0.0, 0.0, tilt, 0.0], rel=1e-3, abs=1e-12)
 
 
+@pytest.mark.parametrize(("low", "high"), [(0.1, 0.5), (0.15, 0.95), (0.3, 0.6)])
+def test_a_seat_ends_where_its_length_says_and_not_with_an_element(low, high):
+    """The law of the whole bore on a part of it, which cuts two layers of elements."""
+    mesh = tube(OUTER, BORE, LENGTH, (8, 1, 4))
+    field = np.zeros((len(mesh.points), 3))
+    field[:, 0] = mesh.points[:, 2] ** 2
+    middle, length = 0.5 * (low + high) * LENGTH, (high - low) * LENGTH
+    x, y, _ = SEAT.bore.position
+    part = replace(SEAT.bore, position=(x, y, middle), length=length)
+    found = mean_motion(mesh, part, np.array(part.position)) @ field.ravel()
+    spread = length**2 / 12.0
+    tilt = 2.0 * middle * spread / (spread + BORE**2 / 8.0)
+    assert found == pytest.approx([middle**2 + spread, 0.0, 0.0, 0.0, tilt, 0.0], rel=1e-3, abs=1e-12)
+    along = mesh.points[part.nodes(mesh), 2]
+    assert along.min() >= low * LENGTH - 0.01 * BORE and along.max() <= high * LENGTH + 0.01 * BORE
+
+
 def test_a_rigid_ring_is_stiffer():
     soft, stiff = (
         receptance(reduced(seats=(replace(UPPER, ring=r),)), np.zeros(1))[0, :5].real for r in Ring

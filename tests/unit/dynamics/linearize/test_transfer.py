@@ -115,7 +115,7 @@ def test_a_stage_moves_the_other_as_that_one_moves_it():
 def test_they_are_kept_by_their_content(tmp_path, monkeypatch):
     scene = two_stages(table())
     first = flank_transfer(assemble(scene), SPEEDS, 1, cache=tmp_path)
-    monkeypatch.setattr("dynamics.linearize.transfer._computed", lambda *_: pytest.fail("computed"))
+    monkeypatch.setattr("dynamics.linearize.transfer._computed_transfer", lambda *_: pytest.fail("computed"))
     kept = flank_transfer(assemble(scene), SPEEDS, 1, cache=tmp_path)
     assert np.array_equal(kept.motion, first.motion)
     assert np.array_equal(kept.bearing_force, first.bearing_force)

@@ -156,8 +156,6 @@ def test_a_quieter_line_that_may_be_louder_widens_the_band_of_the_largest():
         assert (each.below["radiation_model"], each.above["radiation_model"]) == pytest.approx((2.0, 1.0))
 
 
-def test_the_width_without_a_contribution_names_the_most_first():
+def test_contributions_to_a_band_add_up_by_squares():
     band = LevelBand(80.0, {"damping": 3.0, "model": 4.0}, {"damping": 4.0, "model": 0.0})
     assert band.width == pytest.approx(9.0)
-    assert list(band.widths_without) == ["damping", "model"]
-    assert band.widths_without == pytest.approx({"damping": 4.0, "model": 7.0})

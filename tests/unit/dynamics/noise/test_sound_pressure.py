@@ -30,7 +30,7 @@ from dynamics.noise import (
     sound_limit,
 )
 from dynamics.noise.housing_recordings import sound_paths
-from dynamics.noise.sensitivities import _ranked
+from dynamics.noise.sensitivities import _ranked_sensitivities
 from dynamics.noise.sound_band import USUAL_RANGES, _peak_error, _speed_step_error, largest_level, mean_power
 from dynamics.vibration import seat_forces
 
@@ -236,7 +236,7 @@ def test_what_changes_nothing_costs_without_end():
     row = Sensitivity.of(FIGURE, lambda _: 70.0)
     assert (row.slope, row.for_one_db_less, row.linear_range) == (0.0, math.inf, math.inf)
     louder = Sensitivity.of(FIGURE, lambda x: 3.0 * x)
-    assert _ranked([row, louder]) == (louder, row)
+    assert _ranked_sensitivities([row, louder]) == (louder, row)
     assert louder.for_one_db_less == pytest.approx(-1.0 / 3.0)
 
 

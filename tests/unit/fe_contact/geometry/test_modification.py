@@ -100,21 +100,6 @@ def test_parts_over_profile_and_face_add_up_to_all():
     assert sum(parts) == pytest.approx(whole.material_removed(gear, roll, face), rel=1e-12, abs=1e-20)
     assert np.all(np.ptp(parts[0], axis=1) == 0.0)
     assert not whole.along_profile.varies_along_face
-    twist = FlankModification(flank_twist=-1e-6)
-    assert twist.along_profile.neutral
-    assert twist.along_face == twist
-    assert twist.varies_along_profile
-    assert twist.varies_along_face
-    assert not twist.neutral
-    tip = FlankModification(tip_relief=20e-6, tip_relief_length=1e-3)
-    lead = FlankModification(helix_crowning=5e-6)
-    both = FlankModification(tip_relief=20e-6, tip_relief_length=1e-3, helix_crowning=5e-6)
-    roll, face = over_profile(gear, 7)[:, None], np.linspace(-12.5e-3, 12.5e-3, 3)
-    total = tip.material_removed(gear, roll, face) + lead.material_removed(gear, roll, face)
-    assert both.material_removed(gear, roll, face) == pytest.approx(total, abs=1e-20)
-    assert total.shape == (7, 3)
-    assert both.varies_along_face
-    assert not tip.varies_along_face
 
 
 def test_beyond_the_involute_the_end_value_holds():

@@ -288,7 +288,7 @@ def test_what_is_removed_is_what_the_break_says(kind, edge):
     assert not np.any(gear.modification.material_removed(gear, below))
 
 
-def test_no_edge_is_a_sharp_tip_and_one_is_along_the_profile():
+def test_no_edge_is_a_sharp_tip():
     none = FlankModification(tip_rounding=0.0, tip_chamfer=0.0, tip_chamfer_angle=1.0)
     gear = make_gear(modification=none)
     assert none.neutral
@@ -298,11 +298,6 @@ def test_no_edge_is_a_sharp_tip_and_one_is_along_the_profile():
     pair = GearPair(gear, gear, 80e-3)
     assert pair.active_path == pair.path_of_contact
     assert pair.active_contact_ratio == pair.transverse_contact_ratio
-    shape = FlankModification(tip_chamfer=1e-4, helix_crowning=1e-6)
-    assert shape.along_profile == FlankModification(tip_chamfer=1e-4)
-    assert shape.along_face == FlankModification(helix_crowning=1e-6)
-    assert FlankModification(tip_rounding=1e-4).varies_along_profile
-    assert not FlankModification(tip_rounding=1e-4).varies_along_face
 
 
 def test_contact_ends_at_the_tip_form_circles():
