@@ -1,8 +1,8 @@
 """Run the tests of compiled loops with the oldest and the newest numba that pyproject.toml admits.
 
-Usage: numba_ends.py [oldest] [newest]; without arguments both. Needs the network and uv (`pip install uv`). An end
-has an environment of its own in out/numba, with the newest packages that its numba admits (llvmlite, numpy and what
-the extra analysis takes). Ends with 1 where its tests fail, or where its packages do not resolve.
+Usage: numba_ends.py [oldest] [newest]; without arguments both. Needs the network and uv (`pip install uv`).
+An end has an environment of its own in out/numba, with the newest packages that its numba admits (llvmlite,
+numpy and what the extra analysis takes). Ends with 1 where tests fail, or where packages do not resolve.
 """
 
 from __future__ import annotations

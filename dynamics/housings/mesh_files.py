@@ -103,7 +103,7 @@ def read_mesh(path: str | Path, unit: str) -> TetrahedralMesh:
 
 
 def mesh_format(file: Path) -> str:
-    """Return the format of a mesh by its suffix; raises `InputError`: none has it, or its extra is missing."""
+    """Return the format of a mesh by its suffix; raises `InputError`: no format, or no extra for it."""
     title = MESH_FORMATS[one_of(f"{FIELD}.suffix", file.suffix.lower(), MESH_SUFFIXES)]
     if title == "Abaqus" and find_spec("meshlane") is None:
         remedy = "pip install 'lineofaction[abaqus]', or write the mesh as gmsh (.msh)."

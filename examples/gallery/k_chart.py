@@ -2,8 +2,8 @@
 How much material does a modification remove?
 =============================================
 
-K-charts of a helical pair: the material that tip relief removes, over the roll angle. 0 is the involute, C the pitch
-point. ``loa.analyze("pair.toml")`` makes the table; ``loa geometry pair.toml -o sheet.html`` draws them of a case.
+K-charts of a helical pair: the material that tip relief removes, over the roll angle. C is the pitch point.
+``loa.analyze("pair.toml")`` makes the table; ``loa geometry pair.toml -o sheet.html`` draws them of a case.
 """
 
 import lineofaction as loa

@@ -153,19 +153,20 @@ def test_a_regular_tetrahedron_is_the_best_shape():
 
 
 def abaqus_file(folder: Path, blocks: int = 2, placed: bool = False, parts: int = 1) -> Path:
-    """Write the tube with nodes in blocks; in parts of the same numbers, which instances place 500 mm apart."""
+    """Write the tube with nodes in blocks; in parts of the same numbers, placed 500 mm apart."""
     rows = [f"{n}, {x!r}, {y!r}, {z!r}" for n, (x, y, z) in enumerate(MILLIMETERS.tolist(), 1)]
     cells = [", ".join(map(str, (n, *nodes))) for n, nodes in enumerate((MESH.tetrahedra + 1).tolist(), 1)]
     size = -(-len(rows) // blocks)
     nodes = [line for k in range(0, len(rows), size) for line in ("*NODE", *rows[k : k + size])]
     lines = [*nodes, "*ELEMENT, TYPE=C3D10", *cells]
     if placed:
-        part = [[f"*PART, NAME=p{k}", *lines, "*END PART"] for k in range(parts)]
-        move = [
-            [f"*INSTANCE, NAME=i{k}, PART=p{k}", f"{10 + 500 * k}., 20., 30.", "*END INSTANCE"]
+        bodies = [line for k in range(parts) for line in (f"*PART, NAME=p{k}", *lines, "*END PART")]
+        instances = [
+            line
             for k in range(parts)
+            for line in (f"*INSTANCE, NAME=i{k}, PART=p{k}", f"{10 + 500 * k}., 20., 30.", "*END INSTANCE")
         ]
-        lines = [*sum(part, []), "*ASSEMBLY, NAME=all", *sum(move, []), "*END ASSEMBLY"]
+        lines = [*bodies, "*ASSEMBLY, NAME=all", *instances, "*END ASSEMBLY"]
     file = folder / "case.inp"
     file.write_text("\n".join(["*HEADING", *lines, ""]))
     return file
@@ -211,15 +212,11 @@ def sliver() -> meshio.Mesh:
 
 def two_parts() -> meshio.Mesh:
     both = np.vstack([MILLIMETERS, MILLIMETERS + 500.0])
-    return meshio.Mesh(
-        both, [("tetra10", np.vstack([MESH.tetrahedra, MESH.tetrahedra + len(MILLIMETERS)]))]
-    )
+    return meshio.Mesh(both, [("tetra10", np.vstack([MESH.tetrahedra, MESH.tetrahedra + len(MILLIMETERS)]))])
 
 
 def hexahedra() -> meshio.Mesh:
-    return meshio.Mesh(
-        100.0 * np.random.default_rng(0).random((8, 3)), [("hexahedron", np.arange(8)[None])]
-    )
+    return meshio.Mesh(100.0 * np.random.default_rng(0).random((8, 3)), [("hexahedron", np.arange(8)[None])])
 
 
 @pytest.mark.parametrize(
