@@ -1,6 +1,6 @@
 """Surfaces of housings as a picture shows them: coarse triangles of a STEP file or of a mesh.
 
-For a process that is confined already (`host.confine`) and answers once: gmsh and readers of meshes run in it.
+For a process that is confined already (`host.confine`) and answers once: gmsh and mesh readers run in it.
 """
 
 from __future__ import annotations
