@@ -21,8 +21,8 @@ class Plottable:
         Parameters
         ----------
         view : str
-            Words of the figure's name or title, as ``"harmonics"``; default: the first figure. A wrong one is
-            refused with a list of all.
+            Words of the figure's name or title, as ``"harmonics"``, or of the titles of its panels, as
+            ``"K-chart"``; default: the first figure. A wrong one is refused with a list of all.
         axes : matplotlib Axes, or a sequence of them, optional
             One for each panel, which is drawn there; default: a new figure of pyplot.
         interactive : bool

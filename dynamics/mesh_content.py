@@ -43,7 +43,7 @@ def _of_abaqus(content: bytes) -> Fault:
 
 
 def _of_nastran(content: bytes) -> Fault:
-    """Find INCLUDE, and bulk data without its last line: meshlane waits for it without end."""
+    """Find INCLUDE, and bulk data without its last line: meshio waits for it without end."""
     if any(line.lstrip().upper().startswith("INCLUDE") for line in mesh_text(content)):
         return "without INCLUDE: other files are not read", _ALONE
     lines = iter(mesh_text(content))

@@ -9,11 +9,12 @@ from typing import Any
 
 _REMEDY = "Use Linux, or macOS, or on Windows WSL or a container."
 MODULES = {
+    "abaqus": ("meshlane",),
     "dask": ("distributed",),
     "analysis": (
         "gmsh",
         "fast_simplification",
-        "meshlane",
+        "meshio",
         "numba",
         "pandas",
         "scipy",

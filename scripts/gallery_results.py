@@ -21,16 +21,12 @@ COARSE = {"accuracy.level": "draft"}
 
 def spur(torques: list[float], changes: Mapping[str, object] | None = None) -> loa.Case:
     """Return the published spur pair on a coarse mesh."""
-    case = loa.read(SPUR, {**COARSE, "load.torque_n_m": torques, **(changes or {})})
-    assert isinstance(case, loa.Case)
-    return case
+    return loa.read(SPUR, {**COARSE, "load.torque_n_m": torques, **(changes or {})}, kind=loa.Case)
 
 
 def helical() -> loa.Case:
     """Return the helical EV pair on a coarse mesh at one torque."""
-    case = loa.read(HELICAL, {**COARSE, "load.torque_n_m": [40.0, 80.0]})
-    assert isinstance(case, loa.Case)
-    return case
+    return loa.read(HELICAL, {**COARSE, "load.torque_n_m": [40.0, 80.0]}, kind=loa.Case)
 
 
 def relief_map() -> object:
@@ -43,7 +39,7 @@ def relief_map() -> object:
 def run_up() -> loa.RunResult:
     """Return a short run-up of the spur pair, with the samples that its lowest orders need."""
     short = {"run.duration_s": 2.0, "drives.motor.time_s": [0.0, 2.0], "outputs.sample_rate_hz": 4000.0}
-    return loa.simulate(loa.read(SCENE, short))
+    return loa.simulate(loa.read(SCENE, short, kind=loa.Scene))
 
 
 RESULTS: dict[str, Callable[[], object]] = {

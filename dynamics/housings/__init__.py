@@ -1,6 +1,6 @@
 """Housings with mass: component mode synthesis of a finite-element mesh, or reduced matrices.
 
-The only package of dynamics that uses scikit-fem, meshlane and, in a child process, gmsh.
+The only package of dynamics that uses scikit-fem, meshio, meshlane and, in a child process, gmsh.
 """
 
 from dynamics.housings.cached_reduction import meshed_step, reduced_housing

@@ -55,7 +55,7 @@ def meshed_step(
     """
     file = None
     if cache is not None and Path(path).is_file():
-        settings = repr([MESH_VERSION, WALL_ELEMENTS, version("gmsh"), version("meshlane"), element_size])
+        settings = repr([MESH_VERSION, WALL_ELEMENTS, version("gmsh"), version("meshio"), element_size])
         content = hashlib.sha256(Path(path).read_bytes() + settings.encode()).hexdigest()
         file = cache / f"mesh-{content}.nc"
     cached = read_cached(file, _read_mesh, UnreadableFile)

@@ -1,6 +1,6 @@
 """Surfaces of housings as a picture shows them: coarse triangles of a STEP file or of a mesh.
 
-For a process that is confined already (`host.confine`) and answers once: gmsh and meshlane run in it.
+For a process that is confined already (`host.confine`) and answers once: gmsh and mesh readers run in it.
 """
 
 from __future__ import annotations
@@ -11,14 +11,12 @@ from pathlib import Path
 import numpy as np
 
 from bounds import at_most, from_to
-from dynamics.checks import one_of
 from dynamics.errors import InputError
-from dynamics.housings.mesh_files import SIZE, TEXTS, UNITS
+from dynamics.housings.mesh_files import SIZE, TEXTS, UNITS, mesh_format, unreadable
 from dynamics.housings.mesh_worker import OtherCells, UnreadableMesh, mesh_arrays
 from dynamics.housings.step_worker import step_answer
 from dynamics.housings.tetrahedral_mesh import FACES
 from dynamics.mesh_content import mesh_text
-from dynamics.solid_housing import MESH_FORMATS, MESH_SUFFIXES
 from dynamics.types import FloatArray, IntArray
 from host.optional_modules import fast_simplification, sparse, spatial
 
@@ -117,20 +115,19 @@ def drawn_mesh(file: Path, unit: str, maximum: int = MAX_TRIANGLES) -> DrawnSurf
 
     Raises `InputError`: no mesh of its format, other solid elements, or the size of no housing.
     """
-    title = MESH_FORMATS[one_of("mesh_file.suffix", file.suffix.lower(), MESH_SUFFIXES)]
+    title = mesh_format(file)
     if title in TEXTS:
         file.write_text(mesh_text(file.read_bytes()).read(), encoding="utf-8")
     try:
         arrays, _ = mesh_arrays(file, title.lower())
     except UnreadableMesh:
-        bound, remedy = f"a mesh as {title} writes it", "Export it again, or as gmsh (.msh)."
-        raise InputError("mesh_file", file.name, bound, remedy) from None
+        raise unreadable(file, title) from None
     except OtherCells as error:
         bound = "tetrahedra alone, all with four or all with ten nodes"
         raise InputError("mesh_file.cells", error.args[0], bound, "Mesh with tetrahedra.") from None
     points, corners = np.asarray(arrays["points"], dtype=float), arrays["tetrahedra"][:, :4]
     if corners.min(initial=0) < 0 or corners.max(initial=0) >= len(points):
-        raise InputError("mesh_file", "with elements that lack nodes", "complete, as meshlane reads it")
+        raise InputError("mesh_file", "with elements that lack nodes", "complete, as its reader finds it")
     return _drawn_surface(UNITS[unit] * points, _bounding(corners), maximum, "mesh_file")
 
 

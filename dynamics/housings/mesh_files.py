@@ -1,8 +1,9 @@
-"""Volume meshes from files, by meshlane in a child process, and the checks that they pass."""
+"""Volume meshes from files, by meshio in a child process, and the checks that they pass."""
 
 from __future__ import annotations
 
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
@@ -101,9 +102,26 @@ def read_mesh(path: str | Path, unit: str) -> TetrahedralMesh:
     return _checked_mesh(_content(Path(path)), scale)
 
 
+def mesh_format(file: Path) -> str:
+    """Return the format of a mesh by its suffix; raises `InputError`: no format, or no extra for it."""
+    title = MESH_FORMATS[one_of(f"{FIELD}.suffix", file.suffix.lower(), MESH_SUFFIXES)]
+    if title == "Abaqus" and find_spec("meshlane") is None:
+        remedy = "pip install 'lineofaction[abaqus]', or write the mesh as gmsh (.msh)."
+        raise InputError(FIELD, file.name, "read where the extra abaqus is installed", remedy)
+    return title
+
+
+def unreadable(file: Path, title: str) -> InputError:
+    """Return the error of a file that is not what its format says."""
+    remedy = "Export it again, or as gmsh (.msh)."
+    if title == "gmsh":  # its reader wants a physical group of each element or of none
+        remedy = "Save the elements of physical groups alone: Mesh.SaveAll = 0."
+    return InputError(FIELD, file.name, f"a mesh as {title} writes it", remedy)
+
+
 def _content(file: Path) -> _Content:
     """Return the content that a confined child reads from a file; the suffix alone decides the format."""
-    title = MESH_FORMATS[one_of(f"{FIELD}.suffix", file.suffix.lower(), MESH_SUFFIXES)]
+    title = mesh_format(file)
     if not file.is_file():
         raise InputError(FIELD, file.name, "a file that exists")
     content = file.read_bytes()
@@ -120,8 +138,7 @@ def _content(file: Path) -> _Content:
             bound = f"a mesh that is read within {limits} (the reader: {error.cause})"
             raise InputError(FIELD, file.name, bound, "Write less into the file.") from None
         if answer.get("unreadable"):
-            bound, remedy = f"a mesh as {title} writes it", "Export it again, or as gmsh (.msh)."
-            raise InputError(FIELD, file.name, bound, remedy)
+            raise unreadable(file, title)
         if (cells := answer.get("cells")) is not None:
             bound = "tetrahedra alone, all with four or all with ten nodes"
             raise InputError(f"{FIELD}.cells", cells, bound, "Mesh with tetrahedra.")
@@ -150,7 +167,7 @@ def _quadratic(content: _Content) -> tuple[FloatArray, IntArray]:
     points, cells = content.points, content.tetrahedra
     members = [cells, *content.groups.values()]
     if any(nodes.min(initial=0) < 0 or nodes.max(initial=0) >= len(points) for nodes in members):
-        raise InputError(FIELD, "with elements that lack nodes", "complete, as meshlane reads it")
+        raise InputError(FIELD, "with elements that lack nodes", "complete, as its reader finds it")
     if cells.shape[1] != LINEAR_NODES:
         return points, cells
     corner = points[cells]

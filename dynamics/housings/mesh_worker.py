@@ -1,7 +1,7 @@
-"""Child process that reads a mesh by meshlane, and does nothing else.
+"""Child process that reads a mesh by meshio, one of Abaqus by meshlane, and does nothing else.
 
 Run as a script by `dynamics.housings.mesh_files`, in a folder of its own, which is all that it can reach
-(`host.confine`): meshlane has readers of many formats, and some follow references to other files. A process
+(`host.confine`): both have readers of many formats, and some follow references to other files. A process
 that is confined already calls `mesh_arrays` itself. The script reads one JSON object from standard input and
 writes one to standard output, and the mesh as ``mesh.npz`` into its folder::
 
@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 from host import confine, end_after
 
 SURFACE_CELLS = ("triangle", "triangle6")
+READERS = {"abaqus": "meshlane.abaqus"}  # meshio misplaces blocks of nodes and instances of Abaqus in silence
 NODES = {"tetra": 4, "tetra10": 10}  # nodes of the kinds of tetrahedra
 PHYSICAL, PROPERTY = "gmsh:physical", "nastran:ref"
 Nodes = NDArray[np.int64]
@@ -42,7 +43,7 @@ class OtherCells(Exception):
 
 def mesh_arrays(file: Path, title: str) -> tuple[dict[str, NDArray[Any]], list[str]]:
     """Return the arrays of a file and the names of its groups."""
-    reader = import_module(f"meshlane.{title}")
+    reader = import_module(READERS.get(title, f"meshio.{title}"))
     try:
         content = reader.read(file)
     # what its readers raise on damaged or foreign files is not one class; some end the program
@@ -80,13 +81,16 @@ def _named_parts(content: Any) -> Iterator[tuple[str, Nodes]]:
             for cells, member in zip(content.cells, members, strict=True)
             if cells.type in SURFACE_CELLS and member is not None and len(member)
         ]
-        if parts and ":" not in name:  # names with a colon are those of meshlane itself
+        if parts and ":" not in name:  # names with a colon are those of the reader itself
             yield name, np.concatenate(parts)
     # number and dimension of each physical group; 2: a surface
     names = {int(value[0]): name for name, value in content.field_data.items() if int(value[1]) == 2}
     for key in (PHYSICAL, PROPERTY):
         for number, nodes in _by_number(content, key).items():
-            yield names.get(number, str(number)), nodes
+            name = names.get(number, str(number))
+            # of an element in several groups the number is that of the first; its sets are complete
+            if name not in content.cell_sets:
+                yield name, nodes
 
 
 def _by_number(content: Any, key: str) -> dict[int, Nodes]:
@@ -101,7 +105,7 @@ def _by_number(content: Any, key: str) -> dict[int, Nodes]:
 def _main() -> None:
     """Answer the one request on standard input."""
     answer_to = os.dup(1)
-    os.dup2(2, 1)  # whatever meshlane prints must not mix with the answer
+    os.dup2(2, 1)  # whatever a reader prints must not mix with the answer
     request = json.load(sys.stdin)
     end_after(int(request["seconds"]) + 1)
     confine(Path.cwd())

@@ -32,10 +32,10 @@ def write_surface(
     of_triangles : mapping of str to (t,) array, optional
         Constant on triangles.
     """
-    import meshlane  # noqa: PLC0415 (start-up time)
+    import meshio  # noqa: PLC0415 (start-up time)
 
     file = Path(path)
-    mesh = meshlane.Mesh(
+    mesh = meshio.Mesh(
         points,
         [("triangle" if triangles.shape[1] == CORNERS else "triangle6", triangles)],
         point_data={name: np.ascontiguousarray(values) for name, values in fields.items()},
@@ -43,7 +43,7 @@ def write_surface(
     )
     unfinished = file.with_name(f".{file.name}.{os.getpid()}")
     try:
-        meshlane.write(unfinished, mesh, file_format="vtu")
+        meshio.write(unfinished, mesh, file_format="vtu")
         unfinished.replace(file)
     finally:
         unfinished.unlink(missing_ok=True)

@@ -8,6 +8,6 @@ Transmission error, mesh force and bearing force by order.
 
 import lineofaction as loa
 
-response = loa.read("results/response.nc")
+response = loa.read("results/response.nc", kind=loa.response)
 response.plot()
 print(response)

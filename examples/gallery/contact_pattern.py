@@ -8,6 +8,6 @@ Contact pattern of a helical pair with tip relief and crowning.
 
 import lineofaction as loa
 
-pattern = loa.read("results/pressure.nc")
+pattern = loa.read("results/pressure.nc", kind=loa.flank)
 pattern.plot("contact pattern")
 print(pattern)

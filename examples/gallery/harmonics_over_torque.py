@@ -8,7 +8,7 @@ Ripple and mesh harmonics over the torque. Without relief all of them grow; a re
 
 import lineofaction as loa
 
-table = loa.read("results/spur.nc")
+table = loa.read("results/spur.nc", kind=loa.SteDatabase)
 table.plot("ripple over torque")
 for torque in table.torque:
     print(f"{torque:3.0f} N m: mesh order 1 {table.harmonics(torque=torque)[0]:um}")

@@ -8,6 +8,6 @@ Load over the face width at four positions, their mean, and K_Hbeta.
 
 import lineofaction as loa
 
-pattern = loa.read("results/pressure.nc")
+pattern = loa.read("results/pressure.nc", kind=loa.flank)
 pattern.plot("line load")
 print(pattern)

@@ -8,6 +8,6 @@ Campbell diagram: mesh orders cross natural frequencies.
 
 import lineofaction as loa
 
-modes = loa.read("results/modes.nc")
+modes = loa.read("results/modes.nc", kind=loa.modes)
 modes.plot()
 print(modes)

@@ -8,6 +8,6 @@ Peak-to-peak transmission error over torque and tip relief of both gears: a reli
 
 import lineofaction as loa
 
-ripple_map = loa.read("results/relief.nc")
+ripple_map = loa.read("results/relief.nc", kind=loa.sweep)
 ripple_map.plot()
 print(ripple_map)

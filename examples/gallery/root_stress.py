@@ -7,6 +7,6 @@ Stress of both tooth roots through the mesh. ``loa.root_stress("pair.toml", torq
 
 import lineofaction as loa
 
-roots = loa.read("results/root.nc")
+roots = loa.read("results/root.nc", kind=loa.root_stress)
 roots.plot()
 print(roots)

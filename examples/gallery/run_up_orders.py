@@ -7,6 +7,6 @@ Overall level and mesh orders of a bearing force. ``loa.simulate("scene.toml")``
 
 import lineofaction as loa
 
-run = loa.read("results/run_up.nc")
+run = loa.read("results/run_up.nc", kind=loa.RunResult)
 run.plot("levels")
 print(run)

@@ -8,6 +8,6 @@ Periodic steady states about a resonance. Both agree: teeth stay in contact. Whe
 
 import lineofaction as loa
 
-states = loa.read("results/steady.nc")
+states = loa.read("results/steady.nc", kind=loa.steady)
 states.plot()
 print(states)

@@ -8,6 +8,6 @@ Ripple of 200 pairs drawn within class 6 of ISO 1328.
 
 import lineofaction as loa
 
-pairs = loa.read("results/scatter.nc")
+pairs = loa.read("results/scatter.nc", kind=loa.scatter)
 pairs.plot()
 print(pairs)

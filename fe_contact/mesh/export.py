@@ -1,4 +1,4 @@
-"""Elements with values as VTU for viewers, through meshlane, and the teeth that elements belong to."""
+"""Elements with values as VTU for viewers, through meshio, and the teeth that elements belong to."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def write_cells(
     point_data, cell_data : mapping
         Values by name, of shape (n,), (n, 3) or (n, 6), and (m,).
     """
-    import meshlane  # noqa: PLC0415 - only who exports needs it
+    import meshio  # noqa: PLC0415 - only who exports needs it
 
     path = Path(path)
     if path.suffix != ".vtu":
@@ -53,7 +53,7 @@ def write_cells(
     content = {name: [values] for name, values in cell_data.items()}
     draft = path.with_name(f".{path.name}.part")
     try:
-        meshlane.Mesh(points, [(kind, cells)], dict(point_data), content).write(draft, file_format="vtu")
+        meshio.Mesh(points, [(kind, cells)], dict(point_data), content).write(draft, file_format="vtu")
         draft.replace(path)
     finally:
         draft.unlink(missing_ok=True)

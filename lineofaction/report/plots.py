@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from io import BytesIO
 from typing import Any
 
@@ -24,8 +25,8 @@ from lineofaction.report.run.page import dynamic_results
 from lineofaction.report.run.view import RunView
 from lineofaction.report.ste.page import static_results
 
-_SYNONYMS = {"harmonics": "spectrum", "orders": "spectrum"}
-"""Words of the trade for words in names of figures."""
+_SYNONYMS = {"harmonics": "spectrum", "orders": "spectrum", "k-chart": "profile of"}
+"""Words of the trade for words in names of figures and titles of panels."""
 
 
 def plot(result: Any, view: str = "", *, axes: Any = None, interactive: bool = False) -> Any:
@@ -79,16 +80,30 @@ def _in_sections(sections: Sequence[Section]) -> tuple[Figure, ...]:
 
 
 def _named_figure(figures: Sequence[Figure], view: str) -> Figure:
-    """Return the figure of a name; else the first whose name or title has all words of the view."""
+    """Return the figure of a name; else the first with all words of the view in its name or its title.
+
+    Where there is none, return the panels of a figure that have the words in their titles.
+    """
     if not view:
         return figures[0]
     exact = [figure for figure in figures if figure.key == view]
-    sought_words = [_SYNONYMS.get(word, word) for word in view.lower().split()]
-    alike = [f for f in figures if all(word in f"{f.key} {f.title}".lower() for word in sought_words)]
-    if not (exact or alike):
+    words = [_SYNONYMS.get(word, word) for word in view.lower().split()]
+    alike = [figure for figure in figures if _has(f"{figure.key} {figure.title}", words)]
+    matches = exact or alike or [part for figure in figures for part in _panels_of(figure, words)]
+    if not matches:
         names = ", ".join(figure.key for figure in figures)
         raise BadInput.of("view", view, f"words of one of {names}")
-    return (exact or alike)[0]
+    return matches[0]
+
+
+def _panels_of(figure: Figure, words: Sequence[str]) -> tuple[Figure, ...]:
+    """Return a figure of the panels that have all words in their titles; empty: no panel has them."""
+    panels = tuple(panel for panel in figure.content if _has(panel.title, words))
+    return (replace(figure, content=panels),) if panels else ()
+
+
+def _has(text: str, words: Sequence[str]) -> bool:
+    return all(word in text.lower() for word in words)
 
 
 def _axes_of(axes: Any, panels: int) -> list[Axes]:

@@ -5,15 +5,41 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, overload
 
 from bounds.brief import MAX_LINES, Row, brief
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import STUDIES, SUFFIX
 from lineofaction.gearbox.schemas import read_table
 from lineofaction.gearbox.signals.endings import FORMATS
+from lineofaction.gearbox.study import StudyFunction
 from lineofaction.gearbox.workbench import open_unit
 from lineofaction.gearbox.workbench import read as read_input
+
+if TYPE_CHECKING:
+    import pandas
+
+    from bounds.plottable import Plottable
+    from dynamics.results import RunResult
+    from fe_contact.ste import SteDatabase
+    from lineofaction.gearbox.from_rexs.opened import OpenedUnit
+    from lineofaction.gearbox.schemas import Case
+    from lineofaction.gearbox.schemas.scene import SceneInput
+    from lineofaction.gearbox.signals.recording import Recording
+
+    # results of studies: Plottable
+    Input: TypeAlias = Case | SceneInput
+    Content: TypeAlias = (
+        Input
+        | OpenedUnit
+        | SteDatabase
+        | RunResult
+        | Plottable
+        | Recording
+        | pandas.DataFrame
+        | dict[str, Any]
+        | "Folder"
+    )
 
 UNITS = (".rexs", ".rexsj", ".rexsz", ".rexs.zip")
 """Endings of gear units."""
@@ -22,7 +48,25 @@ _SUBJECTS = {"pair": "case", "shafts": "scene"}
 """Kind of an input by the table that identifies it."""
 
 
-def read(file: Path | str, overrides: Mapping[str, object] | None = None) -> Any:
+T = TypeVar("T")
+
+
+@overload
+def read(file: Path | str, overrides: Mapping[str, object] | None = None, *, kind: type[T]) -> T: ...
+@overload
+def read(
+    file: Path | str, overrides: Mapping[str, object] | None = None, *, kind: StudyFunction[..., T]
+) -> T: ...
+@overload
+def read(file: Path | str, overrides: Mapping[str, object], *, kind: None = None) -> Input: ...
+@overload
+def read(file: Path | str, overrides: None = None, *, kind: None = None) -> Content: ...
+def read(
+    file: Path | str,
+    overrides: Mapping[str, object] | None = None,
+    *,
+    kind: type[Any] | StudyFunction[..., Any] | None = None,
+) -> Any:
     """Read a file that `loa` takes or writes, or a folder of them.
 
     Raises `BadInput`: the file is missing, damaged or of another kind.
@@ -35,6 +79,9 @@ def read(file: Path | str, overrides: Mapping[str, object] | None = None) -> Any
         universal file and others), table of numbers (CSV), or a folder.
     overrides : mapping of str to object, optional
         Values over those of a case or a scene by their paths, as ``{"loads.brake.torque_n_m": 40}``.
+    kind : class or study, optional
+        Class of the content, as ``loa.SteDatabase``, or the study that made it, as ``loa.modes``. Another
+        content is refused, and editors and type checkers know what is returned.
 
     Returns
     -------
@@ -42,6 +89,14 @@ def read(file: Path | str, overrides: Mapping[str, object] | None = None) -> Any
     pandas or `Folder`
     """
     path = Path(file)
+    content = _content(path, overrides)
+    if kind is not None:
+        _check_kind(path, content, kind)
+    return content
+
+
+def _content(path: Path, overrides: Mapping[str, object] | None) -> Any:
+    """Return what a file holds; raises `BadInput`: overrides of what is neither case nor scene."""
     reader = _reader(path)
     if not overrides:
         return reader(path)
@@ -49,6 +104,17 @@ def read(file: Path | str, overrides: Mapping[str, object] | None = None) -> Any
         remedy = "Leave them out; loa.open_unit takes those of the scene of a unit."
         raise BadInput.of("overrides", ", ".join(overrides), "those of a case or a scene", remedy)
     return read_input(path, overrides)
+
+
+def _check_kind(path: Path, content: object, kind: type[Any] | StudyFunction[..., Any]) -> None:
+    """Raise `BadInput` unless a content is of a class, or of the class that a study returns."""
+    if isinstance(kind, StudyFunction):
+        expected, name = kind.study.run.file.result, f"loa.{kind.study.package}"
+    else:
+        expected, name = kind, kind.__name__
+    if not isinstance(content, expected):
+        bound = f"the kind of {path.name}, which holds {type(content).__name__}"
+        raise BadInput.of("kind", name, bound, "Leave it out to read any kind.")
 
 
 def _reader(path: Path) -> Callable[[Path], Any]:

@@ -18,7 +18,7 @@ from html import escape, unescape
 from pathlib import Path
 from typing import Any
 
-import meshlane
+import meshio
 import numpy as np
 import pytest
 from click import Context
@@ -187,7 +187,7 @@ def read_csv(runs: StudyRuns, file: Path, _printed: str) -> None:
 
 
 def read_vtu(_runs: StudyRuns, file: Path, _printed: str) -> None:
-    surface = meshlane.read(file)
+    surface = meshio.read(file)
     assert len(surface.points) > 3 and {cells.type for cells in surface.cells} <= {"triangle", "triangle6"}
     fields = [*surface.point_data.values(), *(part for each in surface.cell_data.values() for part in each)]
     assert fields and all(np.isfinite(field).all() for field in fields)

@@ -108,16 +108,16 @@ def corpus(folder: Path) -> Iterator[tuple[str, bytes, Asked]]:
 
 def _meshes(folder: Path) -> dict[str, bytes]:
     """Return a cube of tetrahedra in every format of meshes."""
-    import meshlane  # noqa: PLC0415 (an extra)
+    import meshio  # noqa: PLC0415 (an extra)
 
     points = [(x, y, z) for z in (0.0, 100.0) for y in (0.0, 100.0) for x in (0.0, 100.0)]
     cells = [(0, 1, 2, 4), (3, 1, 2, 7), (5, 1, 4, 7), (6, 2, 4, 7), (1, 2, 4, 7)]
-    mesh = meshlane.Mesh(np.array(points), [("tetra", np.array(cells))])
+    mesh = meshio.Mesh(np.array(points), [("tetra", np.array(cells))])
     formats = {".msh": "gmsh", ".inp": "abaqus", ".bdf": "nastran", ".vtu": "vtu", ".vtk": "vtk"}
     contents = {}
     for suffix, title in formats.items():
         file = folder / f"cube{suffix}"
-        meshlane.write(file, mesh, file_format=title)
+        meshio.write(file, mesh, file_format=title)
         contents[suffix] = file.read_bytes()
     return contents
 

@@ -7,7 +7,7 @@ import pytest
 from repository import ROOT
 
 HOUSES = {"bounds", "dynamics", "fe_contact", "host", "lineofaction", "model_studies", "service"}
-HEAVY = {"fastapi", "gmsh", "h5py", "httpx2", "matplotlib", "meshlane", "numba", "numpy", "pandas", "plotly"}
+HEAVY = {"fastapi", "gmsh", "h5py", "httpx2", "matplotlib", "meshio", "numba", "numpy", "pandas", "plotly"}
 HEAVY |= {"pydantic", "rich", "scipy", "skfem", "sqlalchemy", "typer", "xarray"}
 
 

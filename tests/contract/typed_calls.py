@@ -50,6 +50,21 @@ def studied(workers: Workers) -> None:
     loa.modes(SCENE, orders="all")  # type: ignore[call-overload]
 
 
+def read() -> None:
+    """A file of a kind, a case or a scene with other values, any file."""
+    assert_type(loa.read(SCENE, kind=loa.SteDatabase), SteDatabase)
+    assert_type(loa.read(SCENE, {"run.duration_s": 1.0}, kind=loa.Scene), loa.Scene)
+    assert_type(loa.read(SCENE, kind=loa.modes), ModalAnalysis)
+    assert_type(loa.read(SCENE, kind=loa.deflect), GearboxDeflection)
+    assert_type(loa.read(SCENE, {"run.duration_s": 1.0}), loa.Case | loa.Scene)
+    content = loa.read(SCENE)
+    assert isinstance(content, loa.SteDatabase)
+    content.peak_to_peak(torque=100.0)
+    content.no_such_field  # type: ignore[attr-defined] # noqa: B018
+    loa.read(SCENE).peak_to_peak(torque=100.0)  # type: ignore[union-attr] # of a table alone
+    loa.read(SCENE, kind="table")  # type: ignore[call-overload]
+
+
 def refused(client: LineOfActionClient) -> None:
     """Each by an error that mypy knows; it reports one that is not there."""
     client.modes(SCENE, speed=[1.0])  # type: ignore[call-arg]

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-import meshlane
+import meshio
 import pytest
 from command_line import loa, printed
 from geared_scenes import gear_pair_scene
@@ -49,7 +49,7 @@ def test_one_position_is_two_files_and_several_are_numbered(small, tmp_path):
     # one pair at the pitch point, two half a pitch on; half the load bends half as much, but for the contact
     assert answer["positions"][0]["ste_um"] > answer["positions"][1]["ste_um"]
     high, low = (
-        meshlane.read(tmp_path / name).point_data["von_mises_stress"].max()
+        meshio.read(tmp_path / name).point_data["von_mises_stress"].max()
         for name in ("one/pinion.vtu", "two/pinion_000.vtu")
     )
     assert high == pytest.approx(2.0 * low, rel=0.02)

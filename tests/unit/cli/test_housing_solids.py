@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-import meshlane
+import meshio
 import numpy as np
 import pytest
 from command_line import loa
@@ -121,8 +121,8 @@ def test_a_mesh_file_is_the_same_housing_in_either_unit(folder):
     mesh = mesh_step(folder / "block.step", 0.025)
     turn = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
     away = (mesh.points - [0.01, 0.02, 0.03]) @ turn
-    meshlane.Mesh(1e3 * mesh.points, [("tetra10", mesh.tetrahedra)]).write(folder / "a.inp", "abaqus")
-    meshlane.Mesh(away, [("tetra10", mesh.tetrahedra)]).write(folder / "b.vtu", "vtu")
+    meshio.Mesh(1e3 * mesh.points, [("tetra10", mesh.tetrahedra)]).write(folder / "a.inp", "abaqus")
+    meshio.Mesh(away, [("tetra10", mesh.tetrahedra)]).write(folder / "b.vtu", "vtu")
     step = {"step_file": None, "element_size_mm": None}
     placed = {"origin_mm": [10.0, 20.0, 30.0], "x_axis": turn[:, 0].tolist(), "z_axis": turn[:, 2].tolist()}
     for found in (
@@ -272,7 +272,7 @@ def test_a_solid_that_cannot_be_is_one_fault_by_name(folder, name):
         write_block(folder / "two.step", "two")
     if name == "the wrong unit":
         mesh = mesh_step(folder / "block.step", 0.025)
-        meshlane.Mesh(1e3 * mesh.points, [("tetra10", mesh.tetrahedra)]).write(folder / "block.inp", "abaqus")
+        meshio.Mesh(1e3 * mesh.points, [("tetra10", mesh.tetrahedra)]).write(folder / "block.inp", "abaqus")
     with pytest.raises(BadInput) as caught:
         tabled(folder, **fields)
     (fault,) = caught.value.faults

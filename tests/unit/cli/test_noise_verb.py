@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import cache
 from html import escape
 
-import meshlane
+import meshio
 import numpy as np
 import pytest
 from command_line import loa, printed
@@ -147,7 +147,7 @@ def test_regions_and_panels_add_up_to_the_power_of_their_point(scene, tmp_path):
     assert f"{100.0 * first['share']:.0f} % leaves case at {first['facing']}" in page._sentences(found)[0]
     assert len(page._region_table(found).rows) == sum(len(point["regions"]) for point in points[:3])
     loud = loudest(found, 1)[0]
-    surface = meshlane.read(tmp_path / "noise.vtu")
+    surface = meshio.read(tmp_path / "noise.vtu")
     (triangles,) = (cells.data for cells in surface.cells)
     hull = Hull(surface.points, triangles)
     (intensity,), (power,) = surface.cell_data["intensity"], surface.cell_data["power"]

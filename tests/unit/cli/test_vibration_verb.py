@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 from typing import Any
 
-import meshlane
+import meshio
 import numpy as np
 import pytest
 from command_line import loa, printed
@@ -51,7 +51,7 @@ def test_the_surface_and_the_cost_of_the_housing_are_written(scene, tmp_path):
         result = loa("vibration", scene, *SPEEDS, "-o", file)
         assert (result.exit_code, result.stderr) == (0, "")
     found = run.RUN.file.read(files["nc"])
-    surface = meshlane.read(files["vtu"])
+    surface = meshio.read(files["vtu"])
     assert [cells.type for cells in surface.cells] == ["triangle6"]
     size = surface.point_data["velocity_magnitude"]
     parts = surface.point_data["velocity_real"], surface.point_data["velocity_imaginary"]
@@ -107,7 +107,7 @@ def test_orders_that_the_modes_kept_do_not_carry_are_named(folder, scene):
 
 def test_a_mode_is_drawn_in_place_of_the_deflection(scene, tmp_path):
     assert loa("vibration", scene, *SPEEDS, "--mode", 2, "-o", tmp_path / "mode.vtu").exit_code == 0
-    motion = meshlane.read(tmp_path / "mode.vtu").point_data["mode_2_real"]
+    motion = meshio.read(tmp_path / "mode.vtu").point_data["mode_2_real"]
     assert np.linalg.norm(motion, axis=1).max() == pytest.approx(1.0)
 
 

@@ -71,6 +71,15 @@ def test_every_file_is_read_by_one_function(tmp_path):
         loa.read(tmp_path / "modes.nc", {"duration": 1})
 
 
+def test_a_content_of_another_kind_is_refused_by_name(tmp_path):
+    file = loa.write(loa.modes(EXAMPLES / "jeffcott_scene.toml"), tmp_path / "modes.nc")
+    assert loa.read(file, kind=loa.modes) == loa.read(file)
+    assert isinstance(loa.read(EXAMPLES / "jeffcott_scene.toml", kind=loa.Scene), loa.Scene)
+    for kind, name in ((loa.SteDatabase, "SteDatabase"), (loa.response, r"loa\.response")):
+        with pytest.raises(loa.BadInput, match=rf"kind = '{name}': .* modes\.nc, which holds ModalAnalysis"):
+            loa.read(file, kind=kind)
+
+
 def test_a_folder_is_its_files_each_read_on_request(tmp_path):
     unit = loa.read(EXAMPLES / "two_stage" / "two_stage.rexs")
     for name, text in unit.files().items():

@@ -49,6 +49,19 @@ def test_a_figure_is_found_by_words_of_its_name(database, run):
         database.plot("no such")
 
 
+def test_panels_are_found_by_words_of_their_titles():
+    """A K-chart is the profile of a gear, neither the section of the pair nor the lead."""
+    database = loa.read(EXAMPLES / "gallery" / "results" / "helical.nc", kind=loa.SteDatabase)
+    whole = database.plot("pair in mesh")
+    titles = [ax.get_title(loc="left") for ax in whole]
+    charts = [ax.get_title(loc="left") for ax in database.plot("K-chart")]
+    assert charts == [title for title in titles if title.startswith("Profile of the ")] != []
+    assert len(charts) < len(titles)
+    assert set(database.to_dataframe("K-chart")["x_axis"]) <= {
+        f"roll angle of the {gear}, °" for gear in ("pinion", "wheel")
+    }
+
+
 def test_panels_are_drawn_on_the_axes_of_the_caller(database):
     _, axes = plt.subplots(2, 1)
     assert list(database.plot(axes=axes)) == list(axes)

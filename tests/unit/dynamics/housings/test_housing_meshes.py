@@ -8,6 +8,7 @@ import threading
 from pathlib import Path
 from typing import Any
 
+import meshio
 import meshlane
 import numpy as np
 import pytest
@@ -61,7 +62,7 @@ def written(path: Path) -> Path:
         write_nastran(path)
         return path
     sets = {"foot": FOOT} if path.suffix == ".inp" else {}
-    whole = meshlane.Mesh(MILLIMETERS, [("tetra10", MESH.tetrahedra)], point_sets=sets)
+    whole = meshio.Mesh(MILLIMETERS, [("tetra10", MESH.tetrahedra)], point_sets=sets)
     whole.write(path, file_format={".msh": "gmsh", ".inp": "abaqus", ".vtu": "vtu"}[path.suffix])
     return path
 
@@ -87,7 +88,7 @@ def test_physical_groups_of_triangles_keep_their_names(tmp_path):
     base = Plane((0.0, 0.0, 0.0), (0.0, 0.0, -1.0)).triangles(MESH)
     cells = [("tetra10", MESH.tetrahedra), ("triangle6", base)]
     numbers = [np.full(len(data), kind) for kind, (_, data) in enumerate(cells, 1)]
-    whole = meshlane.Mesh(
+    whole = meshio.Mesh(
         MILLIMETERS,
         cells,
         cell_data={"gmsh:physical": numbers, "gmsh:geometrical": numbers},
@@ -98,12 +99,48 @@ def test_physical_groups_of_triangles_keep_their_names(tmp_path):
     assert np.array_equal(Group("foot").triangles(back), base)
 
 
+WRITE_GROUPS = """
+import sys, gmsh
+gmsh.initialize(readConfigFiles=False)
+gmsh.option.setNumber("General.Terminal", 0)
+gmsh.model.occ.addBox(0, 0, 0, 100, 80, 60)
+gmsh.model.occ.synchronize()
+gmsh.option.setNumber("Mesh.MeshSizeMin", 40)
+gmsh.option.setNumber("Mesh.SaveAll", int(sys.argv[2] == "all"))
+gmsh.model.mesh.generate(3)
+gmsh.model.addPhysicalGroup(2, [1], 7, "left")
+gmsh.model.addPhysicalGroup(2, [1, 5], 9, "left and base")
+gmsh.model.addPhysicalGroup(3, [1], 20, "body")
+gmsh.write(sys.argv[1])
+gmsh.finalize()
+"""
+
+
+def test_a_face_in_two_physical_groups_is_in_both(tmp_path):
+    """gmsh 4.1 lists all groups of a face; the number of its elements is the first group's."""
+    file = tmp_path / "box.msh"
+    subprocess.run([sys.executable, "-c", WRITE_GROUPS, str(file), "groups"], check=True)
+    mesh = read_mesh(file, "mm")
+    left = Plane((0.0, 0.0, 0.0), (-1.0, 0.0, 0.0)).triangles(mesh)
+    base = Plane((0.0, 0.0, 0.0), (0.0, 0.0, -1.0)).triangles(mesh)
+    assert len(Group("left").triangles(mesh)) == len(left) > 0
+    assert len(Group("left and base").triangles(mesh)) == len(left) + len(base)
+
+
+def test_elements_without_a_group_beside_others_are_refused_with_what_to_save(tmp_path):
+    file = tmp_path / "box.msh"
+    subprocess.run([sys.executable, "-c", WRITE_GROUPS, str(file), "all"], check=True)
+    with pytest.raises(InputError, match=r"Mesh\.SaveAll = 0") as caught:
+        read_mesh(file, "mm")
+    assert (caught.value.field, caught.value.value) == ("mesh_file", "box.msh")
+
+
 def test_linear_tetrahedra_of_either_hand_get_nodes_in_the_middle_of_their_edges(tmp_path):
     straight = box((0.1, 0.1, 0.1), (2, 2, 2))
     corners = straight.tetrahedra[:, :4].copy()
     corners[::2] = corners[::2][:, [1, 0, 2, 3]]
     used, corners = np.unique(corners, return_inverse=True)
-    meshlane.Mesh(straight.points[used], [("tetra", corners.reshape(-1, 4))]).write(tmp_path / "box.vtu")
+    meshio.Mesh(straight.points[used], [("tetra", corners.reshape(-1, 4))]).write(tmp_path / "box.vtu")
     back = read_mesh(tmp_path / "box.vtu", "m")
     assert len(back.points) == len(straight.points)
     mass, _ = mass_and_stiffness(back, GRAY_CAST_IRON)
@@ -115,42 +152,71 @@ def test_a_regular_tetrahedron_is_the_best_shape():
     assert element_shape(type(MESH)(points, np.array([[0, 2, 1, 3, *6 * [0]]]))) == pytest.approx([1.0])
 
 
-@pytest.mark.parametrize("placed", [False, True])
-def test_all_nodes_of_an_abaqus_file_are_read(tmp_path, placed):
-    """In several blocks; in a part, where its instance places it."""
+def abaqus_file(folder: Path, blocks: int = 2, placed: bool = False, parts: int = 1) -> Path:
+    """Write the tube with nodes in blocks; in parts of the same numbers, placed 500 mm apart."""
     rows = [f"{n}, {x!r}, {y!r}, {z!r}" for n, (x, y, z) in enumerate(MILLIMETERS.tolist(), 1)]
     cells = [", ".join(map(str, (n, *nodes))) for n, nodes in enumerate((MESH.tetrahedra + 1).tolist(), 1)]
-    blocks = ["*NODE", *rows[:100], "*NODE", *rows[100:], "*ELEMENT, TYPE=C3D10", *cells]
+    size = -(-len(rows) // blocks)
+    nodes = [line for k in range(0, len(rows), size) for line in ("*NODE", *rows[k : k + size])]
+    lines = [*nodes, "*ELEMENT, TYPE=C3D10", *cells]
     if placed:
-        instance = ["*INSTANCE, NAME=case-1, PART=case", "10., 20., 30.", "*END INSTANCE"]
-        blocks = ["*PART, NAME=case", *blocks, "*END PART", "*ASSEMBLY, NAME=all", *instance, "*END ASSEMBLY"]
-    (tmp_path / "case.inp").write_text("\n".join(["*HEADING", *blocks, ""]))
+        bodies = [line for k in range(parts) for line in (f"*PART, NAME=p{k}", *lines, "*END PART")]
+        instances = [
+            line
+            for k in range(parts)
+            for line in (f"*INSTANCE, NAME=i{k}, PART=p{k}", f"{10 + 500 * k}., 20., 30.", "*END INSTANCE")
+        ]
+        lines = [*bodies, "*ASSEMBLY, NAME=all", *instances, "*END ASSEMBLY"]
+    file = folder / "case.inp"
+    file.write_text("\n".join(["*HEADING", *lines, ""]))
+    return file
+
+
+@pytest.mark.parametrize("placed", [False, True])
+def test_all_nodes_of_an_abaqus_file_are_read(tmp_path, placed):
     expected = MESH.points + placed * np.array([0.01, 0.02, 0.03])
-    assert read_mesh(tmp_path / "case.inp", "mm").points == pytest.approx(expected, abs=1e-12)
+    assert read_mesh(abaqus_file(tmp_path, placed=placed), "mm").points == pytest.approx(expected, abs=1e-12)
 
 
-def folded() -> meshlane.Mesh:
+@pytest.mark.parametrize("parts", [1, 2])
+def test_meshio_misplaces_parts_of_abaqus_without_a_word(tmp_path, parts, capsys):
+    """The reason of the extra abaqus: when meshio reads these files, meshlane can go."""
+    file = abaqus_file(tmp_path, blocks=1, placed=True, parts=parts)
+    found, expected = meshio.abaqus.read(file), meshlane.abaqus.read(file)
+    assert capsys.readouterr() == ("", "")
+    assert found.points == pytest.approx(MILLIMETERS), "where their instance does not place them"
+    shifts = [np.array([10.0 + 500.0 * k, 20.0, 30.0]) for k in range(parts)]
+    assert expected.points == pytest.approx(np.vstack([MILLIMETERS + shift for shift in shifts]))
+    assert sum(len(block.data) for block in found.cells) == parts * len(MESH.tetrahedra)
+
+
+def test_a_mesh_of_abaqus_names_the_extra_that_reads_it(tmp_path, monkeypatch):
+    file = abaqus_file(tmp_path)
+    monkeypatch.setitem(sys.modules, "meshlane", None)
+    for read in (read_mesh, drawn_mesh):
+        with pytest.raises(InputError, match=r"extra abaqus.*pip install 'lineofaction\[abaqus\]'") as caught:
+            read(file, "mm")
+        assert (caught.value.field, caught.value.value) == ("mesh_file", "case.inp")
+
+
+def folded() -> meshio.Mesh:
     points = MILLIMETERS.copy()
     points[MESH.tetrahedra[0, 4]] = points[MESH.tetrahedra[0, 3]]
-    return meshlane.Mesh(points, [("tetra10", MESH.tetrahedra)])
+    return meshio.Mesh(points, [("tetra10", MESH.tetrahedra)])
 
 
-def sliver() -> meshlane.Mesh:
+def sliver() -> meshio.Mesh:
     flat = box((0.1, 0.1, 1e-5), (1, 1, 1))
-    return meshlane.Mesh(1000.0 * flat.points, [("tetra10", flat.tetrahedra)])
+    return meshio.Mesh(1000.0 * flat.points, [("tetra10", flat.tetrahedra)])
 
 
-def two_parts() -> meshlane.Mesh:
+def two_parts() -> meshio.Mesh:
     both = np.vstack([MILLIMETERS, MILLIMETERS + 500.0])
-    return meshlane.Mesh(
-        both, [("tetra10", np.vstack([MESH.tetrahedra, MESH.tetrahedra + len(MILLIMETERS)]))]
-    )
+    return meshio.Mesh(both, [("tetra10", np.vstack([MESH.tetrahedra, MESH.tetrahedra + len(MILLIMETERS)]))])
 
 
-def hexahedra() -> meshlane.Mesh:
-    return meshlane.Mesh(
-        100.0 * np.random.default_rng(0).random((8, 3)), [("hexahedron", np.arange(8)[None])]
-    )
+def hexahedra() -> meshio.Mesh:
+    return meshio.Mesh(100.0 * np.random.default_rng(0).random((8, 3)), [("hexahedron", np.arange(8)[None])])
 
 
 @pytest.mark.parametrize(
@@ -160,8 +226,8 @@ def hexahedra() -> meshlane.Mesh:
         (sliver, "mm", "mesh_file.shape"),
         (two_parts, "mm", "mesh_file.parts"),
         (hexahedra, "mm", "mesh_file.cells"),
-        (lambda: meshlane.Mesh(MILLIMETERS, [("tetra10", MESH.tetrahedra)]), "m", "mesh_file.size"),
-        (lambda: meshlane.Mesh(MILLIMETERS, [("tetra10", MESH.tetrahedra)]), "inch", "unit"),
+        (lambda: meshio.Mesh(MILLIMETERS, [("tetra10", MESH.tetrahedra)]), "m", "mesh_file.size"),
+        (lambda: meshio.Mesh(MILLIMETERS, [("tetra10", MESH.tetrahedra)]), "inch", "unit"),
     ],
 )
 def test_a_bad_mesh_is_refused_by_name(tmp_path, mesh, unit, field):
@@ -289,7 +355,7 @@ def test_a_reader_that_is_led_elsewhere_reaches_nothing(tmp_path, monkeypatch, c
     canary = tmp_path / "canary"
     canary.write_text("canary")
     libraries = tmp_path / "libraries"
-    for name in ("meshlane", "gmsh"):
+    for name in ("meshio", "gmsh"):
         (libraries / name).mkdir(parents=True)
         (libraries / name / "__init__.py").write_text(f"raise RuntimeError(open({str(canary)!r}).read())")
     monkeypatch.syspath_prepend(str(libraries))
@@ -372,7 +438,7 @@ def test_a_reader_finds_quadratic_triangles_with_their_fields(tmp_path):
     points, triangles = mesh.points[nodes], triangles.reshape(-1, 6)
     file = tmp_path / "mode.vtu"
     write_surface(file, points, triangles, {"motion": 2.0 * points, "size": points[:, 0]})
-    found = meshlane.read(file)
+    found = meshio.read(file)
     (cells,) = found.cells
     assert cells.type == "triangle6"
     np.testing.assert_array_equal(found.points, points)
@@ -462,7 +528,7 @@ def test_a_coarse_surface_lies_on_the_fine_one():
 def test_what_hangs_together_in_no_surface_is_refused(tmp_path):
     rng = np.random.default_rng(3)
     soup = np.array([rng.choice(40, 4, replace=False) for _ in range(400)])
-    meshlane.Mesh(rng.uniform(size=(40, 3)), [("tetra", soup)]).write(tmp_path / "soup.vtu")
+    meshio.Mesh(rng.uniform(size=(40, 3)), [("tetra", soup)]).write(tmp_path / "soup.vtu")
     with pytest.raises(InputError) as caught:
         drawn_mesh(tmp_path / "soup.vtu", "m", maximum=100)
     assert caught.value.field == "mesh_file.facets"

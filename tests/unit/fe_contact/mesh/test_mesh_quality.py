@@ -5,7 +5,7 @@ import sys
 from dataclasses import fields, replace
 from pathlib import Path
 
-import meshlane
+import meshio
 import numpy as np
 import pytest
 from repository import ROOT
@@ -146,7 +146,7 @@ def export(mesh: GearMesh, path: Path) -> None:
 def test_round_trip_but_of_no_other_suffix(tmp_path, gear_and_mesh):
     _, mesh = gear_and_mesh
     export(mesh, tmp_path / "gear.vtu")
-    back = meshlane.read(tmp_path / "gear.vtu")
+    back = meshio.read(tmp_path / "gear.vtu")
     assert np.array_equal(back.points[:, :2], mesh.points)
     assert np.array_equal(back.cells_dict["triangle6"], mesh.triangles)
     assert np.array_equal(back.point_data["height"], mesh.points[:, 1])
