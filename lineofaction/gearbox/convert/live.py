@@ -272,8 +272,9 @@ def _band(ripple: DrawnRipple, tolerance_class: int) -> Json:
 def _answer(bodies: CondensedPair, pair: ParallelAxes, change: LiveInput, stored: SteDatabase | None) -> Json:
     """Return the curves, each with the further answers that the question requests, and the cost.
 
-    The curves at loads and alignments of `stored` are those of that table, if it has errors: a report, the
-    terminal and this answer state one number with one error.
+    The curves at loads and alignments of `stored` are those of that table: a report, the terminal and this
+    answer state one number with one error. A table without errors has those of the answer here, and what it
+    is off from it.
     """
     torques = np.array(change.torque_n_m)
     alignment = change.misalignment_um * UM, change.center_distance_change_mm * MM
@@ -314,12 +315,11 @@ def _answer(bodies: CondensedPair, pair: ParallelAxes, change: LiveInput, stored
 def _stored_load(stored: SteDatabase | None, solved: SteDatabase, k: int) -> tuple[int, int, int] | None:
     """Return the node of the stored table at load k: indices of load, misalignment and center distance.
 
-    None is returned if the stored table has no node there, or no errors, as with a minimal receipt: those of
-    the answer are no errors of its curve.
+    None is returned if the stored table has no node there.
 
     Between loads and alignments the table interpolates, with a larger error than an answer that is solved.
     """
-    if stored is None or stored.n_failed or not np.isfinite(stored.curve_error).any():
+    if stored is None or stored.n_failed:
         return None
     load = int(np.argmin(np.abs(stored.force - solved.force[k])))
     tilts = np.flatnonzero(stored.misalignment == solved.misalignment[0])
@@ -351,6 +351,8 @@ def _stored_curve(stored: SteDatabase, node: tuple[int, int, int], solved: SteDa
         misalignment_um=alignment[0] / UM,
         center_distance_change_mm=alignment[1] / MM,
     )
+    if "mean_error_um" not in curve:
+        return curve | _errors_beside(curve, _curve(solved, k))
     errors = errors_by_source(stored, OperatingPoint(float(nearest), *alignment))
     return curve | {
         "bias": in_um(stored.metadata.receipt.get("bias")),
@@ -362,6 +364,26 @@ def _stored_curve(stored: SteDatabase, node: tuple[int, int, int], solved: SteDa
             if source not in BETWEEN_NODES and np.isfinite(of_source).all()
         },
     }
+
+
+def _errors_beside(curve: Json, solved: Json) -> Json:
+    """Return errors of a curve without any: those of one solved now, and what the curve is off from it."""
+    bounds: Json = {"bias": solved["bias"]}
+    for name, error in solved.items():
+        value = name.replace("error_um", "um") if name != "error_um" else "ste_um"
+        if not name.endswith("error_um") or curve.get(value) is None or solved.get(value) is None:
+            continue
+        bound = np.asarray(error) + np.abs(np.asarray(curve[value]) - np.asarray(solved[value]))
+        bounds[name] = bound.tolist()
+    further = {}
+    for name in BY_SOURCE:
+        key = name.removesuffix("_m")
+        if key == "first_harmonic":
+            own, whole = solved["harmonics_error_um"][0], bounds["harmonics_error_um"][0]
+        else:
+            own, whole = solved[f"{key}_error_um"], bounds[f"{key}_error_um"]
+        further[key] = float(np.sqrt(whole**2 - own**2))
+    return bounds | {"error_by_source_um": solved["error_by_source_um"] | {"positions": further}}
 
 
 def _curve(table: SteDatabase, k: int) -> Json:

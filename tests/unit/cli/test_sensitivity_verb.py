@@ -26,7 +26,12 @@ STUDY = "lineofaction.gearbox.studies.sensitivity.run"
 
 EXAMPLES = sorted((ROOT / "examples").glob("sensitivity_*.toml"))
 WIDER = ("--center-distance-change-percent", "0,0.1")  # the teeth do not jam
-MEANS = Means(Path(), lambda *_: None)
+
+
+def means(home: Path) -> Means:
+    return Means(home, lambda *_: None)
+
+
 SMALL = """
 [pair]
 normal_module_mm = 4.0
@@ -168,7 +173,7 @@ def test_several_cases_are_one_study_under_the_names_of_their_files(small, tmp_p
 
 
 @pytest.mark.parametrize("file", EXAMPLES, ids=lambda file: file.stem)
-def test_the_examples_run_at_every_deviation(file, monkeypatch):
+def test_the_examples_run_at_every_deviation(file, monkeypatch, tmp_path):
     """Both pairs of the paper's Table 2 exist from -0.2 to +0.2 % of the center distance."""
     assert [file.stem for file in EXAMPLES] == ["sensitivity_automotive", "sensitivity_wind_turbine"]
     studied = []
@@ -180,17 +185,17 @@ def test_the_examples_run_at_every_deviation(file, monkeypatch):
     monkeypatch.setattr(f"{STUDY}.study_sensitivity", study_nothing)
     case = read_model(Case, file)
     varied = Inputs(misalignment_um=(0.0, 60.0), center_distance_change_percent=(-0.2, 0.0, 0.2))
-    (found,) = RUN.compute(CheckedCase(case), varied, MEANS)
+    (found,) = RUN.compute(CheckedCase(case), varied, means(tmp_path))
     assert found.normal_force in (6000.0, 13300.0)
     assert studied[0].center_distance_change[0] == pytest.approx(-0.002 * found.center_distance)
 
 
-def test_the_highest_torque_is_the_load(small, monkeypatch):
+def test_the_highest_torque_is_the_load(small, monkeypatch, tmp_path):
     """20 teeth of module 4 mm: base radius 37.588 mm."""
     monkeypatch.setattr(f"{STUDY}.study_sensitivity", lambda *_, **__: ())
     small.write_text(SMALL.replace("normal_force_n = [500, 1000]", "torque_n_m = [10, 100]"))
     varied = Inputs(center_distance_change_percent=(0.0, 0.1))  # the teeth do not jam
-    (found,) = RUN.compute(CheckedCase(read_model(Case, small)), varied, MEANS)
+    (found,) = RUN.compute(CheckedCase(read_model(Case, small)), varied, means(tmp_path))
     assert found.normal_force == pytest.approx(100.0 / 37.5877e-3, rel=1e-5)
 
 

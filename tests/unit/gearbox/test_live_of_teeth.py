@@ -109,5 +109,9 @@ def test_an_answer_does_not_lend_its_error_to_a_table_without_errors(tmp_path):
     (answer,) = live_curves(condensed_of(file, tmp_path), LiveInput(torque_n_m=(1.0,)))["curves"]
     fine = analyze(gear_pair(case), positions=256, receipt="minimal", **options)
     truth, stored = (1e6 * table.curve(torque=1.0).peak_to_peak.value for table in (fine, coarse))
-    assert abs(stored - truth) > 5.0 * answer["peak_to_peak_error_um"]
-    assert abs(answer["peak_to_peak_um"] - truth) < answer["peak_to_peak_error_um"]
+    off = abs(stored - truth)
+    assert answer["peak_to_peak_um"] == pytest.approx(stored, rel=1e-12), "a report states it too"
+    assert 0.02 * truth < off < answer["peak_to_peak_error_um"] < 2.0 * off
+    by_source = [errors["peak_to_peak"] for errors in answer["error_by_source_um"].values()]
+    assert answer["peak_to_peak_error_um"] == pytest.approx(np.linalg.norm(by_source), rel=1e-9)
+    assert len(answer["error_um"]) == len(answer["ste_um"])
