@@ -106,7 +106,7 @@ class Studies:
         "examples/palermo_spur_20_20.toml --torque 100 -o flank.nc",
         group="pair",
         kind="flanks",
-        stages=(("compliance", 0.9), ("contact", 0.1)),
+        stages=(("compliance", 0.6), ("contact", 0.1), ("errors", 0.3)),
         version="3",
     )
     ablate = StudyOf(

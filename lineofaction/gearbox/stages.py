@@ -87,7 +87,7 @@ class PacedFraction:
         past_s = self._begun_s - self._first_s  # time of the stages before
         stage_s = self._last_s - self._begun_s  # time of the current stage so far
         if past_s <= 0.0:  # the first stage: the shares alone
-            loaded = self._loading if fraction > 0.0 else 0.0
+            loaded = self._loading * min(fraction / _PACE_KNOWN, 1.0)
             return (loaded + share * fraction) / (self._loading + share + ahead)
         before += self._loading
         usual_s = past_s * share / before

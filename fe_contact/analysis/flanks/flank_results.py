@@ -72,8 +72,10 @@ def flank_results(
     )
     laws = check_flank_laws(results, solved.problem)
     require_laws(laws, results, "load distribution")
+    run.progress("errors", 0.0)
     with clock.stage("error estimate"):
         results = with_errors(results, solved, run.cache)
+    run.progress("errors", 1.0)
     receipt = receipt | clock.to_json() | {"laws": [law.to_json() for law in laws]}
     results = replace(results, metadata=Metadata(receipt=receipt))
     warn_of(unexpected(request.findings, _findings(results)))

@@ -47,7 +47,7 @@ class _FlankStudy(PointStudy[FlankFigures, LoadDistribution]):
             predicted = predicted_designs(case.at_point, cache)
         contact = (
             Work("contact", predicted.design, stage="contact"),
-            Work("its errors", predicted.errors, stage="contact"),
+            Work("its errors", predicted.errors, stage="errors"),
         )
         return StudyCost((Work("gears", predicted.bodies, stage="compliance"), *contact), predicted.bytes)
 

@@ -69,7 +69,7 @@ class _RootStressStudy(PointStudy[RootStressFigures, Roots]):
         gears = Work("gears", prediction.stages["compliance"] + rougher["bodies"], stage="compliance")
         contact = (
             Work("contact", prediction.parts["contact"]["table"], stage="contact"),
-            Work("its errors", rougher["solutions"], stage="contact"),
+            Work("its errors", rougher["solutions"], stage="root stress"),
         )
         return StudyCost((gears, *contact, stresses), prediction.memory_bytes)
 
