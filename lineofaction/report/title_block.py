@@ -48,7 +48,7 @@ def titled(page: Page, about: ReportInput | None) -> Page:
     rows = {name: text for name, text in fields.items() if text}
     rows["made with"] = f"lineofaction {version('lineofaction')}"
     if page.records:
-        rows["hash"] = hash_of(page.records)
+        rows["hash of the report"] = hash_of(page.records)
     parsed = (Requirement.of(line) for line in about.requirements)
     requirements = [requirement for requirement in parsed if requirement is not None]
     verdicts, alarms = [], []

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from pathlib import Path
@@ -143,13 +143,20 @@ def frontier(
     study = Frontier(
         results, omitted, knee_above(results), chosen_fidelity(checked), solves, known_full_contact=known
     )
-    tables = {outcome.fidelity.name: outcome.result for outcome in outcomes}
     if full_contact is None:
         return study
     record = record_of(checked, full_contact_records() if records is None else records)
+    tables = {outcome.fidelity.name: outcome.result for outcome in outcomes}
+    return _beside_full_contact(study, record, full_contact, tables)
+
+
+def _beside_full_contact(
+    study: Frontier, record: FullContactRecord | None, positions: int, tables: Mapping[str, SteDatabase]
+) -> Frontier:
+    """Return a study with its finest table beside recorded full contact, or the reason why there is none."""
     if record is None:
         return replace(study, omitted=study.omitted | {NAME: NO_RECORD})
-    at_positions, plane_strain = record.at_positions(full_contact), tables.get("plane_strain")
+    at_positions, plane_strain = record.at_positions(positions), tables.get("plane_strain")
     compared = compare_full_contact(at_positions, tables[study.reference.name], plane_strain)
     return replace(study, full_contact=compared)
 

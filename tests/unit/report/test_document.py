@@ -85,10 +85,10 @@ def test_a_verdict_is_one_sentence_with_value_error_and_limit():
 def test_every_document_names_date_program_hash_author_and_main_result():
     page = titled(replace(PAGE, records={"ste.nc": {"content_hash": "3f2a"}}), None)
     rows = dict(page.block.rows)
-    assert set(rows) == {"date", "made with", "hash"}
+    assert set(rows) == {"date", "made with", "hash of the report"}
     assert page.block.verdicts == ("Mean STE at 120 N m is 16.65 ± 0.088 µm; no requirement is stated.",)
     other = titled(replace(PAGE, records={"ste.nc": {"content_hash": "3f2b"}}), None).block
-    assert other is not None and dict(other.rows)["hash"] != rows["hash"]
+    assert other is not None and dict(other.rows)["hash of the report"] != rows["hash of the report"]
 
 
 def test_a_requirement_of_nothing_shown_is_an_alarm():

@@ -114,9 +114,8 @@ def sound_optimum(
     with clock.stage("search"):
         start = dict(zip(setup.problem.names, request.start_design, strict=True))
         sample = setup.sample
-        problem = _scaled_problem(
-            setup.problem if question.quantile is None or sample is None else sample, start
-        )
+        searched = setup.problem if question.quantile is None else sample or setup.problem
+        problem = _scaled_problem(searched, start)
         expected = _expected_seconds(problem, start, request.search)
         cancel = means.cancel or never
         announce(means.report, "search", expected)
@@ -125,8 +124,8 @@ def sound_optimum(
     best = min(range(len(runs)), key=lambda i: runs[i].assessed.order)
     designs = start, problem.values(runs[best].coordinates)
     with clock.stage("confirmation"):
-        searched = replace(setup, problem=problem)
-        before, after = (_confirmed_design(searched, values, run.cache) for values in designs)
+        scaled = replace(setup, problem=problem)
+        before, after = (_confirmed_design(scaled, values, run.cache) for values in designs)
     with clock.stage("pairs"):
         rough = None if sample is None or cancel() else sample.at(request.search.exploration)
         pairs = [np.zeros(0) if rough is None else rough.levels(values, means.workers) for values in designs]
