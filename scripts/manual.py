@@ -6,9 +6,10 @@ Lists every line that a page shows and no command printed, beside the line of th
 takes pictures into docs/images/manual. With --renew lines get the numbers of today.
 
 Blocks of a page are run in order. `toml` whose first line is ``# NAME.toml`` is saved under that name, `sh`
-has one `loa` command a line (a backslash continues it), `python` is executed. Every line of `text` is the
-beginning of a line that the command before it printed: same words, numbers within 2 %. Pages share a folder,
-so that a guide can go on with the files of a tutorial: those that made its files are run before it.
+has one `loa` command a line (a backslash continues it), `python` is executed and sees the names of the blocks
+before it. Every line of `text` is the beginning of a line that the command before it printed: same words,
+numbers within 2 %. Pages share a folder, so that a guide can go on with the files of a tutorial: those that
+made its files are run before it.
 """
 
 from __future__ import annotations
@@ -76,6 +77,7 @@ def run_page(page: Path) -> Iterator[Stale]:
         A command failed, or a file has no name.
     """
     output = ""
+    names: dict[str, object] = {}
     for block in _BLOCK.finditer(page.read_text("utf-8")):
         language, text = block.groups()
         if language == "toml":
@@ -85,7 +87,7 @@ def run_page(page: Path) -> Iterator[Stale]:
         elif language == "sh":
             output = "".join(_command(line) for line in text.replace("\\\n", "").splitlines())
         elif language == "python":
-            output = _python(text, page)
+            output = _python(text, page, names)
         else:
             yield from stale_lines(text, output, block.start(2))
 
@@ -141,11 +143,11 @@ def _command(line: str) -> str:
     return done.output
 
 
-def _python(text: str, page: Path) -> str:
-    """Execute a block of Python and return its output."""
+def _python(text: str, page: Path, names: dict[str, object]) -> str:
+    """Execute a block of Python on the names that blocks before it left; return its output."""
     printed = io.StringIO()
     with contextlib.redirect_stdout(printed):
-        exec(compile(text, str(page), "exec"), {})
+        exec(compile(text, str(page), "exec"), names)
     return printed.getvalue()
 
 

@@ -62,16 +62,19 @@ def test_monopoles_take_more_at_high_frequency():
 
 
 def test_boundary_elements_take_the_predicted_multiple_of_fewer_panels():
-    """Each within 1.3, their ratio within its square; the lesser of two counts."""
+    """Each within 1.3, their ratio within its square; the least of counts that a busy machine only lengthens."""
     pytest.importorskip("ngsolve", reason="boundary elements need the extra boundary-elements")
-    model, hulls, minimum = BoundaryElements(), (sphere(3), sphere(5)), [np.inf, np.inf]
-    for _ in range(2):
+    model, hulls, least = BoundaryElements(), (sphere(3), sphere(5)), [np.inf, np.inf]
+    small, large = (model.cost(len(hull.areas), 1.0, 1).seconds for hull in hulls)
+    for _ in range(10):
         for index, hull in enumerate(hulls):
             began = time.process_time()
             model.resistance(hull, 30.0, np.ones((len(hull.areas), 1)), AIR)
-            minimum[index] = min(minimum[index], time.process_time() - began)
-    small, large = (model.cost(len(hull.areas), 1.0, 1).seconds for hull in hulls)
-    assert 1.0 / 1.3**2 < (large / small) / (minimum[1] / minimum[0]) < 1.3**2
+            least[index] = min(least[index], time.process_time() - began)
+        predicted_over_paid = (large / small) / (least[1] / least[0])
+        if 1.0 / 1.3**2 < predicted_over_paid < 1.3**2:
+            return
+    pytest.fail(f"predicted over paid: {predicted_over_paid:.2f}")
 
 
 def test_the_whole_of_7040_panels_is_what_was_measured():
