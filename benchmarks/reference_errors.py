@@ -1,6 +1,7 @@
 """STE of the 20/20 pair against resolved full finite-element contact, in plane strain.
 
-The gears of the reference have five teeth, which makes them 0.13 % softer than whole gears: ours have five here.
+The gears of the reference have five teeth, which makes them 0.13 % softer than whole gears: ours have five
+here.
 """
 
 from __future__ import annotations
@@ -59,7 +60,7 @@ def _errors(pair: GearPair, torque: float) -> tuple[float, float, float, float]:
 
 
 def _solved(pair: GearPair, torque: float, position: FloatArray) -> FloatArray:
-    """Return STE (m) at positions (base pitches), on bodies of the reference by the mesh of a default table."""
+    """Return STE (m) at positions (base pitches), on bodies of the reference in a usual mesh."""
     asked = check_request(pair, TableAxes(torques=[max(TORQUES)]), AnalysisOptions(model="plane_strain"))
     plan = make_plan(pair, asked.request.load, asked.request.options, asked.model)
     first, second = (replace(recipe, real_teeth=REAL_TEETH) for recipe in plan.discretization.recipes)
@@ -72,8 +73,8 @@ def _solved(pair: GearPair, torque: float, position: FloatArray) -> FloatArray:
 def _reference(torque: float) -> tuple[FloatArray, FloatArray, BoolArray]:
     """Positions by the driving gear, STE in m, and where a pair may carry load beyond the path of contact.
 
-    Rows made by an exchange of the gears have the torque on the driven gear: they count on the line of action,
-    where both are equal.
+    Rows made by an exchange of the gears have the torque on the driven gear: they count on the line of
+    action, where both are equal.
     """
     with REFERENCE.open(encoding="utf-8", newline="") as file:
         rows = [row for row in csv.DictReader(file) if float(row["torque_n_m"]) == torque]

@@ -11,6 +11,7 @@ from typing import Any
 import httpx2
 import pytest
 from own_process import children, command, python
+from repository import ROOT
 from running_service import PATIENCE_S, lives, until
 from structlog.testing import capture_logs
 
@@ -22,7 +23,7 @@ from service.live.live_worker import AnswerTimes, LiveWorker
 from service.live.order import LiveOrder
 from service.live.question_pool import QuestionPool
 from service.live.turns import Asker, Limits
-from service.version import modules_digest
+from service.version import modules_digest, program_tag
 
 WORK = "live_fake_work"
 GEAR = {"teeth": 20, "face_width_mm": 4.0, "bore_diameter_mm": 10.0}
@@ -295,6 +296,10 @@ def test_a_folder_that_cannot_be_written_keeps_nothing(tmp_path):
     kept = KeptAnswers(tmp_path / "file")
     kept.keep("a tag", b"{}")
     assert kept.find("a tag") is None
+
+
+def test_the_name_of_the_program_is_by_the_modules_of_its_tree_alone():
+    assert program_tag().endswith(f"-{modules_digest(ROOT)}")
 
 
 @pytest.mark.parametrize("package", ["service", "lineofaction", "host", "dynamics"])

@@ -174,14 +174,23 @@ class HeardProblem(SearchProblem):
     sound: HeardObjective = field(kw_only=True)
     quantile: float | None = field(default=None, kw_only=True)
 
+    @property
+    def is_nominal(self) -> bool:
+        """Whether the flanks have no scatter."""
+        return self.quantile is None and self.evaluator.nodes.weight.size == 1
+
+    @property
+    def nominal(self) -> Self:
+        """The problem without scatter."""
+        return replace(self, evaluator=replace(self.evaluator, nodes=ONE_NODE), quantile=None)
+
     def at(self, positions: int) -> Self:
-        """Return the problem at fewer positions."""
-        return super().rough(positions)
+        """Return the problem at a number of positions, equally spaced in a base pitch."""
+        return replace(self, evaluator=self.evaluator.at(np.arange(positions) / positions))
 
     def rough(self, positions: int) -> Self:
-        """Return the problem without scatter, at fewer positions."""
-        problem = self.at(positions)
-        return replace(problem, evaluator=replace(problem.evaluator, nodes=ONE_NODE))
+        """Return the problem without scatter, at no more than a number of positions."""
+        return self.at(min(positions, self.evaluator.position.size)).nominal
 
     def linearize(self, point: FloatArray, workers: Workers) -> tuple[Assessed, HeardMerit]:
         """Evaluate the design at a point (d,) with the derivatives of the excitation."""

@@ -124,11 +124,17 @@ def sound_optimum(
     best = min(range(len(runs)), key=lambda i: runs[i].assessed.order)
     designs = start, problem.values(runs[best].coordinates)
     with clock.stage("confirmation"):
+        tables = [_tables(setup, values) for values in designs]
+        positions = max(problem.evaluator.position.size, tables[0][0].position.size)
         scaled = replace(setup, problem=problem)
-        before, after = (_confirmed_design(scaled, values, run.cache) for values in designs)
+        before, after = (
+            _confirmed_design(scaled, *design, positions, run.cache)
+            for design in zip(designs, tables, strict=True)
+        )
     with clock.stage("pairs"):
-        rough = None if sample is None or cancel() else sample.at(request.search.exploration)
-        pairs = [np.zeros(0) if rough is None else rough.levels(values, means.workers) for values in designs]
+        told = request.search.exploration if question.quantile is None else positions
+        made = None if sample is None or cancel() else sample.at(told)
+        pairs = [np.zeros(0) if made is None else made.levels(values, means.workers) for values in designs]
     run.progress("confirmation", 1.0)
     spent = {"evaluations": sum(part.evaluations for part in runs), "search_expected_cpu_seconds": expected}
     quantity = quantity_of(subject, question)
@@ -209,7 +215,9 @@ def sound_cost(
     fewer_positions = min(search.exploration / search.positions, 1.0)
     rough = share * predicted.design * fewer_positions + levels.per_table
     full = share * predicted.design + levels.per_table
+    confirmed = share * predicted.design * predicted.positions / search.positions + levels.per_table
     nodes = request.scatter.nodes().weight.size if question.quantile is None else pairs.samples
+    told = rough if question.quantile is None else confirmed
     coarse_designs, full_designs = usual_sound_designs(search)
     parts = [
         Work("gears", predicted.bodies, stage="compliance"),
@@ -217,7 +225,8 @@ def sound_cost(
         Work("designs", rough, coarse_designs, "search"),
         Work("designs", full, full_designs * nodes, "search"),
         Work("analyses", share * (predicted.design + predicted.errors), 2, "confirmation"),
-        Work("pairs", rough, 2 * pairs.samples, "confirmation"),
+        Work("scatter", confirmed, 0 if nodes == 1 else 2 * nodes, "confirmation"),
+        Work("pairs", told, 2 * pairs.samples, "confirmation"),
     ]
     cost = StudyCost(tuple(parts), predicted.bytes)
     scene_misalignment = levels.scene.meshes[mesh_index(levels.scene, mesh.name)].misalignment
@@ -334,28 +343,47 @@ def _evaluator(
     return replace(study.evaluator, load=load, misalignment=alignment)
 
 
-def _confirmed_design(setup: SoundSearch, values: dict[str, float], cache: Path | None) -> HeardDesign:
+def _tables(setup: SoundSearch, values: dict[str, float]) -> list[SteDatabase]:
+    """Return the table of a design under each load case."""
+    pair = modified(setup.bodies.checked.request.pair, values)
+    return [setup.bodies.table(pair, *point) for point in _points(setup)]
+
+
+def _points(setup: SoundSearch) -> list[tuple[FloatArray, float]]:
+    """Return the torques (N m, rising) and the misalignment (m) of each load case."""
+    return list(zip(np.outer(setup.torque, LOAD_FACTORS), setup.misalignment.tolist(), strict=True))
+
+
+def _confirmed_design(
+    setup: SoundSearch,
+    values: dict[str, float],
+    tables: list[SteDatabase],
+    positions: int,
+    cache: Path | None,
+) -> HeardDesign:
     """Return a design with errors: changes by rougher contacts, which have fewer slices or coarser meshes.
 
-    Its level is that of tables at all their positions, with scatter that of the positions of the search.
+    Its level is that of its tables. With scatter it is solved at a number of `positions`, and its error has
+    what the nominal flanks are off their tables there.
     """
     problem = setup.problem
     pair = modified(setup.bodies.checked.request.pair, values)
-    points = list(zip(np.outer(setup.torque, LOAD_FACTORS), setup.misalignment, strict=True))
-    tables = [setup.bodies.table(pair, *point) for point in points]
-    rougher = zip(*(_rougher(setup.bodies, pair, *point) for point in points), strict=True)
+    rougher = zip(*(_rougher(setup.bodies, pair, *point) for point in _points(setup)), strict=True)
     contacts = [_levels(problem, contact) for contact in (tables, *rougher)]
     levels = np.stack([contact.level for contact in contacts])
     objectives = np.array([contact.objective for contact in contacts])
-    objective, violation = problem.evaluated(values)
-    if problem.quantile is None and problem.evaluator.nodes.weight.size == 1:
-        objective = float(objectives[0])
+    violation = problem.evaluated(values)[1]
+    objective, changes = float(objectives[0]), objectives[1:] - objectives[0]
+    if not problem.is_nominal:
+        fine = problem.at(positions)
+        objective = fine.evaluated(values)[0]
+        changes = np.append(changes, fine.nominal.evaluated(values)[0] - objectives[0])
     figures = confirmed_figures(problem.evaluator, values, cache)
     nominal_loads = slice(1, None, LOAD_FACTORS.size)  # the load case itself, the second of its loads
     ripple = [table.peak_to_peak(force=float(table.force[1])) for table in tables]
     return HeardDesign(
         values=dict(values),
-        objective=Estimate(objective, float(np.linalg.norm(objectives[1:] - objectives[0])), "dB"),
+        objective=Estimate(objective, float(np.linalg.norm(changes)), "dB"),
         level=levels[0],
         level_error=np.linalg.norm(levels[1:] - levels[0], axis=0),
         peak_to_peak=np.array([estimate.value for estimate in ripple]),
