@@ -62,7 +62,7 @@ def test_monopoles_take_more_at_high_frequency():
 
 
 def test_boundary_elements_take_the_predicted_multiple_of_fewer_panels():
-    """Each within 1.3, their ratio within its square; the least of counts that a busy machine only lengthens."""
+    """Each within 1.3, their ratio within its square; the least of up to ten counts each."""
     pytest.importorskip("ngsolve", reason="boundary elements need the extra boundary-elements")
     model, hulls, least = BoundaryElements(), (sphere(3), sphere(5)), [np.inf, np.inf]
     small, large = (model.cost(len(hull.areas), 1.0, 1).seconds for hull in hulls)
