@@ -290,6 +290,7 @@ def sampled(request: ToleranceRequest, run: Run) -> ToleranceStudy:
             nominal, names, np.zeros((1, len(names))), design.evaluation.ste, design.curves
         )
         at_once = about_design.peak_to_peak(deviation)
+    run.progress("first order", 1.0)
     with clock.stage("samples"):
         ste, tangents = _solved(study.evaluator, names, deviation[: sampling.solved], sampling, run)
         model = about_design.with_further(tangents)

@@ -87,11 +87,13 @@ class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
         # measured pairs are compared to pairs of the class
         solved = (sampling.solved + _TANGENT * sampling.tangents) * (2 if inputs.population else 1)
         work, loads = predicted.work, len(request.torques)
+        pair = work.of_flanks(sampling.positions, loads)
         points = sampling.positions * loads * sampling.tangents * len(request.tolerances.widths)
         parts = [
             Work("gears", predicted.bodies, stage="compliance"),
-            Work("compliance", work.of(sampling.positions, 0), stage="samples"),  # all pairs share it
-            Work("pairs", work.of_flanks(sampling.positions, loads), solved, "samples"),
+            Work("compliance", work.of(sampling.positions, 0), stage="first order"),  # all pairs share it
+            Work("tangent", pair, 1.0 + _TANGENT, "first order"),
+            Work("pairs", pair, solved, "samples"),
             Work("samples", _ADDED * points, sampling.samples, "confirmation"),
             Work("table", predicted.table, stage="confirmation"),
         ]
