@@ -42,12 +42,12 @@ RUN set -eu; packages=$(python -c "import sysconfig; print(sysconfig.get_path('p
     strip --strip-unneeded "$packages"/llvmlite/binding/libllvmlite.so
 
 # ---- run: no compiler, no package manager of Python, no root -------------------------------------------------------
-# gmsh is linked against OpenGL but draws nothing here: Mesa's drivers (200 MB) go again.
+# gmsh is linked against OpenGL but draws nothing here: Mesa's drivers (200 MB) go again. NGSolve needs libquadmath.
 FROM ${BASE} AS run
 ARG VERSION
 RUN apt-get update \
     && apt-get install -y --no-install-recommends \
-        tini libglu1-mesa libgl1 libxcursor1 libxft2 libxinerama1 libgomp1 \
+        tini libglu1-mesa libgl1 libxcursor1 libxft2 libxinerama1 libgomp1 libquadmath0 \
     && dpkg --purge --force-depends \
         $(dpkg-query -W -f '${Package}\n' 'libllvm*' 'libz3*' 'mesa-libgallium' 'libgl1-mesa-dri' 2>/dev/null) \
     && apt-get clean && rm -rf /var/lib/apt/lists/* \

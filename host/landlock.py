@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import os
 import stat
+import struct
 import sys
 from collections.abc import Iterable
 from pathlib import Path
@@ -24,13 +25,8 @@ _RIGHTS = {1: (1 << 13) - 1, 2: 1 << 13, 3: 1 << 14, 5: 1 << 15}
 _BIND_AND_CONNECT = 0b11
 _NETWORK_SINCE, _SCOPES_SINCE = 4, 6  # versions
 _ABSTRACT_SOCKETS_AND_SIGNALS = 0b11
-
-
-class _Beneath(ctypes.Structure):
-    """Rights beneath an open file or folder."""
-
-    _pack_ = 1
-    _fields_ = (("rights", ctypes.c_uint64), ("descriptor", ctypes.c_int32))
+_BENEATH = "=Qi"
+"""Rule of rights beneath an open file or folder, packed: the rights, the descriptor."""
 
 
 def landlock_version() -> int:
@@ -75,8 +71,7 @@ def _allow(ruleset: int, path: Path, rights: int) -> None:
         return
     try:
         of_kind = rights if stat.S_ISDIR(os.fstat(descriptor).st_mode) else rights & _OF_FILES
-        beneath = _Beneath(of_kind, descriptor)
-        checked(_call(_ADD, ruleset, _PATH_BENEATH, ctypes.byref(beneath), 0))
+        checked(_call(_ADD, ruleset, _PATH_BENEATH, struct.pack(_BENEATH, of_kind, descriptor), 0))
     finally:
         os.close(descriptor)
 

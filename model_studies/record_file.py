@@ -143,8 +143,12 @@ def _rebuilt(kind: Any, plain: Any, variable: _FieldVariable, next_entry: Any) -
 
 
 def _is_number(kind: Any) -> bool:
-    """Whether values of a type are in a variable: floats and arrays."""
-    return kind is float or get_origin(kind) is np.ndarray
+    """Whether values of a type are in a variable: floats and arrays.
+
+    `numpy.typing.NDArray` is an array's type itself, or from numpy 2.5 on an alias with its own parameters.
+    """
+    origin = get_origin(kind)
+    return kind is float or np.ndarray in (origin, get_origin(getattr(origin, "__value__", None)))
 
 
 def _present(kind: Any) -> Any:

@@ -23,6 +23,9 @@ under their own licenses.
 _LINE = re.compile(r"(?P<name>[A-Za-z0-9._-]+)==(?P<version>[^ ;]+)")
 _STATED_ELSEWHERE = {  # in files of the packages, not in metadata that are at hand
     "colorama": "BSD-3-Clause",  # on Windows alone
+    "importlib-metadata": "Apache-2.0",  # this and the next two with Python 3.11 alone
+    "lazy-importer": "Apache-2.0",
+    "zipp": "MIT",
     "axe-playwright-python": "MIT (axe-core in it: MPL-2.0)",
     "fmpy": "BSD-2-Clause",
     "matplotlib": "PSF-based (matplotlib)",

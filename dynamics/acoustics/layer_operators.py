@@ -15,7 +15,7 @@ import numpy as np
 from dynamics.acoustics.hull import Hull
 from dynamics.types import ComplexArray
 from dynamics.work_cost import Cost
-from host import MissingExtra
+from host import MissingExtra, Unavailable
 from model_studies.progress import Report, unreported
 from model_studies.workers import InProcess, Workers, divided
 
@@ -75,6 +75,9 @@ def _layer_rows(shared: tuple[Hull, float], block: tuple[int, int]) -> tuple[Com
         from ngsolve.bem import HelmholtzDL, HelmholtzSL  # noqa: PLC0415
     except ModuleNotFoundError:
         raise MissingExtra("ngsolve", "boundary-elements") from None
+    except ImportError as error:
+        remedy = f"Debian: apt-get install libquadmath0 ({error})."
+        raise Unavailable("the libraries under NGSolve", remedy) from None
     (hull, wavenumber), ds = shared, ngsolve.ds
     mesh = _mesh(hull, block)
     hats = ngsolve.H1(mesh, order=1, complex=True, definedon=mesh.Boundaries(".*")).TrialFunction()

@@ -310,9 +310,9 @@ def bearing_forces(at: Excited, omega: FloatArray, u: ComplexArray) -> ComplexAr
         q = u[part].reshape(omega[part].size, u.shape[2])
         rate = 1j * omega[part].reshape(-1, 1) * q
         local = (q @ rows) @ tangent + (rate @ rows) @ viscous
-        real = system.bearing_force(np.ascontiguousarray(local.real.T), q.real, rate.real) - static
-        imaginary = system.bearing_force(np.ascontiguousarray(local.imag.T), q.imag, rate.imag) - static
-        force[:, :, part] = (real + 1j * imaginary).reshape(force[:, :, part].shape)
+        for whole, side in ((force.real, np.real), (force.imag, np.imag)):
+            moved = system.bearing_force(np.ascontiguousarray(side(local).T), side(q), side(rate)) - static
+            whole[:, :, part] = moved.reshape(whole[:, :, part].shape)
     return force
 
 

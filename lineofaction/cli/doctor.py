@@ -28,10 +28,11 @@ OF_SERVICE = ("serve", "keys", "database", "store")
 HAS, LACKS, LIMITED = "has", "lacks", "limited"
 _LIBRARIES = "Debian: apt-get install libglu1-mesa libgl1 libxcursor1 libxft2 libxinerama1 libgomp1"
 """Remedy for libraries of the system that gmsh needs (scripts/environment)."""
+_UNDER_NGSOLVE = "Sound of exact lines needs it. Debian: apt-get install libquadmath0"
 _LITTLE = 1 << 30
 """Free bytes of the disk of the caches below which a study may fill it."""
 _SECONDS = 120.0
-"""Limit of the import of gmsh in a process of its own."""
+"""Limit of the import of a package in a process of its own."""
 
 
 class Finding(NamedTuple):
@@ -134,15 +135,17 @@ def _fault(requirement: Requirement) -> str:
 
 
 def _programs() -> Iterator[Finding]:
-    """Yield what is no package of Python: the libraries under gmsh, the browser that prints PDF."""
-    if find_spec("gmsh") is not None:
-        command = [sys.executable, "-P", "-c", "import gmsh"]
+    """Yield what is no package of Python: libraries under gmsh and NGSolve, the browser that prints PDF."""
+    for module, state, remedy in (("gmsh", LACKS, _LIBRARIES), ("ngsolve", LIMITED, _UNDER_NGSOLVE)):
+        if find_spec(module) is None:
+            continue
+        command = [sys.executable, "-P", "-c", f"import {module}"]
         done = subprocess.run(command, capture_output=True, text=True, timeout=_SECONDS, check=False)
         if done.returncode:
             last = done.stderr.strip().rpartition("\n")[2]
-            yield Finding("gmsh", LACKS, f"it does not load ({last}). {_LIBRARIES}")
+            yield Finding(module, state, f"it does not load ({last}). {remedy}")
         else:
-            yield Finding("gmsh", HAS, "it loads")
+            yield Finding(module, HAS, "it loads")
     path = browser()
     remedy = "reports as PDF need Chromium or Chrome; the variable CHROMIUM may name it"
     yield Finding("browser", HAS if path else LIMITED, path or remedy)

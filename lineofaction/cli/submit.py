@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import re
 import shutil
@@ -28,6 +27,7 @@ from lineofaction.gearbox.registry import studies_of
 from lineofaction.gearbox.result_files import stamped
 from lineofaction.gearbox.schemas import Case, read_table, validated
 from lineofaction.gearbox.schemas.toml import toml_text
+from lineofaction.gearbox.shallow_json import shallow_json
 from lineofaction.gearbox.subjects import scene_inputs
 
 if TYPE_CHECKING:
@@ -118,8 +118,8 @@ def _further(process: str | None, text: str | None) -> dict[str, Any]:
     if process is None:
         raise BadInput.of("--inputs", text, "given with --process", example)
     try:
-        inputs = json.loads(text)
-    except json.JSONDecodeError:
+        inputs = shallow_json(text)
+    except (ValueError, RecursionError):
         inputs = None
     if not isinstance(inputs, dict) or "case" in inputs or "scene" in inputs:
         raise BadInput.of("--inputs", text, "a JSON object without case and scene", example)

@@ -7,7 +7,6 @@ from mails and chats: nothing in it is trusted, and requests go to the service o
 from __future__ import annotations
 
 import base64
-import json
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -19,6 +18,7 @@ from lineofaction.client.surface import Surface, operation
 from lineofaction.gearbox import schemas
 from lineofaction.gearbox.problems import BadInput, NotFound
 from lineofaction.gearbox.registry import RESULTS, studies_of
+from lineofaction.gearbox.shallow_json import shallow_json
 from service.origin import Origin
 
 LONGEST_WORD = 1_500_000
@@ -123,7 +123,7 @@ def _unpacked(word: str) -> schemas.Case:
     """Return a packed case; raises `BadInput`: it is no base64url of JSON, or no case."""
     try:
         content = base64.b64decode(word + "=" * (-len(word) % 4), altchars=b"-_", validate=True)
-        table = json.loads(content.decode(), parse_constant=_no_number, object_pairs_hook=_table)
+        table = shallow_json(content.decode(), parse_constant=_no_number, object_pairs_hook=_table)
     except (ValueError, RecursionError):  # of base64, UTF-8, JSON, or a number with too many digits
         table = None
     if not isinstance(table, dict):

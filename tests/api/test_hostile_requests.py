@@ -131,6 +131,9 @@ def test_a_gear_without_width_is_refused(http, process, field):
         b'{"inputs":' + b"[" * 3_900_000,
         b"[" * 100_000 + b"]" * 100_000,
         b"[" * 40_000 + b"]" * 40_000,
+        b'{"inputs":{"case":' + b"[" * 20_000 + b"]" * 20_000 + b"}}",
+        b'{"inputs":{"case":' + b'{"pair":' * 20_000 + b"1" + b"}" * 20_000 + b"}}",
+        b'{"inputs":' * 400 + b"1" + b"}" * 400,
         b"9" * 1_000_000,
     ],
 )

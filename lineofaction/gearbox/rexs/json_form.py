@@ -16,6 +16,7 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.model import Attribute, Extra, LoadSpectrum, Model, Scalar, Value
 from lineofaction.gearbox.rexs.tree import MAX_ENTRIES, Element, Written, written
 from lineofaction.gearbox.rexs.values import KINDS, coded, decoded, entry_kind, integer_of, rows_of
+from lineofaction.gearbox.shallow_json import shallow_json
 
 _TYPES: dict[str, tuple[type, ...]] = {
     "floating_point": (float, int),
@@ -154,7 +155,7 @@ def _json(data: bytes) -> Any:
     if sum(data.count(mark) for mark in (b",", b"[", b"{")) > MAX_ENTRIES:
         raise BadInput.of("file", f"more than {MAX_ENTRIES} values", "smaller", "Code arrays in base64.")
     try:
-        return json.loads(
+        return shallow_json(
             data.decode("utf-8-sig"),
             parse_constant=_no_number,
             parse_int=lambda text: integer_of(text, "file"),

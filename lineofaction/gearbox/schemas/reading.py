@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -15,6 +14,7 @@ from lineofaction.gearbox.schemas.faults import faults_of
 from lineofaction.gearbox.schemas.files import READERS, written_out
 from lineofaction.gearbox.schemas.named_files import in_folder, read_text
 from lineofaction.gearbox.schemas.toml import toml_table
+from lineofaction.gearbox.shallow_json import shallow_json
 
 M = TypeVar("M", bound=BaseModel)
 _SIGNS = {
@@ -51,7 +51,7 @@ def read_table(source: Path | InputFile) -> dict[str, Any]:
 
 def _json(text: str, field: str) -> Any:
     try:
-        return json.loads(text)
+        return shallow_json(text)
     except ValueError as error:  # of JSON, or of a number with too many digits
         raise BadInput.of(field, None, "well-formed JSON", f"{error}.") from None
     except RecursionError:

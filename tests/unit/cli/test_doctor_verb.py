@@ -14,13 +14,19 @@ from lineofaction.cli.commands import app
 Answer = dict[str, Any]
 
 
-def answer(monkeypatch: pytest.MonkeyPatch, analysis: list[str], gmsh: int = 0) -> Answer:
-    """Return the answer where the extra requires `analysis` and the import of gmsh ends with `gmsh`."""
+def answer(monkeypatch: pytest.MonkeyPatch, analysis: list[str], broken: str = "") -> Answer:
+    """Return the answer where the extra requires `analysis` and the module `broken` does not load."""
     required = {"": ["numpy"], "analysis": analysis, "service": ["numpy"]}
     packages = {extra: list(map(Requirement, names)) for extra, names in required.items()}
     monkeypatch.setattr(doctor, "_requirements", lambda: packages)
-    ended = subprocess.CompletedProcess([], gmsh, "", "Traceback ...\nOSError: libGL.so.1: no such file\n")
-    monkeypatch.setattr("subprocess.run", lambda *_args, **_options: ended)
+
+    def ended(command: list[str], **_options: Any) -> subprocess.CompletedProcess[str]:
+        code = int(command[-1] == f"import {broken}")
+        return subprocess.CompletedProcess(
+            command, code, "", "Traceback ...\nOSError: lib.so.1: no such file\n"
+        )
+
+    monkeypatch.setattr("subprocess.run", ended)
     done = CliRunner().invoke(app, ["doctor", "--json"])
     assert (done.exit_code, done.stderr) == (0, "")
     told: Answer = json.loads(done.stdout)
@@ -43,10 +49,18 @@ def test_missing_packages_and_untested_versions_are_named_with_the_remedy(monkey
 
 
 def test_a_mesher_that_does_not_load_says_which_libraries_it_needs(monkeypatch):
-    told = answer(monkeypatch, ["numpy"], gmsh=1)
+    told = answer(monkeypatch, ["numpy"], broken="gmsh")
     finding = told["findings"]["gmsh"]
-    assert finding["state"] == "lacks" and "libGL.so.1" in finding["text"] and "apt-get" in finding["text"]
+    assert finding["state"] == "lacks" and "lib.so.1" in finding["text"] and "apt-get" in finding["text"]
     assert not told["verbs"]["analyze"] and told["verbs"]["ste"]
+
+
+def test_boundary_elements_that_do_not_load_limit_the_sound_alone(monkeypatch):
+    monkeypatch.setattr(doctor, "find_spec", lambda _name: True)
+    told = answer(monkeypatch, ["numpy"], broken="ngsolve")
+    finding = told["findings"]["ngsolve"]
+    assert finding["state"] == "limited" and "apt-get install libquadmath0" in finding["text"]
+    assert all(told["verbs"].values())
 
 
 def test_a_requirement_belongs_to_the_base_or_to_its_extras():

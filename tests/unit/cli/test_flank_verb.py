@@ -94,6 +94,7 @@ def test_equal_questions_are_one_case():
         (["--process", "nonsense"], "--process = 'nonsense': must be one of analyze, flank, sensitivity"),
         (["--inputs", "{}"], "--inputs = '{}': must be given with --process"),
         (["--process", "flank", "--inputs", "[1]"], "--inputs = '[1]': must be a JSON object without case"),
+        (["--process", "flank", "--inputs", '{"a":' * 400 + "1" + "}" * 400], "must be a JSON object"),
         (["--process", "flank", "--inputs", '{"case": {}}'], "must be a JSON object without case"),
     ],
 )

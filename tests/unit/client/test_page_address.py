@@ -123,6 +123,7 @@ HOSTILE = {
     "no object": (typed([1]), "case", "a JSON object"),
     "no number": (typed(case() | {"load": {"torque_n_m": [float("nan")]}}), "case", "JSON"),
     "deep": (typed('{"pair":' + "[" * 500_000), "case", "a JSON object"),
+    "deep tables": (typed('{"pair":' * 20_000 + "1" + "}" * 20_000), "case", "a JSON object"),
     "colors in a field": (typed({"pair": {"\x1b[31m": 1}}), "case", "a JSON object"),
     "digits": (typed('{"pair":' + "9" * 5000 + "}"), "case", "a JSON object"),
     "no case": (typed(case() | {"load": {}}), "case.load.torque_n_m", "must be given"),

@@ -11,6 +11,7 @@ import h5netcdf
 import numpy as np
 import pytest
 import xarray
+from typing_extensions import TypeAliasType
 
 from bounds.types import FloatArray, IntArray
 from model_studies import NOT_STORED, in_unit
@@ -118,6 +119,27 @@ def test_a_file_may_hold_fields_by_other_names(tmp_path):
         assert list(file.variables) == ["size"]
         assert json.loads(file.attrs["documents"])["fields"] == {"size": "variable", "whose": "Ada"}
     assert read_record(tmp_path / "saucer.nc", {SCHEMA: Saucer}) == saucer
+
+
+Scalar = TypeVar("Scalar", bound=np.generic)
+Aliased = TypeAliasType("Aliased", np.ndarray[Any, np.dtype[Scalar]], type_params=(Scalar,))
+"""An array's type as numpy 2.5 names it from Python 3.12 on; with others it has the type itself."""
+
+
+@dataclass(frozen=True)
+class Spoon:
+    """A record whose arrays have an alias of their type."""
+
+    length: Aliased[np.float64] = field(metadata=in_unit("m"))
+    marks: Aliased[np.int64] | None = None
+
+
+def test_an_alias_of_an_array_is_an_array(tmp_path):
+    write_record(Spoon(np.array([0.1, 0.2]), np.array([3])), tmp_path / "spoon.nc", SCHEMA)
+    with h5netcdf.File(tmp_path / "spoon.nc") as file:
+        assert set(file.variables) == {"length", "marks"}
+    back = read_record(tmp_path / "spoon.nc", {SCHEMA: Spoon})
+    assert numbers(back.length) == numbers([0.1, 0.2]) and back.marks.tolist() == [3]
 
 
 @dataclass(frozen=True)

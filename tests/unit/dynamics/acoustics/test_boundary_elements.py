@@ -1,6 +1,7 @@
 """Boundary elements: spheres, sources inside a box, irregular frequencies, energy, reciprocity."""
 
 import sys
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ from dynamics.acoustics import (
 )
 from dynamics.acoustics.boundary_elements import BoundaryElements
 from dynamics.errors import InputError
-from host import MissingExtra
+from host import MissingExtra, Unavailable
 from model_studies.workers import InProcess, dispatch, local_processes
 
 AIR = Air()
@@ -134,4 +135,13 @@ def test_an_open_or_a_coarse_hull_is_refused():
 def test_without_the_library_its_extra_is_named(monkeypatch):
     monkeypatch.setitem(sys.modules, "ngsolve", None)
     with pytest.raises(MissingExtra, match=r"lineofaction\[boundary-elements\]"):
+        radiation_efficiency(MODEL, FINE, 50.0, np.ones(len(FINE.areas)), AIR)
+
+
+def test_without_the_libraries_under_it_the_package_of_debian_is_named(monkeypatch):
+    """A slim Debian lacks the one that its wheels leave to the system."""
+    broken = ModuleType("ngsolve")  # without a part `bem`: an ImportError, as of a library that does not load
+    monkeypatch.setitem(sys.modules, "ngsolve", broken)
+    monkeypatch.setitem(sys.modules, "ngsolve.bem", ModuleType("ngsolve.bem"))
+    with pytest.raises(Unavailable, match="apt-get install libquadmath0"):
         radiation_efficiency(MODEL, FINE, 50.0, np.ones(len(FINE.areas)), AIR)
