@@ -6,6 +6,7 @@ import tomllib
 
 import pytest
 import yaml
+from packaging.specifiers import SpecifierSet
 from repository import ROOT
 
 GITHUB = ROOT / ".github"
@@ -31,6 +32,9 @@ def test_links_lead_somewhere(text):
 def test_changes_of_forks_run_what_every_change_must_pass():
     (job,) = yaml.safe_load((GITHUB / "workflows" / "check.yml").read_text("utf-8"))["jobs"].values()
     assert job["steps"][-1]["run"] == "bash .ci/run"
+    requires = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["requires-python"]
+    minors = [minor for minor in range(30) if f"3.{minor}" in SpecifierSet(requires)]
+    assert {f"3.{minors[0]}", f"3.{minors[-1]}"} <= set(job["strategy"]["matrix"]["python"])
     container = json.loads((ROOT / ".devcontainer" / "devcontainer.json").read_text("utf-8"))
     script, _ = container["postCreateCommand"].split()
     assert (ROOT / script).exists()
