@@ -6,7 +6,6 @@ geometric step sizes.
 
 from __future__ import annotations
 
-from enum import IntEnum
 from inspect import unwrap
 from typing import NamedTuple
 
@@ -24,36 +23,38 @@ _PER_FREEDOM = ("v", "v_rest", "a", "q_new", "v_new", "a_new", "q_error", "v_err
 _PER_ROW = ("force", "free", "free_rate", "free_acceleration", "update", "correction")
 
 
-class Power(IntEnum):
+class _Powers(NamedTuple):
     """Columns of the powers, integrated to works over the run."""
 
-    DRIVE = 0  # supplied by the drive
-    LOAD = 1  # supplied by the load torques (negative: they resist)
-    POSITION = 2  # supplied by the table's change with position
-    BUSHING = 3  # dissipated in bushings
-    MESH = 4  # dissipated in meshes
-    AXES = 5  # supplied by the tables' change with misalignment and center distance
-    FRICTION = 6  # dissipated by sliding flanks
+    DRIVE: int = 0  # supplied by the drive
+    LOAD: int = 1  # supplied by the load torques (negative: they resist)
+    POSITION: int = 2  # supplied by the table's change with position
+    BUSHING: int = 3  # dissipated in bushings
+    MESH: int = 4  # dissipated in meshes
+    AXES: int = 5  # supplied by the tables' change with misalignment and center distance
+    FRICTION: int = 6  # dissipated by sliding flanks
 
 
-LOSSES = (int(Power.BUSHING), int(Power.MESH), int(Power.FRICTION))
-"""Columns that only grow: dissipated energy does not come back."""
-
-
-class Count(IntEnum):
+class _Counts(NamedTuple):
     """Entries of the step statistics."""
 
-    LEVEL = 0  # level of the current step size
-    OUTPUT = 1  # next output sample
-    ACCEPTED = 2
-    REJECTED = 3
-    NEWTON_TOTAL = 4
-    MAX_NEWTON = 5  # most Newton iterations in one stage
-    NEWTON_FAILED = 6  # steps repeated because Newton failed
-    SMALLEST_LEVEL = 7  # smallest level of an accepted step: the largest step
-    LARGEST_LEVEL = 8
-    FIRST_ROW = 9  # output sample that the first row of the output arrays is for
-    POINT = 10  # next point of the inner grid
+    LEVEL: int = 0  # level of the current step size
+    OUTPUT: int = 1  # next output sample
+    ACCEPTED: int = 2
+    REJECTED: int = 3
+    NEWTON_TOTAL: int = 4
+    MAX_NEWTON: int = 5  # most Newton iterations in one stage
+    NEWTON_FAILED: int = 6  # steps repeated because Newton failed
+    SMALLEST_LEVEL: int = 7  # smallest level of an accepted step: the largest step
+    LARGEST_LEVEL: int = 8
+    FIRST_ROW: int = 9  # output sample that the first row of the output arrays is for
+    POINT: int = 10  # next point of the inner grid
+
+
+# tuples, not enumerations: numba before 0.68 indexes no array by a member of an enumeration
+Power, Count = _Powers(), _Counts()
+LOSSES = (Power.BUSHING, Power.MESH, Power.FRICTION)
+"""Columns that only grow: dissipated energy does not come back."""
 
 
 class Workspace(NamedTuple):

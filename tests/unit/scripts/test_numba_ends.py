@@ -7,6 +7,7 @@ from pathlib import Path
 import numba_ends
 import pytest
 from packaging.requirements import Requirement
+from packaging.version import Version
 
 
 def project(requirement: str) -> dict[str, dict[str, object]]:
@@ -27,6 +28,8 @@ def test_the_newest_end_admits_the_numba_of_the_lock():
     lock = (numba_ends.ROOT / "requirements-dev.lock").read_text("utf-8").splitlines()
     (locked,) = (line.split()[0].partition("==")[2] for line in lock if line.startswith("numba=="))
     assert newest.specifier.contains(locked)
+    oldest = numba_ends.requirements(table)["oldest"].partition("==")[2]
+    assert Version(oldest).release[:2] < Version(locked).release[:2]  # two versions, not one tested twice
 
 
 def test_both_ends_are_tested_whichever_fails(monkeypatch, capsys):

@@ -14,7 +14,7 @@ from dynamics.integrators import tableaus as t
 from dynamics.integrators.advance import Control, next_level
 from dynamics.integrators.method_choice import EVALUATIONS, LIMIT, choose_method
 from dynamics.integrators.start_value import Trail
-from dynamics.integrators.workspace import Count, geometric_steps
+from dynamics.integrators.workspace import Count, Power, geometric_steps
 from dynamics.motion.observation import observe
 from dynamics.results.histories import filtered
 
@@ -88,6 +88,13 @@ def test_the_implicit_method_is_l_stable():
 STEP_SIZES = geometric_steps(1e-3, 1e-8)
 SMALLEST = STEP_SIZES.size - 2  # behind it the step that lands on a law's knot
 CONTROL = Control(True, True, False, 3, 1e-9, 1e-4, 100)
+
+
+def test_columns_that_loops_name_are_integers():
+    """Members of an enumeration are integers too, but no index to numba before 0.68."""
+    for columns in (Power, Count):
+        assert columns == tuple(range(len(columns)))
+        assert {type(column) for column in columns} == {int}
 
 
 def after(level: int, error: float, accepted: bool, last: float = 1e-4) -> int:
