@@ -47,10 +47,10 @@ def refusal() -> str:
 
 def test_a_browser_that_goes_on_slowly_may_take_any_time(browser, monkeypatch):
     """Longer in all than any limit of time: it rests often, as one does that gets little of the machine."""
-    monkeypatch.setattr(printing, "_STANDSTILL_S", 0.6)
+    monkeypatch.setattr(printing, "_STANDSTILL_S", 1.5)
     monkeypatch.setattr(printing, "_PROGRESS_S", 0.02)
-    monkeypatch.setattr(printing, "_WAIT_S", 0.6)
-    browser("for _ in range(6):\n    work(0.05)\n    time.sleep(0.3)")
+    monkeypatch.setattr(printing, "_WAIT_S", 1.5)
+    browser("for _ in range(8):\n    work(0.05)\n    time.sleep(0.25)")
     assert pdf("<p>page", Path("report.pdf")) == b"%PDF"
 
 
