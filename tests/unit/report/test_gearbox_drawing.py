@@ -27,6 +27,17 @@ def outline():
     return replace(found, gears=("first pinion", "wheel of the first stage", "second pinion", "second wheel"))
 
 
+@pytest.mark.law
+def test_the_pieces_of_a_shaft_are_as_long_as_it_and_a_rigid_shaft_is_one():
+    scene = two_stages()
+    first, *others = scene.shafts
+    scene = replace(scene, shafts=(replace(first, sections=()), *others))
+    found = Outline.of(scene)
+    lengths = [found.piece[found.piece_shaft == k, 1] for k in range(len(found.shafts))]
+    assert lengths[0].size == 1
+    np.testing.assert_allclose([length.sum() for length in lengths], found.length)
+
+
 @pytest.mark.parametrize(
     ("length", "written"),
     [(0.0, "0"), (-8.81e-11, "< 0.001"), (1e-9, "0.00100"), (-1.2345e-5, "-12.3")],
