@@ -1,4 +1,4 @@
-"""A release is refused, and changes nothing, where the tree is not ready for it."""
+"""A release is refused, and changes nothing, where the tree is not ready; else it is a commit and a tag."""
 
 import shutil
 import subprocess
@@ -8,6 +8,29 @@ import pytest
 from repository import ROOT
 
 GIT = ("git", "-c", "user.name=a tester", "-c", "user.email=tester@example.org")
+STUBS = {
+    "scripts/environment": """
+say() { printf '%s\\n' "$*" >&2; }
+fail() { say "error: $*"; exit 1; }
+environment() { PATH="$PWD/scripts/stubs:$PATH"; }
+gmsh_libraries() { :; }
+""",
+    "scripts/stubs/python": """#!/usr/bin/env bash
+case "$*" in
+    "-m build --sdist"*) cp README.md out/release/readme && touch "out/release/one.tar.gz" ;;
+    "-m build --wheel"*) touch out/release/one.whl ;;
+    "-m zipfile"*) echo host/shipped_loops/a.nbc ;;
+    scripts/index_readme.py*) echo "of an index: $2" >README.md ;;
+esac
+""",
+    "scripts/stubs/twine": "#!/usr/bin/env bash\n",
+    "scripts/docs": "#!/usr/bin/env bash\n",
+    "deploy/kubernetes/image/kustomization.yaml": 'newTag: "1.2.0.dev7"\n',
+    "CITATION.cff": "cff-version: 1.2.0\n",
+    "README.md": "a readme\n",
+    ".gitignore": "out\n",
+}
+"""Files of a release whose commands build nothing."""
 
 
 @pytest.fixture
@@ -68,3 +91,36 @@ def test_a_version_follows_its_development_versions_alone(project):
         ["scripts/release", "1.2.0"], cwd=project, capture_output=True, text=True, check=False
     )
     assert ended.returncode == 1 and "1.2.0 follows 1.2.0.devN alone" in ended.stderr
+
+
+def test_a_release_is_a_commit_and_a_tag_with_its_page(project):
+    for name, text in STUBS.items():
+        file = project / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text, "utf-8")
+        file.chmod(0o755)
+    changes = project / "CHANGELOG.md"
+    changes.write_text(f"{changes.read_text('utf-8')}\n### Speed\n- fast\n\n## 1.1.0 - 2020-01-01\n", "utf-8")
+    for command in (
+        ("config", "user.name", "a tester"),
+        ("config", "user.email", "tester@example.org"),
+        ("add", "--all"),
+        ("commit", "-qm", "Build nothing"),
+    ):
+        subprocess.run(["git", *command], cwd=project, check=True)
+    ended = subprocess.run(
+        ["scripts/release", "1.2.0"], cwd=project, capture_output=True, text=True, check=False
+    )
+    assert ended.returncode == 0, ended.stderr
+
+    def told(*command: str) -> str:
+        return subprocess.run(
+            ["git", *command], cwd=project, capture_output=True, text=True, check=True
+        ).stdout
+
+    assert told("status", "--porcelain") == "" and told("log", "-1", "--format=%s") == "Release 1.2.0\n"
+    assert told("tag", "-l", "--format=%(contents)").strip() == "- a change\n\n### Speed\n- fast"
+    assert (project / "pyproject.toml").read_text("utf-8") == 'version = "1.2.0"\n'
+    assert "\nversion: 1.2.0\ndate-released: " in (project / "CITATION.cff").read_text("utf-8")
+    assert (project / "out/release/readme").read_text("utf-8") == "of an index: v1.2.0\n"
+    assert (project / "README.md").read_text("utf-8") == "a readme\n"
