@@ -13,7 +13,7 @@ STUBS = {
 say() { printf '%s\\n' "$*" >&2; }
 fail() { say "error: $*"; exit 1; }
 environment() { PATH="$PWD/scripts/stubs:$PATH"; }
-gmsh_libraries() { :; }
+system_libraries() { :; }
 """,
     "scripts/stubs/python": """#!/usr/bin/env bash
 case "$*" in
