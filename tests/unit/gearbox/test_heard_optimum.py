@@ -330,6 +330,13 @@ def test_levels_are_drawn_as_bars_with_their_errors_from_a_floor_below_all():
         assert before.x[0] + 0.5 * before.width == pytest.approx(after.x[0] - 0.5 * after.width)
 
 
+def test_the_design_is_told_in_the_unit_of_its_names():
+    (table,) = (part for part in PAGE.text(found()) if getattr(part, "caption", "") == "Design")
+    for name, start, optimum, least, most in table.rows:
+        assert name.endswith("_um") and 0.0 == float(least) <= float(optimum) <= float(most) in (4.0, 8.0)
+        assert float(start) == pytest.approx(0.0 if "crowning" in name else 3.0)
+
+
 def test_what_gets_worse_is_said_first():
     own = found()
     louder = replace(own, start=own.optimum, optimum=own.start)
