@@ -1,6 +1,7 @@
 """The documentation site: Sphinx with MyST pages. `scripts/docs` builds it."""
 
 import inspect
+import logging
 import shutil
 import sys
 from functools import cached_property
@@ -16,6 +17,9 @@ from sphinx.pycode import ModuleAnalyzer
 sys.path.append(str(Path(__file__).parent))  # notebook_pages
 sys.path.append(str(Path(__file__).parents[1] / "scripts"))
 import service_pages
+
+# furo's styles of code (a11y_pygments) set the root logger, where nothing has, to say what every package logs
+logging.basicConfig(level=logging.WARNING)
 
 EXTRA = Path(__file__).parents[1] / "out" / "site"  # pages that scripts write: docs/lab/index.md
 

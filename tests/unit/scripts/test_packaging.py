@@ -5,6 +5,7 @@ from fnmatch import fnmatch
 from pathlib import Path, PurePath
 
 import pytest
+from packaging.specifiers import SpecifierSet
 from repository import ROOT
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
@@ -31,6 +32,15 @@ def _matches(name: PurePath, pattern: PurePath) -> bool:
     first, last = pattern.parts[:at], pattern.parts[at + 1 :]
     ends = zip(name.parts[: len(first)] + name.parts[-len(last) :], first + last, strict=False)
     return len(name.parts) >= len(first) + len(last) and all(fnmatch(part, known) for part, known in ends)
+
+
+def test_the_index_names_every_python_that_installs_it():
+    pythons = SpecifierSet(PROJECT["project"]["requires-python"])
+    admitted = [
+        f"Programming Language :: Python :: 3.{minor}" for minor in range(30) if f"3.{minor}" in pythons
+    ]
+    named = [text for text in PROJECT["project"]["classifiers"] if ":: Python :: 3." in text]
+    assert named == admitted
 
 
 def test_patterns_take_files_at_any_depth():
