@@ -336,7 +336,7 @@ class Studies:
         "examples/palermo_scene.toml examples/study_torque_speed.toml -o study",
         group="gearbox",
         kind="study",
-        stages=(("analysis", 0.2), ("runs", 0.7), ("worst cases", 0.1)),
+        stages=(("analysis", 0.2), ("effects", 0.1), ("runs", 0.6), ("worst cases", 0.1)),
         folder="study",
     )
 

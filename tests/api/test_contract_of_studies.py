@@ -245,6 +245,8 @@ def test_the_terminal_shows_tables_headlines_and_files(runs):
     ]
     assert lines[-1].startswith("written to ") and str(file) in lines[-1]
     assert re.match(r"cost [\d.e+]+ CPU s", lines[-2])
+    if point := shown.point(runs.python.result):
+        assert lines.pop(0) == point
     for headline, line in zip(headlines[:2], lines, strict=False):
         assert line.startswith(f"{headline.name}: {headline.value}")
     for words in runs.row.ends:
