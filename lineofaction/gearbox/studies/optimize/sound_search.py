@@ -8,7 +8,7 @@ of the sound (all orders together, then each).
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
@@ -124,17 +124,11 @@ def sound_optimum(
     best = min(range(len(runs)), key=lambda i: runs[i].assessed.order)
     designs = start, problem.values(runs[best].coordinates)
     with clock.stage("confirmation"):
-        tables = [_tables(setup, values) for values in designs]
-        positions = max(problem.evaluator.position.size, tables[0][0].position.size)
-        scaled = replace(setup, problem=problem)
-        before, after = (
-            _confirmed_design(scaled, *design, positions, run.cache)
-            for design in zip(designs, tables, strict=True)
-        )
+        (before, after), positions = _confirmed_designs(replace(setup, problem=problem), designs, run.cache)
     with clock.stage("pairs"):
-        told = request.search.exploration if question.quantile is None else positions
-        made = None if sample is None or cancel() else sample.at(told)
-        pairs = [np.zeros(0) if made is None else made.levels(values, means.workers) for values in designs]
+        made = request.search.exploration if question.quantile is None else positions
+        rough = None if sample is None or cancel() else sample.at(made)
+        pairs = [np.zeros(0) if rough is None else rough.levels(values, means.workers) for values in designs]
     run.progress("confirmation", 1.0)
     spent = {"evaluations": sum(part.evaluations for part in runs), "search_expected_cpu_seconds": expected}
     quantity = quantity_of(subject, question)
@@ -217,7 +211,7 @@ def sound_cost(
     full = share * predicted.design + levels.per_table
     confirmed = share * predicted.design * predicted.positions / search.positions + levels.per_table
     nodes = request.scatter.nodes().weight.size if question.quantile is None else pairs.samples
-    told = rough if question.quantile is None else confirmed
+    of_pair = rough if question.quantile is None else confirmed
     coarse_designs, full_designs = usual_sound_designs(search)
     parts = [
         Work("gears", predicted.bodies, stage="compliance"),
@@ -226,7 +220,7 @@ def sound_cost(
         Work("designs", full, full_designs * nodes, "search"),
         Work("analyses", share * (predicted.design + predicted.errors), 2, "confirmation"),
         Work("scatter", confirmed, 0 if nodes == 1 else 2 * nodes, "confirmation"),
-        Work("pairs", told, 2 * pairs.samples, "confirmation"),
+        Work("pairs", of_pair, 2 * pairs.samples, "confirmation"),
     ]
     cost = StudyCost(tuple(parts), predicted.bytes)
     scene_misalignment = levels.scene.meshes[mesh_index(levels.scene, mesh.name)].misalignment
@@ -341,6 +335,15 @@ def _evaluator(
     force = torque / float(request.pair.torque(1.0))
     load, alignment = with_neighbor_loads(force, misalignment)
     return replace(study.evaluator, load=load, misalignment=alignment)
+
+
+def _confirmed_designs(
+    setup: SoundSearch, designs: Iterable[dict[str, float]], cache: Path | None
+) -> tuple[list[HeardDesign], int]:
+    """Return designs with errors, and the number of positions at which their scatter was solved."""
+    tables = [(values, _tables(setup, values)) for values in designs]
+    positions = max(setup.problem.evaluator.position.size, tables[0][1][0].position.size)
+    return [_confirmed_design(setup, *design, positions, cache) for design in tables], positions
 
 
 def _tables(setup: SoundSearch, values: dict[str, float]) -> list[SteDatabase]:
