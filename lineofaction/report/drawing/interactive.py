@@ -300,11 +300,12 @@ def _notes(panel: Panel, suffix: str) -> list[Json]:
     """Put short texts at their points or at the tails of their leaders."""
     notes = []
     for note in panel.notes:
-        annotation = {"xref": "x" + suffix, "yref": "y" + suffix, "showarrow": False, "text": note.text}
+        text = note.text.replace("\n", "<br>")
+        annotation = {"xref": "x" + suffix, "yref": "y" + suffix, "showarrow": False, "text": text}
         annotation |= {"x": _position(panel.x, note.x), "y": _position(panel.y, note.y)}
         box = {} if panel.shade is None else {"bgcolor": _BOX}
         where = _beside(note) if note.tail is None else _led(note, note.tail, panel, suffix)
-        notes.append(annotation | where | box | {"font": {"size": 12}})
+        notes.append(annotation | {"align": "left"} | where | box | {"font": {"size": 12}})
     return notes
 
 

@@ -51,8 +51,8 @@ _MAX_NAMES = 8  # most pairs that are named in full
 _SHARING_MARGIN = 1.12  # top of the axis over the largest share, with room for names
 _END = 0.03  # share of the width within which a high part of a curve counts as its end
 _CARRIES = 1e-6  # a pair with less than this share nowhere carries load
-_BUDGET_MARGIN = 1.2  # top of the axis over the largest part, with room for numbers
-_NOTE = 0.4  # room over the distance of bars for the number of the last bar on a narrow screen
+_BUDGET_MARGIN = 1.5  # top of the axis over the largest part, with room for two lines of numbers
+_NOTE = 0.1  # room over the distance of bars for the number of the last bar on a narrow screen
 _MIN = 0.0005
 """Part of the mean below which there is no bar."""
 
@@ -283,8 +283,8 @@ def _budget_panel(parts: dict[str, tuple[float, ...]], mean: float) -> Panel:
     sizes = np.array([sum(sides) for sides in parts.values()])
     notes = []
     for x, size in zip(position, sizes, strict=True):
-        text = f"{number(size, 3)} µm, {number(100.0 * float(size) / mean, 2)} %"
-        notes.append(Note(float(x) - 0.2, max(float(size), 0.0), text))
+        text = f"{number(size, 3)} µm\n{number(100.0 * float(size) / mean, 2)} %"  # narrower than a bar
+        notes.append(Note(float(x) - 0.3, max(float(size), 0.0), text))
     ends = (min(0.0, _BUDGET_MARGIN * float(sizes.min())), _BUDGET_MARGIN * float(sizes.max()))
     bars = Bars("part of the mean STE", position, sizes, base=0.0, width=0.6, color=palette.BLUE)
     axes = Axis.of_names(tuple(parts), beyond=_NOTE), Axis("part of the mean STE, µm", limits=ends)

@@ -6,11 +6,15 @@ from typing import Any, get_args, get_origin
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure as Sheet
+from matplotlib.transforms import Bbox
 from repository import EXAMPLES
 
 import lineofaction as loa
 from bounds.plottable import Plottable
 from lineofaction.gearbox.registry import STUDIES
+from lineofaction.report.drawing.image import draw_figure
 from lineofaction.report.plots import figures_of
 
 
@@ -30,6 +34,26 @@ def _kinds(result: Any) -> tuple[Any, ...]:
 def test_every_result_of_a_study_has_plots(study):
     for kind in _kinds(study.run.file.result):
         assert issubclass(get_origin(kind) or kind, Plottable), kind
+
+
+@pytest.mark.law
+def test_numbers_above_the_bars_of_half_a_page_meet_no_bar_and_no_number(database):
+    (figure,) = (each for each in figures_of(database) if each.key == "deflection_budget")
+    sheet = Sheet(layout="constrained")
+    (axes,) = draw_figure(sheet, figure, half=True)
+    FigureCanvasAgg(sheet).draw()
+    numbers = [text.get_window_extent() for text in axes.texts]
+    (drawn,) = figure.content[0].bars
+    corners = [
+        [(x - 0.5 * drawn.width, 0.0), (x + 0.5 * drawn.width, top)]
+        for x, top in zip(drawn.x, drawn.top, strict=True)
+    ]
+    bars = [Bbox(axes.transData.transform(pair)) for pair in corners]
+    assert len(numbers) == len(bars) > 2
+    assert all(axes.get_window_extent().y1 > number.y1 for number in numbers)
+    for k, number in enumerate(numbers):
+        assert not any(number.overlaps(bar) for j, bar in enumerate(bars) if j != k)
+        assert not any(number.overlaps(other) for j, other in enumerate(numbers) if j != k)
 
 
 def test_the_first_plot_of_a_table_is_its_curve(database):
