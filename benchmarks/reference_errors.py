@@ -23,7 +23,10 @@ REFERENCE = Path(__file__).parents[1] / "tests" / "reference" / "spur_20_20_full
 TORQUES = (50.0, 100.0, 200.0, 400.0)
 REAL_TEETH = 5
 SINGLE_CONTACT, DOUBLE_CONTACT = 0.15, 0.2235
-"""Positions from the pitch point, base pitches: on the line of action below the one and above the other."""
+"""Distances from the pitch point, base pitches: on the line of action below the one and above the other.
+
+Between them are the ends of the line of action and the outermost handover of the largest load.
+"""
 _SUBJECT = "against full FE contact, same bodies, 50 to 400 N m"
 
 
@@ -49,7 +52,7 @@ def figures() -> list[Figure]:
 def _errors(pair: GearPair, torque: float) -> tuple[float, float, float, float]:
     """Relative errors of mean and peak-to-peak, and the largest on and off the line of action."""
     position, expected, corner = _reference(torque)
-    found = _solved(pair, torque, position)
+    found = ste_of_five_teeth(pair, torque, position)
     span = position[-1] - position[0]
     if not 0.99 < span < 1.01:
         raise ValueError(f"the reference spans {span} pitches")
@@ -59,8 +62,8 @@ def _errors(pair: GearPair, torque: float) -> tuple[float, float, float, float]:
     return float(mean), float(swing), float(np.max(relative[~corner])), float(np.max(relative[corner]))
 
 
-def _solved(pair: GearPair, torque: float, position: FloatArray) -> FloatArray:
-    """Return STE (m) at positions (base pitches), on bodies of the reference in a usual mesh."""
+def ste_of_five_teeth(pair: GearPair, torque: float, position: FloatArray) -> FloatArray:
+    """Return STE (m, (P,)) at positions (base pitches), on bodies of the reference in a usual mesh."""
     asked = check_request(pair, TableAxes(torques=[max(TORQUES)]), AnalysisOptions(model="plane_strain"))
     plan = make_plan(pair, asked.request.load, asked.request.options, asked.model)
     first, second = (replace(recipe, real_teeth=REAL_TEETH) for recipe in plan.discretization.recipes)

@@ -9,26 +9,23 @@ tables, which are of whole gears, lie below by so much.
 """
 
 import csv
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from fe_contact import AnalysisOptions, Gear, GearPair, SteDatabase, TableAxes, analyze
-from fe_contact.analysis.pairs.pair_contact import pair_contact
-from fe_contact.analysis.request.request_check import check_request
-from fe_contact.planning.plan import make_plan
+from benchmarks.reference_errors import (
+    DOUBLE_CONTACT,
+    REFERENCE,
+    SINGLE_CONTACT,
+    TORQUES,
+    ste_of_five_teeth,
+)
+from fe_contact import Gear, GearPair, SteDatabase, analyze
 
-REFERENCE = Path(__file__).parents[2] / "reference" / "spur_20_20_full_contact.csv"
 SOURCE = "CalculiX 2.20 and a mortar code, resolved meshes, plane strain, uncertainty 0.1 % (0.3 % at 10 N m)"
-RATED = (50.0, 100.0, 200.0, 400.0)
-# between the ends of the line of action and the outermost handover of the largest load, base pitches
-DOUBLE_CONTACT, SINGLE_CONTACT = 0.2235, 0.15
-
-
-REAL_TEETH = 5
+RATED = TORQUES
 SOFTER = (0.0007, 0.0020)
 """Least and largest part of the STE by which bodies of the reference are softer than whole gears."""
 
@@ -80,14 +77,8 @@ def deviation(database: SteDatabase, torque: float) -> tuple[Reference, np.ndarr
 @cache
 def off_the_reference(torque: float) -> tuple[Reference, np.ndarray]:
     """Return rows, and how far STE solved at their positions on bodies of the reference is off, in parts."""
-    pair, rows = spur_pair(), reference(torque)
-    asked = check_request(pair, TableAxes(torques=[max(RATED)]), AnalysisOptions(model="plane_strain"))
-    plan = make_plan(pair, asked.request.load, asked.request.options, asked.model)
-    first, second = (replace(recipe, real_teeth=REAL_TEETH) for recipe in plan.discretization.recipes)
-    plan = replace(plan, discretization=replace(plan.discretization, recipes=(first, second)))
-    load = np.array([torque / pair.pinion.base_radius])
-    solution = pair_contact(pair, plan, None).solve(asked.model, rows.position, load)[1]
-    return rows, solution.deflection[:, 0] / rows.ste - 1.0
+    rows = reference(torque)
+    return rows, ste_of_five_teeth(spur_pair(), torque, rows.position) / rows.ste - 1.0
 
 
 @pytest.mark.law
