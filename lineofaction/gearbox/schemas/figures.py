@@ -1,8 +1,9 @@
 """Figures of results: the documents that verbs print by ``--json`` and the service answers with.
 
 A study declares its figures in its package; those of tables and runs are declared here. Units are in the
-names. A figure that is not known is None. The type of a figure may be annotated with its `Source`; without
-one the figure is the member of the result that has its name.
+names. A figure that is not known is None, or left out of the document where the field has a default. The
+type of a figure may be annotated with its `Source`; without one the figure is the member of the result that
+has its name.
 """
 
 from __future__ import annotations

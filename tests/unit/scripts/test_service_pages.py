@@ -5,6 +5,8 @@ import service_pages
 from described_api import DESCRIPTION
 from repository import ROOT
 
+from lineofaction.gearbox.studies.scatter import Inputs
+
 
 @pytest.mark.parametrize(("name", "tables"), [("cli", ["verbs"]), ("service", ["processes"])])
 def test_the_tables_are_current(name, tables):
@@ -22,6 +24,7 @@ def test_a_verb_links_to_its_section_and_a_default_is_one_value():
         and "| `loa keys add` |" in verbs
     )
     assert "loa modes" not in verbs, "studies have a table of their own, in docs/studies.md"
-    assert "`samples` (1000)" in service_pages.processes(DESCRIPTION)
+    samples = Inputs.model_fields["samples"].default
+    assert f"`samples` ({samples})" in service_pages.processes(DESCRIPTION)
     assert service_pages.default({"default": []}) == service_pages.default({}) == ""
     assert service_pages.default({"default": True}) == " (true)"
