@@ -68,7 +68,7 @@ def ripple_over_torque(database: SteDatabase) -> Figure:
         title="Ripple over torque",
         caption="Peak-to-peak STE with the band of its error, and its mesh harmonics; dotted: below their "
         "errors. Points: requested torques, between which the table interpolates.",
-        alternative=f"Of the requested torques: {text[0].lower()}{text[1:]}",
+        alternative=f"Of the requested torques: {text[0].lower()}{text[1:]}{_text_between(curves, mark)}",
         content=(
             ripple_panel(across, lines, title="Peak to peak"),
             _harmonics(across, torque, value, known, mark, "amplitude, µm"),
@@ -122,6 +122,18 @@ def _ripple_text(curves: dict[str, Curve]) -> str:
     if maximum.value - minimum.value <= minimum.error + maximum.error:
         return f"Peak to peak, {least} to {largest}, changes by no more than its errors."
     return f"Peak to peak is least, {least}, and largest, {largest}."
+
+
+def _text_between(curves: list[Curve], requested: BoolArray) -> str:
+    """Return a sentence on a least ripple that no requested torque has, beyond the errors; else nothing."""
+    least = min(curves, key=lambda curve: curve.peak_to_peak.value)
+    ripple = least.peak_to_peak
+    others = [
+        curve.peak_to_peak for curve, is_requested in zip(curves, requested, strict=True) if is_requested
+    ]
+    if any(other.value - other.error <= ripple.value + ripple.error for other in others):
+        return ""
+    return f" Between them it falls to {um(ripple.value, 3)} µm, at {number(least.torque, 3)} N m."
 
 
 def _table(database: SteDatabase, curves: dict[int, Curve]) -> Table:

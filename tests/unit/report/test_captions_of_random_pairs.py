@@ -160,7 +160,13 @@ def check_least_and_largest(text: str, named: dict[str, Curve], unit: str) -> No
 
 
 def check_ripple(figure: Figure, database: SteDatabase) -> None:
-    check_least_and_largest(figure.alternative, curves(database), "N m")
+    requested, _, between = figure.alternative.partition(" Between them it falls to ")
+    check_least_and_largest(requested, curves(database), "N m")
+    if between:
+        ((ripple, torque),) = re.findall(rf"{NUMBER} µm, at {NUMBER} N m", between)
+        least = database.curve(torque=float(torque)).peak_to_peak
+        assert float(ripple) == pytest.approx(1e6 * least.value, rel=6e-3)
+        assert all(least.value < other.peak_to_peak.value for other in curves(database).values())
 
 
 def check_deviations(figure: Figure, database: SteDatabase) -> None:

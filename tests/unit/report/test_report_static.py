@@ -174,6 +174,21 @@ def test_ripple_over_torque_is_that_of_the_curves(database):
     assert "ripple" in [f.key for s in static_results(database) for f in s.figures]
 
 
+def test_a_least_ripple_between_requested_torques_is_said(database):
+    """Curves of two loads in antiphase cancel somewhere between."""
+    wave = np.cos(2.0 * np.pi * database.position)[:, None, None, None]
+    size, mean = np.array([[1.0, -1.0, 3.0, 4.0], [10.0, 20.0, 30.0, 40.0]])[..., None, None]
+    ste = 1e-6 * (size * wave + mean)
+    opposed = replace(database, static_transmission_error=ste, error_estimate=1e-3 * np.abs(ste))
+    figure = ripple_over_torque(opposed)
+    line, _ = figure.content[0].lines
+    least = int(line.y.argmin())
+    assert line.y[least] < 0.5 and least % 8
+    said = f" Between them it falls to {line.y[least]:.3g} µm, at {line.x[least]:.3g} N m."
+    assert figure.alternative.endswith(said)
+    assert "Between them" not in ripple_over_torque(database).alternative
+
+
 SKEW = np.array([-20e-6, 0.0, 40e-6])
 CHANGE = np.array([0.0, 0.1e-3])
 RIPPLE = np.array([[1.5, 1.2], [1.0, 0.8], [3.0, 2.4]])
