@@ -134,6 +134,45 @@ def test_a_flank_has_the_color_of_the_scale_at_its_pressure(page, outline, name)
         assert np.ptp(lit, axis=1).max() < 0.08, (part, lit)
 
 
+OPACITIES = """async ({ outline, positions, size }) => {
+  const { RollingPair, programsOf } = await import("/page/view_pair.js");
+  const { Camera } = await import("/page/view_camera.js");
+  const { context } = await import("/page/view_gl.js");
+  const canvas = Object.assign(document.createElement("canvas"), { width: size, height: size });
+  const gl = canvas.getContext("webgl2", { ...context.getContextAttributes(), preserveDrawingBuffer: true });
+  const [pair, camera] = [Object.assign(new RollingPair(), { outline }), new Camera()];
+  pair.frame(camera);
+  gl.viewport(0, 0, size, size);
+  gl.enable(gl.DEPTH_TEST);
+  gl.depthFunc(gl.LEQUAL);
+  pair.begin(gl, programsOf(gl));
+  const [count, pixels] = [Array(256).fill(0), new Uint8Array(4 * size * size)];
+  for (const position of positions) {
+    pair.position = position;
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    pair.draw(gl, { view: camera.matrix(1), back: camera.back, moving: true, picking: false });
+    gl.readPixels(0, 0, size, size, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+    for (let k = 3; k < pixels.length; k += 4) count[pixels[k]] += 1;
+  }
+  return count;
+}"""
+"""Draws the pair as it rolls; counts pixels by their opacity, in 255."""
+
+
+@pytest.mark.law
+def test_a_wheel_that_is_seen_through_covers_each_pixel_once(page, outline):
+    """Neighboring teeth overlap; where both were painted, pixels flashed while the pair rolled."""
+    positions = np.linspace(0.0, 5.0, 40).tolist()
+    counts = np.array(page.evaluate(OPACITIES, {"outline": outline, "positions": positions, "size": 600}))
+    far, near = 0.5, 0.2
+    expected = 255.0 * np.array([0.0, far, near, 1.0 - (1.0 - far) * (1.0 - near), 1.0])
+    counted = np.flatnonzero(counts)
+    assert np.abs(counted[:, None] - expected).min(axis=1).max() <= 2.0, dict(
+        zip(counted, counts[counted], strict=True)
+    )
+    assert (counts[[126, 127, 128, 129]].sum() > 0 or counts[[152, 153, 154]].sum() > 0) and counts[255] > 0
+
+
 BENT = """async () => {
   const { RollingPair } = await import("/page/view_pair.js");
   const own = RollingPair.prototype.place;

@@ -5,7 +5,7 @@
 /** @typedef {{values: Float32Array, indices: Uint32Array, marked: number}} Mesh seven numbers a vertex: place, normal, mark; the last `marked` indices are of triangles with marks */
 
 /** What the page draws on, null where the browser has no WebGL2: made while its other scripts are on their way, as that takes long. */
-export const context = document.createElement("canvas").getContext("webgl2", { antialias: false, powerPreference: "low-power" });
+export const context = document.createElement("canvas").getContext("webgl2", { antialias: false, stencil: true, powerPreference: "low-power" });
 
 const WIDTH = 7; // numbers of a vertex
 const PARTS = [3, 3, 1]; // place, normal, mark

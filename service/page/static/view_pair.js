@@ -130,7 +130,12 @@ export class RollingPair {
     this.depth(gl, "wheel", [flank, "STEEL"], frame);
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+    gl.enable(gl.STENCIL_TEST); // a pixel once: where teeth overlap both would pass the depth that they have in common
+    gl.clear(gl.STENCIL_BUFFER_BIT);
+    gl.stencilFunc(gl.EQUAL, 0, 1);
+    gl.stencilOp(gl.KEEP, gl.KEEP, gl.INCR);
     this.gear(gl, "wheel", [flank, "STEEL"], frame, opacity);
+    gl.disable(gl.STENCIL_TEST);
     gl.disable(gl.BLEND);
     gl.cullFace(gl.BACK);
     gl.clear(gl.DEPTH_BUFFER_BIT); // the depth of the pinion alone hides what comes after
