@@ -11,6 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fe_contact.contact.elimination import copy
+from fe_contact.contact.kernel import kernel
 from fe_contact.contact.local_law import REFERENCE_LENGTH, LocalLaw, force_at, local_law
 from fe_contact.contact.problem import ContactProblem
 from fe_contact.contact.strip import gap_table
@@ -219,24 +221,34 @@ def pressed_state(problem: PointProblem, force: FloatArray) -> State:
     n, m = problem.bodies.shape[0], force.size
     yielding = np.zeros((n, n)) if problem.tilt.size else problem.bodies  # a constant where no flank rolls
     state = State(np.zeros(n), np.zeros(n), yielding, force, np.zeros(m), np.zeros(n))
-    press(problem, force, state.pressed)
-    state.curve_load[:] = state.pressed
+    begin(problem, force, state)
     return state
 
 
-@inner(error_model="numpy")
+@kernel
+def begin(problem: PointProblem, force: FloatArray, state: State) -> None:
+    """Fill in a state with the forces (m,) of the contacts on the curves; displacements are zero."""
+    copy(force, state.force)
+    state.displacement[:] = 0.0
+    state.slope[:] = 0.0
+    press(problem, force, state.pressed)
+    copy(state.pressed, state.curve_load)
+
+
+@kernel
 def evaluate(problem: PointProblem, gap: FloatArray, elastic: float, state: State) -> None:
     """Fill in forces and slopes of the contacts, and the forces on the curves, at the displacements.
 
     `gap`: Normal gaps (m,), m. `elastic`: Deflection of the driven gear, m.
     """
-    law, arm, motion = problem.law, problem.motion_arm, motions(problem, state.displacement)
     for q in range(gap.size):
-        state.force[q], state.slope[q] = force_at(law, q, arm[q] * elastic - gap[q] - motion[q])
+        motion = motion_at(problem, q, state.displacement)
+        approached = problem.motion_arm[q] * elastic - gap[q] - motion
+        state.force[q], state.slope[q] = force_at(problem.law, q, approached)
     press(problem, state.force, state.pressed)
 
 
-@inner(error_model="numpy")
+@kernel
 def press(problem: PointProblem, force: FloatArray, pressed: FloatArray) -> None:
     """Fill `pressed` (n,) with the forces on the curves under forces (m,) of the contacts, N."""
     pressed[:] = 0.0
@@ -246,19 +258,16 @@ def press(problem: PointProblem, force: FloatArray, pressed: FloatArray) -> None
                 pressed[problem.first[q] + a] += problem.curve[q, a] * force[q]
 
 
-@inner(error_model="numpy")
-def motions(problem: PointProblem, curve_heights: FloatArray) -> FloatArray:
-    """Return the motions of the bodies at the contacts (m,) from the heights (n,) of the curves, m."""
-    curve, first, out = problem.curve, problem.first, np.empty(problem.first.size)
-    for q in range(out.size):
-        value = 0.0
-        for a in range(curve.shape[1]):
-            value += curve[q, a] * curve_heights[first[q] + a]
-        out[q] = value
-    return out
+@kernel
+def motion_at(problem: PointProblem, q: int, curve_heights: FloatArray) -> float:
+    """Return the motion of the bodies at contact `q` from the heights (n,) of the curves, m."""
+    curve, first, value = problem.curve, problem.first[q], 0.0
+    for a in range(curve.shape[1]):
+        value += curve[q, a] * curve_heights[first + a]
+    return value
 
 
-@inner(error_model="numpy")
+@kernel
 def stiffness(problem: PointProblem, state: State) -> float:
     """Return the growth of the load on the contacts per deflection of the driven gear, N/m."""
     value = 0.0
