@@ -21,9 +21,8 @@ from fe_contact.mesh.bore_support import bore_support
 from fe_contact.mesh.sector_outline import sector_outline
 from fe_contact.mesh.sector_recipe import SectorRecipe
 from fe_contact.mesh.swept_sector import swept_sector
-from host import cpu_seconds
 from host.optional_modules import linalg
-from model_studies.host_speed import algebra_threads, cached_speed
+from model_studies.host_speed import algebra_threads, cached_speed, quickest
 
 RANK_SHARE = 0.23  # most flank loads that the ring is solved for, over flank freedoms; measured 0.22 to 0.24
 
@@ -171,9 +170,5 @@ def _dense_rate() -> float:
     """
     count, depth = 1000, 500
     panel = np.asfortranarray(np.sin(np.arange(count * depth, dtype=float)).reshape(count, depth))
-    times = []
-    for _ in range(5):
-        start = cpu_seconds()
-        linalg.blas.dsyrk(1.0, panel, lower=1)
-        times.append(cpu_seconds() - start)
-    return 0.5 * count * (count + 1) * depth / max(float(np.median(times)), 1e-6)
+    seconds = quickest(lambda: linalg.blas.dsyrk(1.0, panel, lower=1))
+    return 0.5 * count * (count + 1) * depth / max(seconds, 1e-6)

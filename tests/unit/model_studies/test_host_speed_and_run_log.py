@@ -11,7 +11,7 @@ from fe_contact import Gear
 from fe_contact.compliance import condensation_cost
 from fe_contact.compliance.condensation_cost import MESH_SECONDS, predict_cost
 from model_studies import host_speed
-from model_studies.host_speed import FILE, algebra_threads, cached_speed, host_slowness
+from model_studies.host_speed import FILE, algebra_threads, cached_speed, host_slowness, quickest
 from model_studies.run_log import FILE as LOG
 from model_studies.run_log import LAST, corrections, record
 
@@ -40,6 +40,29 @@ def test_the_rate_of_dense_algebra_is_that_of_as_many_threads(tmp_path, monkeypa
         monkeypatch.setenv("OMP_NUM_THREADS", threads)
         seconds.append(predict_cost(gear, cache=tmp_path).seconds - MESH_SECONDS)
     assert seconds[0] == seconds[2] and seconds[1] == pytest.approx(2.0 * seconds[0])
+
+
+def test_a_speed_is_that_of_runs_that_agree_and_not_of_a_slow_start(monkeypatch):
+    """The first runs get fresh memory, and two slow ones may agree by chance."""
+    durations = iter([2.0, 2.01, 1.9, 1.0, 1.3, 1.005, 1.01, 0.1])
+    clock = [0.0]
+
+    def run() -> None:
+        clock[0] += next(durations)
+
+    monkeypatch.setattr(host_speed.time, "process_time", lambda: clock[0])
+    assert quickest(run) == pytest.approx(1.0)
+    assert next(durations) == 0.1, "no run after three that agree"
+
+
+def test_runs_that_never_agree_end(monkeypatch):
+    clock, number = [0.0], iter(range(1, 100))
+
+    def run() -> None:
+        clock[0] += 1.5 ** next(number)
+
+    monkeypatch.setattr(host_speed.time, "process_time", lambda: clock[0])
+    assert quickest(run) == pytest.approx(1.5) and 5 < next(number) < 20
 
 
 @pytest.mark.parametrize("number", ["", "0", "several"])
