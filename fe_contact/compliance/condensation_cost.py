@@ -168,7 +168,7 @@ def _dense_rate() -> float:
     The update is as large as that of a large front: in two threads a smaller one, of 600 rows, takes four
     times the CPU time of one thread, and a whole condensation hardly more.
     """
-    count, depth = 1000, 500
+    count, depth = 1000, 300
     panel = np.asfortranarray(np.sin(np.arange(count * depth, dtype=float)).reshape(count, depth))
     seconds = quickest(lambda: linalg.blas.dsyrk(1.0, panel, lower=1))
     return 0.5 * count * (count + 1) * depth / max(seconds, 1e-6)
