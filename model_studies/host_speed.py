@@ -1,8 +1,8 @@
 """Speeds of this host for predictions of cost, measured once and stored, so that predictions agree.
 
 The benchmark is a short factorization of a sparse matrix. It represents all work except dense algebra, which
-has a benchmark of its own (`cyclic_compliance.dense_rate` of fe_contact). On shared processors, a repeated
-measurement of either differs by tens of per cent.
+has a benchmark of its own (`condensation_cost` of fe_contact). On shared processors, a repeated measurement
+of either differs by tens of per cent.
 """
 
 from __future__ import annotations
@@ -21,13 +21,18 @@ import numpy as np
 from host.directories import atomic_file
 from host.optional_modules import sparse, sparse_linalg
 
-VERSION = 1  # raise it with every change of the benchmark or its reference
+VERSION = 2  # raise it with every change of the benchmark or its reference
 FILE = "host-speed.json"
-REFERENCE_SECONDS = 0.0065
+REFERENCE_SECONDS = 0.00255
 """CPU seconds of the benchmark on the host where the constants of the cost model were measured."""
-_SIDE, _REPEATS = 60, 5
-_AGREEMENT = 1.03
-"""Ratio of the two quickest runs of the benchmark at which a further run would tell nothing new."""
+_SIDE, _REPEATS = 40, 12
+_ALIKE, _AGREEMENT = 3, 1.02
+"""Number of the quickest runs of a benchmark, and the ratio of the slowest to the quickest of them, at which
+a further run would tell nothing new. The first runs get fresh memory, and others of the host's processors
+come and go: two runs agree by chance, at up to twice the time.
+"""
+_THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+"""Variables that state the number of threads, the first that is set first."""
 _SLOWEST = 1000.0
 """Largest slowness that counts as a measurement, and the inverse of the smallest."""
 
@@ -38,6 +43,19 @@ def host_slowness(cache: Path | None) -> float:
     `cache`: as of `cached_speed`.
     """
     return cached_speed(cache, "slowness", measured_slowness, (1.0 / _SLOWEST, _SLOWEST))
+
+
+def algebra_threads() -> int:
+    """Return the number of threads that dense linear algebra of this process starts.
+
+    Threads that wait for each other take CPU time: a speed that is measured in one number of threads is not
+    that of another.
+    """
+    for variable in _THREADS:
+        number = os.environ.get(variable, "")
+        if number.isdigit() and int(number) > 0:
+            return int(number)
+    return os.cpu_count() or 1
 
 
 def cached_speed(
@@ -71,12 +89,18 @@ def measured_slowness() -> float:
     laplacian = sparse.diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(_SIDE, _SIDE))
     matrix = sparse.csc_array(sparse.kronsum(laplacian, laplacian))
     load = np.ones(_SIDE**2)
+    seconds = quickest(lambda: sparse_linalg.splu(matrix).solve(load))
+    return min(max(seconds / REFERENCE_SECONDS, 1.0 / _SLOWEST), _SLOWEST)
+
+
+def quickest(run: Callable[[], object]) -> float:
+    """Return the CPU seconds of the quickest of several runs of a benchmark of some milliseconds."""
     times: list[float] = []
-    while len(times) < 2 or (len(times) < _REPEATS and times[1] > _AGREEMENT * times[0]):
+    while len(times) < _ALIKE or (len(times) < _REPEATS and times[_ALIKE - 1] > _AGREEMENT * times[0]):
         start = time.process_time()
-        sparse_linalg.splu(matrix).solve(load)
+        run()
         times = sorted([*times, time.process_time() - start])
-    return min(max(times[0] / REFERENCE_SECONDS, 1.0 / _SLOWEST), _SLOWEST)
+    return times[0]
 
 
 def _identity() -> dict[str, object]:

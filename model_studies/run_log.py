@@ -10,9 +10,12 @@ from __future__ import annotations
 import json
 import math
 import statistics
+from collections import Counter
 from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
+
+from host.directories import atomic_file
 
 FILE = "run-log.jsonl"
 LAST = 40
@@ -20,7 +23,8 @@ LAST = 40
 _MADE_UP = 2
 _SHORTEST = 0.02
 """Shortest stage whose cost corrects predictions, s. Shorter ones read from the cache, or call libraries."""
-_LARGEST_FILE = 1_000_000  # bytes, above which the log starts anew
+_LARGEST_FILE = 32_000
+"""Size in bytes above which only runs that count stay in the log: every run reads it."""
 
 
 def corrections(cache: Path | None) -> dict[str, float]:
@@ -71,11 +75,24 @@ def record(cache: Path | None, predicted: Mapping[str, float], measured: Mapping
         cache.mkdir(parents=True, exist_ok=True)
         file = cache / FILE
         if file.exists() and file.stat().st_size > _LARGEST_FILE:
-            file.unlink()
+            _shorten(file)
         with file.open("a", encoding="utf-8") as stream:
             stream.write("".join(f"{line}\n" for line in lines))
     except OSError:
         return
+
+
+def _shorten(file: Path) -> None:
+    """Keep the last runs of each stage, in their order; lines that cannot be read go."""
+    counts: Counter[str] = Counter()
+    kept: list[str] = []
+    for line in reversed(file.read_text(encoding="utf-8", errors="replace").splitlines()):
+        entry = _entry(line)
+        if entry is not None and counts[entry[0]] < LAST:
+            counts[entry[0]] += 1
+            kept.append(line)
+    with atomic_file(file) as draft:
+        draft.write_text("".join(f"{line}\n" for line in reversed(kept)), encoding="utf-8")
 
 
 def _lines(file: Path) -> list[tuple[str, float]]:
@@ -84,13 +101,14 @@ def _lines(file: Path) -> list[tuple[str, float]]:
         text = file.read_text(encoding="utf-8", errors="replace")
     except OSError:
         return []
-    entries = []
-    for line in text.splitlines():
-        try:
-            entry = json.loads(line)
-            ratio = float(entry["measured"]) / float(entry["predicted"])
-            if isinstance(entry["stage"], str) and math.isfinite(ratio) and ratio > 0.0:
-                entries.append((entry["stage"], ratio))
-        except (ValueError, KeyError, TypeError, ZeroDivisionError):
-            continue
-    return entries
+    return [entry for entry in map(_entry, text.splitlines()) if entry is not None]
+
+
+def _entry(line: str) -> tuple[str, float] | None:
+    """Return stage and measured over predicted time of a line; None where it cannot be read."""
+    try:
+        entry = json.loads(line)
+        stage, ratio = entry["stage"], float(entry["measured"]) / float(entry["predicted"])
+    except (ValueError, KeyError, TypeError, ZeroDivisionError):
+        return None
+    return (stage, ratio) if isinstance(stage, str) and math.isfinite(ratio) and ratio > 0.0 else None

@@ -21,9 +21,8 @@ from fe_contact.mesh.bore_support import bore_support
 from fe_contact.mesh.sector_outline import sector_outline
 from fe_contact.mesh.sector_recipe import SectorRecipe
 from fe_contact.mesh.swept_sector import swept_sector
-from host import cpu_seconds
 from host.optional_modules import linalg
-from model_studies.host_speed import cached_speed
+from model_studies.host_speed import algebra_threads, cached_speed, quickest
 
 RANK_SHARE = 0.23  # most flank loads that the ring is solved for, over flank freedoms; measured 0.22 to 0.24
 
@@ -105,7 +104,7 @@ def predict_cost(
         Directory of what is known of the host.
     """
     operations, working_bytes = _counted(gear.unmodified(), recipe or SectorRecipe.standard(gear))
-    rate = cached_speed(cache, "dense_rate", _dense_rate, _RATES)
+    rate = cached_speed(cache, f"dense_rate_{algebra_threads()}_threads", _dense_rate, _RATES)
     seconds = {part: count / rate for part, count in operations.items()}
     return PredictedCost({"mesh": MESH_SECONDS} | seconds, working_bytes)
 
@@ -164,12 +163,12 @@ def _working_bytes(tree: EliminationTree, sizes: _SectorSizes) -> int:
 
 @lru_cache(maxsize=1)
 def _dense_rate() -> float:
-    """Return multiplications with addition per CPU second of a symmetric update."""
-    count, depth = 600, 300
+    """Return multiplications with addition per CPU second of a symmetric update.
+
+    The update is as large as that of a large front: in two threads a smaller one, of 600 rows, takes four
+    times the CPU time of one thread, and a whole condensation hardly more.
+    """
+    count, depth = 1000, 300
     panel = np.asfortranarray(np.sin(np.arange(count * depth, dtype=float)).reshape(count, depth))
-    times = []
-    for _ in range(5):
-        start = cpu_seconds()
-        linalg.blas.dsyrk(1.0, panel, lower=1)
-        times.append(cpu_seconds() - start)
-    return 0.5 * count * (count + 1) * depth / max(float(np.median(times)), 1e-6)
+    seconds = quickest(lambda: linalg.blas.dsyrk(1.0, panel, lower=1))
+    return 0.5 * count * (count + 1) * depth / max(seconds, 1e-6)

@@ -24,6 +24,10 @@ _UNUSED = 3
 """References to a shared array of which no view is in use: its list, the local name, and the argument of
 `sys.getrefcount`.
 """
+_SPARE = 1.25
+"""Size of a shared array over that of the first factors in it: the next may be a little larger. Memory that
+nobody writes to is neither cleared nor counted.
+"""
 _shared: ContextVar[list[FloatArray] | None] = ContextVar("shared", default=None)
 """List of the one array for factors that eliminations of this context share; None: they share none."""
 
@@ -32,7 +36,7 @@ _shared: ContextVar[list[FloatArray] | None] = ContextVar("shared", default=None
 def shared_factors() -> Iterator[None]:
     """Let each elimination within take the memory of the factors of the one before, once these are deleted.
 
-    The memory is freed at the end. It is allocated once if the largest elimination comes first.
+    The memory is freed at the end. It is allocated once if none is much larger than the first.
     """
     token = _shared.set([])
     try:
@@ -50,7 +54,7 @@ def _factor_memory(size: int) -> FloatArray:
         if piece.size >= size and sys.getrefcount(piece) <= _UNUSED:
             return piece[:size]
     shared.clear()
-    shared.append(np.empty(size))
+    shared.append(np.empty(round(_SPARE * size)))
     return shared[0][:size]
 
 

@@ -18,7 +18,7 @@ from fe_contact.contact.newton import empty_system, newton_system
 from fe_contact.contact.point_problem import (
     PointProblem,
     PointProblems,
-    motions,
+    motion_at,
     point_problems,
     press,
     pressed_state,
@@ -138,7 +138,8 @@ def _pushed(problem: PointProblem, force: FloatArray, rows: FloatArray) -> Float
         for r in range(size):
             pressed[system.member[r]] = right[a, r]
         yield_to(state.yielding, pressed, motion)
-        out[a] = state.slope * (rows[a] - motions(problem, motion))
+        for q in range(force.size):
+            out[a, q] = state.slope[q] * (rows[a, q] - motion_at(problem, q, motion))
     return out
 
 

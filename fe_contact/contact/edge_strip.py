@@ -35,8 +35,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fe_contact.contact.kernel import kernel
 from fe_contact.types import BoolArray, FloatArray
-from host.loops import inner, njit
+from host.loops import njit
 
 SIDE, OFFSET, RADIUS, SOFTNESS, PATCH, MISSING, CORNER, LENGTH = range(8)
 """Columns of a table of edge strips (..., n, 8), in the order of the fields of `EdgeStrips`."""
@@ -99,7 +100,7 @@ class EdgeMotion(NamedTuple):
     """`corner`, `softness`: Approach that the local law lacks, m, and its derivative by the force, m/N."""
 
 
-@inner(error_model="numpy")
+@kernel
 def edge_position(
     offset: float, radius: float, softness: float, force: float
 ) -> tuple[float, float, float, float, float]:
@@ -124,7 +125,7 @@ def edge_position(
     return centroid, 0.5 * length, -0.25 * square, 0.5 * square * growth, growth
 
 
-@inner(error_model="numpy")
+@kernel
 def edge_motion(edge: FloatArray, i: int, force: float, tilt: float) -> EdgeMotion:
     """Return the motion by a force in N on slice i and a tilt of its flanks; `edge` (n, 8) is a table."""
     side, radius, softness, patch = edge[i, SIDE], edge[i, RADIUS], edge[i, SOFTNESS], edge[i, PATCH]
@@ -145,7 +146,7 @@ def edge_motion(edge: FloatArray, i: int, force: float, tilt: float) -> EdgeMoti
     )
 
 
-@inner(error_model="numpy")
+@kernel
 def _corner(edge: FloatArray, i: int, force: float) -> tuple[float, float]:
     """Return Y of the file's head in m, and its derivative by the force in m/N; `part` is 1 - w."""
     offset, radius, softness, part = edge[i, OFFSET], edge[i, RADIUS], edge[i, SOFTNESS], edge[i, MISSING]

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
+
+from fe_contact.contact.kernel import kernel, kernel_of_sums
 from fe_contact.types import FloatArray
-from host.loops import inner
 
 
-@inner(fastmath={"reassoc", "contract"})
+@kernel_of_sums
 def dot(x: FloatArray, y: FloatArray, n: int) -> float:
     """Return the sum of products of the first `n` entries."""
     total = 0.0
@@ -15,7 +17,34 @@ def dot(x: FloatArray, y: FloatArray, n: int) -> float:
     return total
 
 
-@inner(error_model="numpy")
+@kernel
+def copy(values: FloatArray, out: FloatArray) -> None:
+    """Copy values (n,) to `out` (n,)."""
+    for i in range(out.size):
+        out[i] = values[i]
+
+
+@kernel
+def any_nonzero(values: FloatArray) -> bool:
+    """Whether any value (n,) is not zero; NaN counts."""
+    nonzero = False
+    for value in values:
+        nonzero = nonzero or value != 0.0
+    return nonzero
+
+
+@kernel
+def largest_size(values: FloatArray) -> float:
+    """Return the largest absolute value, NaN where any value (n,) is."""
+    largest = 0.0
+    for value in values:
+        if math.isnan(value):
+            return float(value)
+        largest = max(largest, abs(value))
+    return largest
+
+
+@kernel
 def eliminate(a: FloatArray, right: FloatArray, n: int) -> bool:
     """Solve a x = right for the leading n x n block; `right` (k, n) holds k right-hand sides, then solutions.
 
@@ -44,14 +73,14 @@ def eliminate(a: FloatArray, right: FloatArray, n: int) -> bool:
     return True
 
 
-@inner(error_model="numpy")
+@kernel
 def subtract(x: FloatArray, y: FloatArray, part: float) -> None:
     """Subtract `part` times `y` from `x`."""
     for k in range(x.size):
         x[k] -= part * y[k]
 
 
-@inner(error_model="numpy")
+@kernel
 def _swap(x: FloatArray, y: FloatArray, n: int) -> None:
     for k in range(n):
         x[k], y[k] = y[k], x[k]

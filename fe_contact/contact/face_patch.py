@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_contact.contact.elimination import dot
+from fe_contact.contact.kernel import kernel
 from fe_contact.contact.patch import profile_moments
 from fe_contact.types import BoolArray, FloatArray, IntArray
 from host.loops import inner, njit
@@ -73,31 +74,56 @@ def face_loads(
     along_moments, across_moments = np.zeros(3), np.zeros(3)
     for p in range(n):
         for q in range(count):
-            middle, half = center[p, q], half_width[p, q]
-            left, right = _part(low[p], high[p], q, count)
-            for e in range((grid.s.size - 1) // 2):
-                if not _overlaps(grid.s[2 * e], grid.s[2 * e + 2], middle - half, middle + half):
-                    continue
-                moments = profile_moments(grid.s, e, middle, half, edge_share[p, q])
-                for k in range(3):
-                    along_moments[k] = moments[k] / count
-                for k in range(grid.z.size - 1):
-                    if _overlaps(grid.z[k], grid.z[k + 1], left, right):
-                        _box_moments(grid.z[k], grid.z[k + 1], left, right, across_moments)
-                        used[p] = _add_face(
-                            grid.freedom,
-                            e,
-                            k,
-                            along_moments,
-                            across_moments,
-                            nodes[p],
-                            forces[p],
-                            slot,
-                            used[p],
-                        )
+            patch = center[p, q], half_width[p, q], edge_share[p, q]
+            ends = _part(low[p], high[p], q, count)
+            used[p] = _add_patch(
+                grid,
+                patch,
+                ends,
+                count,
+                along_moments,
+                across_moments,
+                nodes[p],
+                forces[p],
+                slot,
+                used[p],
+            )
         for i in range(used[p]):
             slot[nodes[p, i]] = -1
     return FaceLoads(nodes, forces, used)
+
+
+@kernel
+def _add_patch(
+    grid: FaceGrid,
+    patch: tuple[float, float, float],
+    ends: tuple[float, float],
+    count: int,
+    along_moments: FloatArray,
+    across_moments: FloatArray,
+    nodes: IntArray,
+    forces: FloatArray,
+    slot: IntArray,
+    used: int,
+) -> int:
+    """Add the nodal forces of one of `count` patches; return how many entries are used then.
+
+    `patch`: Center, half-width and edge share. `ends`: Range of the patch along the face, m. The moments are
+    overwritten. `nodes`, `forces`, `slot` and `used` are those of `_add_face`.
+    """
+    middle, half, edge_share = patch
+    left, right = ends
+    for e in range((grid.s.size - 1) // 2):
+        if not _overlaps(grid.s[2 * e], grid.s[2 * e + 2], middle - half, middle + half):
+            continue
+        moments = profile_moments(grid.s, e, middle, half, edge_share)
+        for k in range(3):
+            along_moments[k] = moments[k] / count
+        for k in range(grid.z.size - 1):
+            if _overlaps(grid.z[k], grid.z[k + 1], left, right):
+                _box_moments(grid.z[k], grid.z[k + 1], left, right, across_moments)
+                used = _add_face(grid.freedom, e, k, along_moments, across_moments, nodes, forces, slot, used)
+    return used
 
 
 @njit(cache=True)
@@ -106,18 +132,29 @@ def means_and_differences(first: FaceLoads, second: FaceLoads, half: float) -> F
     n, count, others = first.used.size, first.used.max(), second.used.max()
     nodes = np.empty((2 * n, count + others), dtype=np.int64)
     forces = np.empty((2 * n, count + others))
+    _halve(first, 0, count, half, nodes, forces)
+    _halve(second, count, others, -half, nodes, forces)
     for p in range(n):
-        for k in range(count + others):
-            loads, i, sign = (first, k, 1.0) if k < count else (second, k - count, -1.0)
-            node = loads.nodes[p, i]
-            # numbers beyond the used ones are no forces, on any node
-            nodes[2 * p : 2 * p + 2, k] = first.nodes[p, 0] if node < 0 else node
-            forces[2 * p, k] = 0.5 * loads.forces[p, i]
-            forces[2 * p + 1, k] = sign * half * loads.forces[p, i]
+        for k in range(count + others):  # numbers beyond the used ones are no forces, on any node
+            if nodes[2 * p, k] < 0:
+                nodes[2 * p, k] = nodes[2 * p + 1, k] = first.nodes[p, 0]
     return FaceLoads(nodes, forces, np.full(2 * n, count + others))
 
 
-@inner()
+@kernel
+def _halve(
+    loads: FaceLoads, begin: int, count: int, factor: float, nodes: IntArray, forces: FloatArray
+) -> None:
+    """Fill columns from `begin` on with half the forces of loads, in next rows with `factor` times them."""
+    for p in range(loads.used.size):
+        for k in range(count):
+            nodes[2 * p, begin + k] = loads.nodes[p, k]
+            nodes[2 * p + 1, begin + k] = loads.nodes[p, k]
+            forces[2 * p, begin + k] = 0.5 * loads.forces[p, k]
+            forces[2 * p + 1, begin + k] = factor * loads.forces[p, k]
+
+
+@kernel
 def _max_nodes(
     grid: FaceGrid, center: FloatArray, half_width: FloatArray, low: FloatArray, high: FloatArray
 ) -> int:
@@ -127,36 +164,38 @@ def _max_nodes(
     for p in range(n):
         needed = 0
         for q in range(count):
-            along = _touched(grid.s[::2], center[p, q] - half_width[p, q], center[p, q] + half_width[p, q])
-            across = _touched(grid.z, *_part(low[p], high[p], q, count))
+            middle, half = center[p, q], half_width[p, q]
+            along = _touched(grid.s, 2, middle - half, middle + half)
+            left, right = _part(low[p], high[p], q, count)
+            across = _touched(grid.z, 1, left, right)
             needed += (2 * along + 1) * (2 * across + 1)
         maximum = max(maximum, needed)
     return maximum
 
 
-@inner()
+@kernel
 def _part(low: float, high: float, q: int, count: int) -> tuple[float, float]:
     """Return part q of a range that is divided into `count` equal parts."""
     step = (high - low) / count
     return low + q * step, low + (q + 1) * step
 
 
-@inner()
+@kernel
 def _overlaps(left: float, right: float, low: float, high: float) -> bool:
     """Return whether two intervals have more than a point in common."""
     return right > low and left < high
 
 
-@inner()
-def _touched(ends: FloatArray, low: float, high: float) -> int:
-    """Count the elements between consecutive ends that the interval overlaps."""
+@kernel
+def _touched(nodes: FloatArray, step: int, low: float, high: float) -> int:
+    """Count the elements, between every `step`th of the nodes, that the interval overlaps."""
     count = 0
-    for e in range(ends.size - 1):
-        count += _overlaps(ends[e], ends[e + 1], low, high)
+    for e in range(0, nodes.size - step, step):
+        count += _overlaps(nodes[e], nodes[e + step], low, high)
     return count
 
 
-@inner()
+@kernel
 def _box_moments(left: float, right: float, low: float, high: float, out: FloatArray) -> None:
     """Fill `out` with moments 0 to 2 of a uniform unit load on one layer, in its coordinate from -1 to 1."""
     start = 2.0 * (max(left, low) - left) / (right - left) - 1.0
@@ -167,7 +206,7 @@ def _box_moments(left: float, right: float, low: float, high: float, out: FloatA
     out[2] = density * (stop**3 - start**3) / 3.0
 
 
-@inner()
+@kernel
 def _add_face(
     index: IntArray,
     e: int,
@@ -280,23 +319,36 @@ def _slice_forces(
     low, width, start = _ranges(loads, at[1], rank, ends)
     count = lever.shape[0]
     force = np.zeros(start[-1] * count)
+    slices = _SliceForces(low, width, start, force, lever)
+    _fill_forces(loads, at, rank, slices)
+    return slices
+
+
+@kernel
+def _fill_forces(loads: FaceLoads, at: IntArray, rank: IntArray, slices: _SliceForces) -> None:
+    """Add the nodal forces of all loads to the forces of slices."""
+    count = slices.lever.shape[0]
     for r in range(at.shape[1]):
         p, i = at[0, r], at[1, r]
-        begin = start[i] * count + p * width[i] - low[i]
+        begin = slices.start[i] * count + p * slices.width[i] - slices.low[i]
         for k in range(loads.used[r]):
-            force[begin + rank[i, loads.nodes[r, k]]] += loads.forces[r, k]
-    return _SliceForces(low, width, start, force, lever)
+            slices.force[begin + rank[i, loads.nodes[r, k]]] += loads.forces[r, k]
 
 
 @inner()
 def _gathered(block: FloatArray, rows: IntArray, columns: IntArray, buffer: FloatArray) -> FloatArray:
     """Return rows and columns of a block side by side in memory, in a part of `buffer`."""
     gathered = buffer[: rows.size * columns.size].reshape(rows.size, columns.size)
-    for k in range(rows.size):
-        row = block[rows[k]]
-        for m in range(columns.size):
-            gathered[k, m] = row[columns[m]]
+    _gather(block, rows, columns, gathered)
     return gathered
+
+
+@kernel
+def _gather(block: FloatArray, rows: IntArray, columns: IntArray, out: FloatArray) -> None:
+    """Copy rows and columns of a block to `out`."""
+    for k in range(rows.size):
+        for m in range(columns.size):
+            out[k, m] = block[rows[k], columns[m]]
 
 
 @inner()
@@ -310,13 +362,23 @@ def _add_teeth(
     for i in range(ends[a], ends[a + 1]):
         force = forces[start[i] * count : start[i + 1] * count].reshape(count, width[i])
         np.dot(force, block[low[i] : low[i] + width[i]], motion)
-        for j in range(i if a == b else ends[b], ends[b + 1]):
-            for p in range(count):
-                begin = start[j] * count + p * width[j]
-                value = dot(motion[p, low[j] :], forces[begin:], width[j]) * lever[p, i] * lever[p, j]
-                out[p, i, j] += value
-                if i != j:
-                    out[p, j, i] += value
+        _add_motions(motion, slices, i, (i if a == b else ends[b], ends[b + 1]), out)
+
+
+@kernel
+def _add_motions(
+    motion: FloatArray, slices: _SliceForces, i: int, others: tuple[int, int], out: FloatArray
+) -> None:
+    """Add the motions (P, f) by the force on slice i at a range of other slices, and those the other way."""
+    count, lever = motion.shape[0], slices.lever
+    for j in range(others[0], others[1]):
+        low, width = slices.low[j], slices.width[j]
+        for p in range(count):
+            begin = slices.start[j] * count + p * width
+            value = dot(motion[p, low:], slices.force[begin:], width) * lever[p, i] * lever[p, j]
+            out[p, i, j] += value
+            if i != j:
+                out[p, j, i] += value
 
 
 @inner()
@@ -340,10 +402,7 @@ def _needed(order: IntArray, loads: FaceLoads, on: IntArray, ends: IntArray) -> 
     rank = np.full((ends[-1], order.size), -1, dtype=np.int64)
     for a in range(ends.size - 1):
         loaded = np.zeros(order.size, dtype=np.bool_)
-        for r in range(on.size):
-            if ends[a] <= on[r] < ends[a + 1]:
-                for k in range(loads.used[r]):
-                    loaded[loads.nodes[r, k]] = True
+        _mark(loads, on, ends[a], ends[a + 1], loaded)
         for node in order:
             if loaded[node]:
                 rank[ends[a] : ends[a + 1], node] = needed[a, 0]
@@ -352,17 +411,33 @@ def _needed(order: IntArray, loads: FaceLoads, on: IntArray, ends: IntArray) -> 
     return needed, rank
 
 
+@kernel
+def _mark(loads: FaceLoads, on: IntArray, first: int, end: int, loaded: BoolArray) -> None:
+    """Mark the degrees of freedom that loads on slices from `first` to before `end` act on."""
+    for r in range(on.size):
+        if first <= on[r] < end:
+            for k in range(loads.used[r]):
+                loaded[loads.nodes[r, k]] = True
+
+
 @inner()
 def _ranges(
     loads: FaceLoads, on: IntArray, rank: IntArray, ends: IntArray
 ) -> tuple[IntArray, IntArray, IntArray]:
     """Return `low`, `width` and `start` of `_SliceForces`."""
     low, high = np.full(ends[-1], rank.shape[1]), np.zeros(ends[-1], dtype=np.int64)
-    for r in range(on.size):
-        for k in range(loads.used[r]):
-            index = rank[on[r], loads.nodes[r, k]]
-            low[on[r]], high[on[r]] = min(low[on[r]], index), max(high[on[r]], index + 1)
+    _widen(loads, on, rank, low, high)
     low = np.minimum(low, high)
     start = np.zeros(ends[-1] + 1, dtype=np.int64)
     start[1:] = np.cumsum(high - low)
     return low, high - low, start
+
+
+@kernel
+def _widen(loads: FaceLoads, on: IntArray, rank: IntArray, low: IntArray, high: IntArray) -> None:
+    """Widen the range of ranks of each slice, from low to before high (n,), by those that its loads have."""
+    for r in range(on.size):
+        i = on[r]
+        for k in range(loads.used[r]):
+            index = rank[i, loads.nodes[r, k]]
+            low[i], high[i] = min(low[i], index), max(high[i], index + 1)

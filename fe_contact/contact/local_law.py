@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fe_contact.contact.kernel import kernel
 from fe_contact.contact.strip import (
     CURVATURE,
     free_strip,
@@ -65,7 +66,7 @@ def local_law(gap: FloatArray, width: FloatArray, modulus: FloatArray, length: f
     return LocalLaw(gap, strip, length)
 
 
-@inner(error_model="numpy")
+@kernel
 def approach(law: LocalLaw, i: int, force: float) -> tuple[float, float, bool]:
     """Return the local approach of contact `i` under `force` in N.
 
@@ -95,7 +96,7 @@ def approach(law: LocalLaw, i: int, force: float) -> tuple[float, float, bool]:
     return rigid + slope * p, slope / width, beyond
 
 
-@inner(error_model="numpy")
+@kernel
 def plain_approach(law: LocalLaw, i: int, force: float) -> float:
     """Return the local approach in m of contact `i` under `force` in N, > 0, on a gap that is a parabola."""
     p, (k, minimum, widest) = force / law.strip[i, _WIDTH], _limits(law, i)
@@ -106,13 +107,13 @@ def plain_approach(law: LocalLaw, i: int, force: float) -> float:
     )
 
 
-@inner(error_model="numpy")
+@kernel
 def width_of(law: LocalLaw, i: int) -> float:
     """Return the length of contact line of contact `i`, m."""
     return float(law.strip[i, _WIDTH])
 
 
-@inner(error_model="numpy")
+@kernel
 def carrying_strip(law: LocalLaw, i: int, force: float) -> tuple[float, float]:
     """Return middle and half length in m of the strip over which contact `i` carries `force` in N, > 0."""
     _, minimum, widest = _limits(law, i)
@@ -122,7 +123,7 @@ def carrying_strip(law: LocalLaw, i: int, force: float) -> tuple[float, float]:
     return (0.0 if half <= law.strip[i, _FREE] else strip_middle(law.gap, i, half)), half
 
 
-@inner(error_model="numpy")
+@kernel
 def force_at(law: LocalLaw, i: int, value: float) -> tuple[float, float]:
     """Return the force of contact `i` in N at a local approach in m, and its derivative in N/m.
 
@@ -153,7 +154,7 @@ def force_at(law: LocalLaw, i: int, value: float) -> tuple[float, float]:
     return width * load, width * slope
 
 
-@inner(error_model="numpy")
+@kernel
 def _load_on(
     half: float, carried: float, rigid: float, length: float, modulus: float, value: float
 ) -> tuple[float, float]:
@@ -168,14 +169,14 @@ def _load_on(
     return (value - rigid) / slope, 1.0 / slope
 
 
-@inner(error_model="numpy")
+@kernel
 def _limits(law: LocalLaw, i: int) -> tuple[float, float, float]:
     """Return k = 2/(pi E*) in 1/Pa, and the least and the largest half strip that the formulas take, m."""
     length = law.strip[i, REFERENCE_LENGTH]
     return 2.0 / (math.pi * law.strip[i, MODULUS]), SMALLEST_STRIP * length, LARGEST_STRIP * length
 
 
-@inner(error_model="numpy")
+@kernel
 def plain_strip(curvature: float, length: float, value: float, guess: float) -> float:
     """Return the half strip h in m of a parabola at an approach `value` in m, at most `LARGEST_STRIP` l.
 
@@ -199,7 +200,7 @@ def plain_strip(curvature: float, length: float, value: float, guess: float) -> 
     return length * math.sqrt(y)
 
 
-@inner(error_model="numpy")
+@kernel
 def plain_load(
     curvature: float, length: float, modulus: float, half: float, value: float
 ) -> tuple[float, float]:
@@ -212,7 +213,7 @@ def plain_load(
     return _load_on(half, math.pi * modulus * rise, rise, length, modulus, value)
 
 
-@inner(error_model="numpy")
+@kernel
 def half_strip_at(law: LocalLaw, i: int, value: float, half: float) -> float:
     """Return the half strip in m at an approach `value` in m, searched from the guess `half` on.
 

@@ -30,13 +30,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fe_contact.contact.elimination import dot, eliminate, subtract
+from fe_contact.contact.elimination import any_nonzero, copy, dot, eliminate, largest_size, subtract
+from fe_contact.contact.kernel import kernel
 from fe_contact.contact.local_law import approach, plain_approach, width_of
 from fe_contact.contact.point_problem import (
     PointProblem,
     State,
+    begin,
     evaluate,
-    motions,
+    motion_at,
     press,
     pressed_state,
     stiffness,
@@ -97,23 +99,65 @@ class NewtonSystem(NamedTuple):
     """N'D b of all curves, N/m. Shape (n,)."""
     parted_load: FloatArray
     """Forces h - N'F that remain on curves whose contacts have parted, N; zero of members. Shape (n,)."""
+    pulled: FloatArray
+    """N'D a of all curves, N/m. Shape (n,)."""
+    pushed: FloatArray
+    """Heights of the members under the forces that remain on parted curves, m. Shape (n,)."""
+    change: FloatArray
+    motion: FloatArray
+    """`change`, `motion`: Changes of curve forces by a step, N, and of heights, m. Shape (n,) each."""
+    load_before: FloatArray
+    """Forces on the curves before a step, N. Shape (n,)."""
+    defect: FloatArray
+    """Forces h - N'F at the end of a step, N. Shape (n,)."""
+    gap: FloatArray
+    """Normal gaps where the first contact touches, m: the smallest is zero. Shape (m,)."""
 
 
 @inner(error_model="numpy")
 def empty_system(problem: PointProblem) -> NewtonSystem:
-    """Return the equations of a problem with all arrays allocated and none filled in."""
+    """Return the equations of a problem with all arrays allocated and none filled in.
+
+    The solutions of a position at several loads use them one after the other.
+    """
     n = problem.bodies.shape[0]
-    member = np.empty(n, dtype=np.int64)
-    touching = np.empty((n, problem.curve.shape[1]))
-    matrix, compliance = np.empty((n, n)), np.empty((n, n))
-    right = np.empty((2, n))
-    shares, parted_load = np.empty(n), np.empty(n)
-    return NewtonSystem(member, touching, matrix, compliance, right, shares, parted_load)
+    of_curves = np.empty((8, n))
+    return NewtonSystem(
+        member=np.empty(n, dtype=np.int64),
+        touching=np.empty((n, problem.curve.shape[1])),
+        matrix=np.empty((n, n)),
+        compliance=np.empty((n, n)),
+        right=np.empty((2, n)),
+        shares=of_curves[0],
+        parted_load=of_curves[1],
+        pulled=of_curves[2],
+        pushed=of_curves[3],
+        change=of_curves[4],
+        motion=of_curves[5],
+        load_before=of_curves[6],
+        defect=of_curves[7],
+        gap=np.empty(problem.gap.size),
+    )
 
 
 @inner(error_model="numpy")
 def solve_point(
     problem: PointProblem, total: float, force: FloatArray, residual: FloatArray
+) -> tuple[float, float, int, int, bool]:
+    """Solve one position at one load with arrays of its own; see `solve_in`."""
+    return solve_in(
+        problem, total, force, residual, pressed_state(problem, force.copy()), empty_system(problem)
+    )
+
+
+@kernel
+def solve_in(
+    problem: PointProblem,
+    total: float,
+    force: FloatArray,
+    residual: FloatArray,
+    state: State,
+    system: NewtonSystem,
 ) -> tuple[float, float, int, int, bool]:
     """Solve one position at one load.
 
@@ -126,6 +170,8 @@ def solve_point(
     residual : ndarray, shape (4,)
         Out: equilibrium, penetration, tension and complementarity, in this order. Forces are relative to the
         load, lengths to the elastic deflection.
+    state, system : State, NewtonSystem
+        Arrays of the position that the solution fills in.
 
     Returns
     -------
@@ -140,61 +186,92 @@ def solve_point(
     residual[:] = math.inf
     if force.size == 0:
         return math.nan, math.nan, OUT_OF_MODEL, 0, False
-    rigid = np.min(problem.gap / problem.motion_arm)  # deflection at which the first contact touches
-    gap = problem.gap - problem.motion_arm * rigid  # gaps at that deflection: the smallest one is zero
+    rigid, gap = _first_touch(problem), system.gap
     # Bodies that are all zero have no unique motion; a sum that is not finite comes from a bad compliance.
-    if math.isnan(rigid) or not 0.0 < np.abs(problem.bodies).sum() < math.inf:
+    if math.isnan(rigid) or not 0.0 < _sum_of_sizes(problem.bodies) < math.inf:
         force[:] = 0.0
         return math.nan, math.nan, SINGULAR, 0, False
-    state = pressed_state(problem, force)
+    for q in range(gap.size):
+        gap[q] = problem.gap[q] - problem.motion_arm[q] * rigid
+    begin(problem, force, state)
     elastic = _start(problem, total, gap, state)
-    elastic, tangent, status, iterations = _iterate(problem, total, gap, elastic, state)
+    elastic, tangent, status, iterations = _iterate(problem, total, gap, elastic, state, system)
+    copy(state.force, force)
     if status == SINGULAR:
         return math.nan, math.nan, status, iterations, False
     beyond = _residuals(problem, total, elastic, gap, state, residual)
     return rigid + elastic, tangent, status, iterations, beyond
 
 
-@inner(error_model="numpy")
+@kernel
+def _first_touch(problem: PointProblem) -> float:
+    """Return the deflection at which the first contact touches, m; NaN where any gap is."""
+    least = math.inf
+    for q in range(problem.gap.size):
+        deflection = problem.gap[q] / problem.motion_arm[q]
+        if math.isnan(deflection):
+            return math.nan
+        least = min(least, deflection)
+    return least
+
+
+@kernel
+def _sum_of_sizes(matrix: FloatArray) -> float:
+    """Return the sum of the absolute values of a matrix."""
+    total = 0.0
+    for i in range(matrix.shape[0]):
+        for j in range(matrix.shape[1]):
+            total += abs(matrix[i, j])
+    return total
+
+
+@kernel
 def _start(problem: PointProblem, total: float, gap: FloatArray, state: State) -> float:
     """Fill in the state from the starting forces, or from a guess if they are zero; return their deflection.
 
     The elastic deflection is the mean over the contacts of (gap + local approach + motion) / motion arm,
     weighted by force and arm: F'(g + approach + N u) / F'a. A guess needs no exact local law.
     """
-    state.force[:] = np.maximum(state.force, 0.0)
-    guessed = not state.force.any()
+    for q in range(gap.size):
+        state.force[q] = max(state.force[q], 0.0)
+    guessed = not any_nonzero(state.force)
     if guessed:
         _guess(problem, total, gap, state.force)
     press(problem, state.force, state.curve_load)
     move(problem, state)
-    law, force, motion = problem.law, state.force, motions(problem, state.displacement)
+    law, force = problem.law, state.force
     work, arm = 0.0, 0.0  # F'(g + approach + N u) in N m, and F'a in N
     for q in range(gap.size):
         if force[q] > 0.0:
             value = plain_approach(law, q, force[q]) if guessed else approach(law, q, force[q])[0]
-            work += force[q] * (gap[q] + value + motion[q])
+            work += force[q] * (gap[q] + value + motion_at(problem, q, state.displacement))
             arm += force[q] * problem.motion_arm[q]
     elastic = work / arm
     evaluate(problem, gap, elastic, state)
     return float(elastic)
 
 
-@inner(error_model="numpy")
+@kernel
 def _guess(problem: PointProblem, total: float, gap: FloatArray, force: FloatArray) -> None:
     """Fill in a guess of the forces: each contact carries in proportion to its width and its penetration.
 
     The depth of penetration is that of the first contact to touch, if it alone carried the load.
     """
-    depth = total * _softness(problem, int(np.argmin(gap)))
+    first = 0  # the contact that touches first
+    for q in range(gap.size):
+        if gap[q] < gap[first]:
+            first = q
+    depth = total * _softness(problem, first)
     carried = 0.0  # the load that the forces carry before they are scaled to `total`
     for q in range(gap.size):
         force[q] = max(depth - gap[q], 0.0) * width_of(problem.law, q)
         carried += problem.torque_arm[q] * force[q]
-    force *= total / carried
+    scale = total / carried
+    for q in range(gap.size):
+        force[q] *= scale
 
 
-@inner(error_model="numpy")
+@kernel
 def _softness(problem: PointProblem, q: int) -> float:
     """Return an upper bound of the motion of the bodies at a contact per unit force on it, m/N.
 
@@ -208,21 +285,20 @@ def _softness(problem: PointProblem, q: int) -> float:
     return total
 
 
-@inner(error_model="numpy")
+@kernel
 def _iterate(
-    problem: PointProblem, total: float, gap: FloatArray, elastic: float, state: State
+    problem: PointProblem, total: float, gap: FloatArray, elastic: float, state: State, system: NewtonSystem
 ) -> tuple[float, float, int, int]:
     """Iterate to the solution; return elastic deflection, tangent, status and iterations.
 
     Each iteration eliminates the forces on the curves. One equation is left for the deflection: its stiffness
     times the step balances the excess of the load and the defect of the forces on the curves.
     """
-    system = empty_system(problem)
-    change, motion = np.empty((2, state.curve_load.size))  # changes by a step: of curve loads, of motions
+    change, motion = system.change, system.motion
     tangent = math.nan
     last = math.inf  # largest motion of the last step, m
     for iteration in range(1, MAX_ITERATIONS + 1):
-        if not state.slope.any():  # the last step went too far and has parted all flanks
+        if not any_nonzero(state.slope):  # the last step went too far and has parted all flanks
             elastic = _start(problem, total, gap, state)
         size = newton_system(problem, state, system)
         if not eliminate(system.matrix, system.right, size):
@@ -233,22 +309,23 @@ def _iterate(
             return math.nan, math.nan, SINGULAR, iteration
         tangent = 1.0 / stiff
         step = -(excess + residual) * tangent
-        change[:] = state.pressed - state.curve_load  # to N'F, also on curves whose contacts have parted
+        for k in range(change.size):  # to N'F, also on curves whose contacts have parted
+            change[k] = state.pressed[k] - state.curve_load[k]
         for r in range(size):
             change[system.member[r]] = step * system.right[0, r] + system.right[1, r]
         yield_to(state.yielding, change, motion)
         before = last
-        last = max(abs(step), np.abs(motion).max())
+        last = max(abs(step), largest_size(motion))
         if last <= STRAIGHT * elastic and _settle(problem, gap, elastic, step, motion, state):
             return elastic + step, tangent, CONVERGED, iteration
-        elastic = _advance(problem, total, gap, elastic, step, change, motion, state)
+        elastic = _advance(problem, total, gap, elastic, step, state, system)
         rounding = before <= ROUNDING * elastic and last > _SHRINKS * before
         if last <= STEP_TOLERANCE * elastic or rounding:
             return elastic, tangent, CONVERGED, iteration
     return elastic, tangent, ITERATION_LIMIT, MAX_ITERATIONS
 
 
-@inner(error_model="numpy")
+@kernel
 def _settle(
     problem: PointProblem, gap: FloatArray, elastic: float, step: float, motion: FloatArray, state: State
 ) -> bool:
@@ -259,21 +336,19 @@ def _settle(
     changed where False is returned.
     """
     m, arm = gap.size, problem.motion_arm
-    change = motions(problem, motion)  # motions of the bodies; the loop turns them into changes of approach
-    motion_before = motions(problem, state.displacement)
     for q in range(m):
-        change[q] = arm[q] * step - change[q]
-        approached = arm[q] * elastic - gap[q] - motion_before[q]
+        change = arm[q] * step - motion_at(problem, q, motion)
+        approached = arm[q] * elastic - gap[q] - motion_at(problem, q, state.displacement)
         # "not <=" is true of NaN, too
-        if not change[q] * change[q] <= STEP_TOLERANCE * elastic * abs(approached):
+        if not change * change <= STEP_TOLERANCE * elastic * abs(approached):
             return False
     for q in range(m):
-        state.force[q] += state.slope[q] * change[q]
+        state.force[q] += state.slope[q] * (arm[q] * step - motion_at(problem, q, motion))
     press(problem, state.force, state.pressed)
     return True
 
 
-@inner(error_model="numpy")
+@kernel
 def _condensed(problem: PointProblem, state: State, system: NewtonSystem, size: int) -> tuple[float, float]:
     """Return stiffness and defect of the load after the curves are eliminated, N/m and N.
 
@@ -293,35 +368,34 @@ def _condensed(problem: PointProblem, state: State, system: NewtonSystem, size: 
     return stiff, residual
 
 
-@inner(error_model="numpy")
+@kernel
 def _advance(
     problem: PointProblem,
     total: float,
     gap: FloatArray,
     elastic: float,
     step: float,
-    change: FloatArray,
-    motion: FloatArray,
     state: State,
+    system: NewtonSystem,
 ) -> float:
     """Take a step, or a part of it that ends near the least energy along it; return the elastic deflection.
 
     `fall` and `rise` are the slopes of the energy along the step, at its beginning and at the trial length.
     """
-    load_before, elastic_before = state.curve_load.copy(), elastic
-    fall = (dot(problem.torque_arm, state.force, gap.size) - total) * step
-    fall += dot(motion, state.curve_load - state.pressed, motion.size)
+    load_before, elastic_before = system.load_before, elastic
+    copy(state.curve_load, load_before)
+    fall = _energy_slope(problem, total, step, state, system)
     # The least energy lies between the lengths low and high; the slopes there are at_low < 0 and at_high > 0.
     low, at_low = 0.0, fall
     high, at_high = math.inf, math.inf
     length = 1.0
     for _ in range(_CUTS):
         elastic = elastic_before + length * step
-        state.curve_load[:] = load_before + length * change
+        for k in range(load_before.size):
+            state.curve_load[k] = load_before[k] + length * system.change[k]
         move(problem, state)
         evaluate(problem, gap, elastic, state)
-        rise = (dot(problem.torque_arm, state.force, gap.size) - total) * step
-        rise += dot(motion, state.curve_load - state.pressed, motion.size)
+        rise = _energy_slope(problem, total, step, state, system)
         # Accept the length if the energy does not fall even at the beginning (rounding), if its slope is
         # small
         # enough at this length, or if it still falls at the end of the whole step.
@@ -336,11 +410,25 @@ def _advance(
     return elastic
 
 
-@inner(error_model="numpy")
+@kernel
+def _energy_slope(
+    problem: PointProblem, total: float, step: float, state: State, system: NewtonSystem
+) -> float:
+    """Return the slope of the energy along a step in N m, at forces and displacements of the state."""
+    defect = system.defect
+    for k in range(defect.size):
+        defect[k] = state.curve_load[k] - state.pressed[k]
+    slope = (dot(problem.torque_arm, state.force, state.force.size) - total) * step
+    slope += dot(system.motion, defect, defect.size)
+    return slope
+
+
+@kernel
 def newton_system(problem: PointProblem, state: State, system: NewtonSystem) -> int:
     """Fill in Newton's equations; return the number of curves over contacts that touch."""
     # N'D a in N/m of all curves; motion in m of the members by the forces that remain on parted curves
-    pulled, pushed = np.zeros((2, state.curve_load.size))
+    pulled, pushed = system.pulled, system.pushed
+    pulled[:] = 0.0
     fill_yielding(problem, state)
     _touching(problem, state, system, pulled)
     parted_load, member = system.parted_load, system.member
@@ -352,7 +440,7 @@ def newton_system(problem: PointProblem, state: State, system: NewtonSystem) -> 
             size += 1
         else:
             parted_load[k] = state.curve_load[k] - state.pressed[k]
-    any_parted, width = parted_load.any(), system.touching.shape[1]
+    any_parted, width = any_nonzero(parted_load), system.touching.shape[1]
     for r in range(size):
         i = member[r]
         for s in range(size):
@@ -374,14 +462,15 @@ def newton_system(problem: PointProblem, state: State, system: NewtonSystem) -> 
     return size
 
 
-@inner(error_model="numpy")
+@kernel
 def _touching(problem: PointProblem, state: State, system: NewtonSystem, pulled: FloatArray) -> None:
     """Fill in N'DN by its diagonals, `pulled` = N'D a and `shares` = N'D b, of all curves.
 
     `touching` holds one half of the symmetric N'DN, so that b runs up to a only.
     """
     touching, shares = system.touching, system.shares
-    touching[:], shares[:] = 0.0, 0.0
+    touching[:] = 0.0
+    shares[:] = 0.0
     for q in range(state.force.size):
         slope, first = state.slope[q], problem.first[q]
         if slope != 0.0:
@@ -393,7 +482,7 @@ def _touching(problem: PointProblem, state: State, system: NewtonSystem, pulled:
                     touching[first + a, a - b] += part * problem.curve[q, b]
 
 
-@inner(error_model="numpy")
+@kernel
 def _residuals(
     problem: PointProblem,
     total: float,
@@ -408,15 +497,16 @@ def _residuals(
     """
     residual[:] = 0.0
     any_beyond = False
-    state.curve_load[:] = state.pressed
+    copy(state.pressed, state.curve_load)
     move(problem, state)
-    law, force, motion = problem.law, state.force, motions(problem, state.displacement)
+    law, force = problem.law, state.force
     for q in range(gap.size):
         value, beyond = 0.0, False
         if force[q] > 0.0:
             value, _, beyond = approach(law, q, force[q])
         any_beyond = any_beyond or beyond
-        slack = gap[q] + value + motion[q] - problem.motion_arm[q] * elastic
+        motion = motion_at(problem, q, state.displacement)
+        slack = gap[q] + value + motion - problem.motion_arm[q] * elastic
         residual[1] = max(residual[1], -slack / elastic)
         residual[2] = max(residual[2], -force[q] / total)
         residual[3] = max(residual[3], abs(force[q] * slack / elastic) / total)

@@ -20,8 +20,8 @@ from functools import cached_property
 
 import numpy as np
 
+from fe_contact.contact.kernel import kernel
 from fe_contact.types import BoolArray, FloatArray, IntArray
-from host.loops import inner
 
 
 @dataclass(frozen=True)
@@ -142,7 +142,7 @@ def tip_patches(
     return Patches(center, half, share, at_tip=offset < half_width)
 
 
-@inner()
+@kernel
 def load_vector(
     nodes: FloatArray, center: float, half_width: float, edge_share: float, out: FloatArray
 ) -> tuple[int, int]:
@@ -184,7 +184,7 @@ def load_vector(
     return 2 * first, 2 * last + 1
 
 
-@inner()
+@kernel
 def patch_angles(nodes: FloatArray, e: int, center: float, half_width: float) -> tuple[float, float]:
     """Return the angles of a patch, from -pi/2 to pi/2, between which it lies on element e.
 
@@ -197,7 +197,7 @@ def patch_angles(nodes: FloatArray, e: int, center: float, half_width: float) ->
     return start, math.asin(min(max((nodes[2 * e + 2] - center) / half_width, -1.0), 1.0))
 
 
-@inner()
+@kernel
 def profile_moments(
     nodes: FloatArray, e: int, center: float, half_width: float, edge_share: float
 ) -> tuple[float, float, float]:
@@ -212,7 +212,7 @@ def profile_moments(
     return zeroth, first_moment, middle * first_moment + half * (middle * tilt + half * square)
 
 
-@inner()
+@kernel
 def _sine_moments(angle: float, edge_share: float) -> tuple[float, float, float]:
     """Return antiderivatives at an angle of a patch of unit load times powers 0 to 2 of the sine."""
     sine, cosine = math.sin(angle), math.cos(angle)

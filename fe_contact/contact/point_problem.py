@@ -11,6 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fe_contact.contact.elimination import copy
+from fe_contact.contact.kernel import kernel
 from fe_contact.contact.local_law import REFERENCE_LENGTH, LocalLaw, force_at, local_law
 from fe_contact.contact.problem import ContactProblem
 from fe_contact.contact.strip import gap_table
@@ -32,9 +34,11 @@ class PointProblems(NamedTuple):
     """Tables of `EdgeStrips`. Shape (Q, n, 8) where flanks roll, else (1, n, 8)."""
     present: BoolArray
     """Whether any contact can press on a slice. Shape (Q, n)."""
-    curves: FloatArray
+    curve: FloatArray
+    first: IntArray
+    """`curve`, `first`: Arrays of `PointProblem` for the points of a pair. Shapes (points, w), (points,)."""
     heights: FloatArray
-    """`curves`, `heights`: Arrays of `Candidates`. Shapes (points of a pair, K), (K, K)."""
+    """Array of `Candidates`. Shape (K, K)."""
     gap: FloatArray
     motion_arm: FloatArray
     torque_arm: FloatArray
@@ -58,14 +62,16 @@ def point_problems(problem: ContactProblem) -> PointProblems:
     have, it compiled the solver up to eight times, some four seconds each.
     """
     c, rows = problem.candidates, np.ascontiguousarray
-    first, second = problem.half_planes
+    half_planes = problem.half_planes
+    curve, first = _banded(c.curves)
     return PointProblems(
         bodies=rows(problem.bodies),
         tilt=rows(problem.rolling),
         radius=rows(problem.radius),
         edge=rows(problem.edges),
         present=rows(c.slices.present),
-        curves=rows(c.curves),
+        curve=curve,
+        first=first,
         heights=rows(c.heights),
         gap=rows(c.gap * c.motion_arm),
         motion_arm=rows(c.motion_arm),
@@ -74,7 +80,7 @@ def point_problems(problem: ContactProblem) -> PointProblems:
         about=gap_table(c.gap_about),
         length=float(c.slices.law_length),
         lengths=rows(problem.law_length),
-        modulus=rows(2.0 / (math.pi * (first + second))),
+        modulus=rows(2.0 / (math.pi * (half_planes[0] + half_planes[1]))),
     )
 
 
@@ -115,10 +121,6 @@ class RowBodies(NamedTuple):
     compliance: FloatArray
     tilt: FloatArray
     """`compliance`, `tilt`: Arrays `bodies` and `tilt` of `PointProblem`, for all slices of `present`."""
-    curve: FloatArray
-    first: IntArray
-    """`curve`, `first`: Arrays of `PointProblem` for the points of one pair. Shapes (points, w), (points,).
-    """
 
 
 @inner(error_model="numpy")
@@ -132,8 +134,7 @@ def row_bodies(problems: PointProblems, row: int) -> RowBodies:
         tilt = _by_curves(
             problems.heights, _by_curves(problems.heights, problems.tilt[row][slices][:, slices])
         )
-    curve, first = _banded(problems.curves)
-    return RowBodies(present, motion, tilt, curve, first)
+    return RowBodies(present, motion, tilt)
 
 
 @inner(error_model="numpy")
@@ -145,7 +146,7 @@ def problem_at(problems: PointProblems, p: int) -> tuple[PointProblem, IntArray]
 @inner(error_model="numpy")
 def problem_on(problems: PointProblems, bodies: RowBodies, p: int) -> tuple[PointProblem, IntArray]:
     """Return the problem of a position on the bodies of its row, and its contacts among all candidates."""
-    row, (points, count) = p % problems.bodies.shape[0], problems.curves.shape
+    row, points, count = p % problems.bodies.shape[0], problems.first.size, problems.heights.shape[0]
     pairs = np.cumsum(bodies.present[::count]) - 1  # index of each pair among those present
     touching = np.flatnonzero(~(problems.gap[p] == np.inf))  # NaN counts as touching, so as not to be hidden
     radius = problems.radius[p % problems.radius.shape[0]][bodies.present]
@@ -157,12 +158,12 @@ def problem_on(problems: PointProblems, bodies: RowBodies, p: int) -> tuple[Poin
     )
     law.strip[:, REFERENCE_LENGTH] = problems.lengths[row][touching]
     point = touching % points
-    first = pairs[touching // points] * count + bodies.first[point]
+    first = pairs[touching // points] * count + problems.first[point]
     arms = problems.motion_arm[p][touching], problems.torque_arm[p][touching]
     edge = problems.edge[p % problems.edge.shape[0]][bodies.present]
     of_bodies = bodies.compliance, bodies.tilt, radius, edge
     gap = problems.gap[p][touching]
-    return PointProblem(*of_bodies, bodies.curve[point], first, gap, *arms, law), touching
+    return PointProblem(*of_bodies, problems.curve[point], first, gap, *arms, law), touching
 
 
 @inner(error_model="numpy")
@@ -177,22 +178,17 @@ def _by_curves(heights: FloatArray, motion: FloatArray) -> FloatArray:
     return np.ascontiguousarray(curve_heights.T)
 
 
-@inner(error_model="numpy")
 def _banded(curves: FloatArray) -> tuple[FloatArray, IntArray]:
     """Return the values of w neighboring curves at each point (points, w), and the index of the first.
 
     All other curves are zero at the point.
     """
-    points, count = curves.shape
-    first, width = np.zeros(points, dtype=np.int64), 1
-    for point in range(points):
-        nonzero = np.flatnonzero(curves[point])
-        first[point], width = nonzero[0], max(width, nonzero[-1] - nonzero[0] + 1)
+    count = curves.shape[1]
+    nonzero = curves != 0.0
+    first, last = nonzero.argmax(axis=1), count - 1 - nonzero[:, ::-1].argmax(axis=1)
+    width = int((last - first).max()) + 1
     first = np.minimum(first, count - width)
-    curves_at_points = np.empty((points, width))
-    for point in range(points):
-        curves_at_points[point] = curves[point, first[point] : first[point] + width]
-    return curves_at_points, first
+    return np.take_along_axis(curves, first[:, None] + np.arange(width), axis=1), first
 
 
 class State(NamedTuple):
@@ -219,24 +215,34 @@ def pressed_state(problem: PointProblem, force: FloatArray) -> State:
     n, m = problem.bodies.shape[0], force.size
     yielding = np.zeros((n, n)) if problem.tilt.size else problem.bodies  # a constant where no flank rolls
     state = State(np.zeros(n), np.zeros(n), yielding, force, np.zeros(m), np.zeros(n))
-    press(problem, force, state.pressed)
-    state.curve_load[:] = state.pressed
+    begin(problem, force, state)
     return state
 
 
-@inner(error_model="numpy")
+@kernel
+def begin(problem: PointProblem, force: FloatArray, state: State) -> None:
+    """Fill in a state with the forces (m,) of the contacts on the curves; displacements are zero."""
+    copy(force, state.force)
+    state.displacement[:] = 0.0
+    state.slope[:] = 0.0
+    press(problem, force, state.pressed)
+    copy(state.pressed, state.curve_load)
+
+
+@kernel
 def evaluate(problem: PointProblem, gap: FloatArray, elastic: float, state: State) -> None:
     """Fill in forces and slopes of the contacts, and the forces on the curves, at the displacements.
 
     `gap`: Normal gaps (m,), m. `elastic`: Deflection of the driven gear, m.
     """
-    law, arm, motion = problem.law, problem.motion_arm, motions(problem, state.displacement)
     for q in range(gap.size):
-        state.force[q], state.slope[q] = force_at(law, q, arm[q] * elastic - gap[q] - motion[q])
+        motion = motion_at(problem, q, state.displacement)
+        approached = problem.motion_arm[q] * elastic - gap[q] - motion
+        state.force[q], state.slope[q] = force_at(problem.law, q, approached)
     press(problem, state.force, state.pressed)
 
 
-@inner(error_model="numpy")
+@kernel
 def press(problem: PointProblem, force: FloatArray, pressed: FloatArray) -> None:
     """Fill `pressed` (n,) with the forces on the curves under forces (m,) of the contacts, N."""
     pressed[:] = 0.0
@@ -246,19 +252,16 @@ def press(problem: PointProblem, force: FloatArray, pressed: FloatArray) -> None
                 pressed[problem.first[q] + a] += problem.curve[q, a] * force[q]
 
 
-@inner(error_model="numpy")
-def motions(problem: PointProblem, curve_heights: FloatArray) -> FloatArray:
-    """Return the motions of the bodies at the contacts (m,) from the heights (n,) of the curves, m."""
-    curve, first, out = problem.curve, problem.first, np.empty(problem.first.size)
-    for q in range(out.size):
-        value = 0.0
-        for a in range(curve.shape[1]):
-            value += curve[q, a] * curve_heights[first[q] + a]
-        out[q] = value
-    return out
+@kernel
+def motion_at(problem: PointProblem, q: int, curve_heights: FloatArray) -> float:
+    """Return the motion of the bodies at contact `q` from the heights (n,) of the curves, m."""
+    curve, first, value = problem.curve, problem.first[q], 0.0
+    for a in range(curve.shape[1]):
+        value += curve[q, a] * curve_heights[first + a]
+    return value
 
 
-@inner(error_model="numpy")
+@kernel
 def stiffness(problem: PointProblem, state: State) -> float:
     """Return the growth of the load on the contacts per deflection of the driven gear, N/m."""
     value = 0.0

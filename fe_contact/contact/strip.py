@@ -30,8 +30,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fe_contact.contact.kernel import kernel
 from fe_contact.types import FloatArray
-from host.loops import inner, njit
+from host.loops import njit
 
 _TOLERANCE = 1e-9
 """Error of the strip's half length and of its middle, over the half length, at which an iteration ends.
@@ -118,7 +119,7 @@ def gap_table(gap: Gap) -> FloatArray:
     return table
 
 
-@inner(error_model="numpy")
+@kernel
 def free_strip(gap: FloatArray, i: int) -> float:
     """Return the half strip in m up to which a gap is a parabola, without edge or break; 0 on a slope."""
     if gap[i, _SLOPE] != 0.0:
@@ -129,13 +130,13 @@ def free_strip(gap: FloatArray, i: int) -> float:
     return free
 
 
-@inner(error_model="numpy")
+@kernel
 def widest_strip(gap: FloatArray, i: int) -> float:
     """Return half the distance from edge to edge, m: no strip is longer."""
     return 0.5 * float(gap[i, _HIGH] - gap[i, _LOW])
 
 
-@inner(error_model="numpy")
+@kernel
 def half_strip(
     gap: FloatArray, i: int, line_load: float, modulus: float, center: float, guess: float
 ) -> tuple[float, float, float]:
@@ -190,7 +191,7 @@ def half_strip(
     return center, half, rigid
 
 
-@inner(error_model="numpy")
+@kernel
 def strip_load(gap: FloatArray, i: int, half: float, modulus: float) -> tuple[float, float]:
     """Return the line load in N/m under a strip of this half length, and the mean gap over it in m."""
     if half <= free_strip(gap, i):
@@ -206,7 +207,7 @@ def strip_load(gap: FloatArray, i: int, half: float, modulus: float) -> tuple[fl
     return 0.5 * math.pi * modulus * half * first, mean
 
 
-@inner(error_model="numpy")
+@kernel
 def _tilting(gap: FloatArray, i: int, center: float, half: float) -> float:
     """Return how the mean of g' sin t changes with that of g' as the middle moves.
 
@@ -229,7 +230,7 @@ def _tilting(gap: FloatArray, i: int, center: float, half: float) -> float:
     return by_first / by_slope
 
 
-@inner(error_model="numpy")
+@kernel
 def strip_middle(gap: FloatArray, i: int, half: float) -> float:
     """Return the middle of a strip in m: where pressure vanishes at both ends, or one end is at an edge."""
     low: float = max(-half, gap[i, _LOW] + half)
@@ -305,7 +306,7 @@ def rolling_radii(gap: FloatArray, half: FloatArray) -> FloatArray:
     return radius
 
 
-@inner(error_model="numpy")
+@kernel
 def strip_at(
     gap: FloatArray, i: int, value: float, length: float, center: float, half: float
 ) -> tuple[float, float, float, float]:
@@ -354,7 +355,7 @@ def strip_at(
     return 0.0, 0.0, 0.0, 0.0
 
 
-@inner(error_model="numpy")
+@kernel
 def _strip_at_edge(
     gap: FloatArray, i: int, value: float, length: float, half: float, side: float
 ) -> tuple[float, float, float, float]:
@@ -380,7 +381,7 @@ def _strip_at_edge(
     return 0.0, 0.0, 0.0, 0.0
 
 
-@inner(error_model="numpy")
+@kernel
 def past_break(from_middle: float, half: float) -> tuple[float, float, float, float, float]:
     """Return integrals over the angle t of a strip, from a break to the strip's end beyond it.
 
@@ -425,7 +426,7 @@ def means_past_break(
     return height, slope
 
 
-@inner(error_model="numpy")
+@kernel
 def _means(
     gap: FloatArray, i: int, center: float, half: float
 ) -> tuple[float, float, float, float, float, float]:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from fe_contact.contact.edge_strip import SIDE, edge_motion
 from fe_contact.contact.elimination import dot, subtract
+from fe_contact.contact.kernel import kernel
 from fe_contact.contact.point_problem import PointProblem, State
 from fe_contact.types import FloatArray
-from host.loops import inner
 
 
-@inner(error_model="numpy")
+@kernel
 def move(problem: PointProblem, state: State) -> None:
     """Fill in the heights of the curves under the forces on them, u(h).
 
@@ -35,7 +35,7 @@ def move(problem: PointProblem, state: State) -> None:
                 state.displacement[k] += problem.tilt[j, k] * way * state.curve_load[j]
 
 
-@inner(error_model="numpy")
+@kernel
 def rolled(problem: PointProblem, j: int, pressed: FloatArray) -> tuple[float, float, float]:
     """Return the tilt of the flanks at a curve, the motion of their strip in m, and that per tilt."""
     tilt, radius = dot(problem.tilt[j], pressed, pressed.size), problem.radius[j]
@@ -43,13 +43,15 @@ def rolled(problem: PointProblem, j: int, pressed: FloatArray) -> tuple[float, f
     return tilt, way, -radius if abs(way) < problem.law.length else 0.0
 
 
-@inner(error_model="numpy")
+@kernel
 def fill_yielding(problem: PointProblem, state: State) -> None:
     """Fill in the derivative of the displacement in the forces; it is constant where no flank rolls."""
     if not problem.tilt.size:
         return
     n, out = state.curve_load.size, state.yielding
-    out[:] = problem.bodies
+    for j in range(n):
+        for k in range(n):
+            out[j, k] = problem.bodies[j, k]
     for j in range(n):
         row, mixed, square = problem.tilt[j], 0.0, 0.0
         if problem.edge[j, SIDE] != 0.0:
@@ -68,7 +70,7 @@ def fill_yielding(problem: PointProblem, state: State) -> None:
                 subtract(out[k], row, -square * row[k])
 
 
-@inner(error_model="numpy")
+@kernel
 def yield_to(yielding: FloatArray, change: FloatArray, out: FloatArray) -> None:
     """Fill `out` with the change of the heights of the curves by small changes of the forces."""
     for j in range(change.size):

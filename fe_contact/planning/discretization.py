@@ -138,12 +138,14 @@ def plane_discretization(
     factor = PLANE_REFINEMENT[level]
     standard = (MeshRecipe.standard(pair.pinion), MeshRecipe.standard(pair.wheel))
     first, second = (recipe if factor == 1.0 else recipe.refined(factor) for recipe in standard)
-    solids = (SectorRecipe.even_load(pair.pinion), SectorRecipe.even_load(pair.wheel))
+    solids = None
+    if finite_width:
+        solids = SectorRecipe.even_load(pair.pinion), SectorRecipe.even_load(pair.wheel)
     return PlaneDiscretization(
         hypothesis,
         recipes=(first, second),
         coarse_recipes=(first.refined(0.5), second.refined(0.5)),
-        finite_width=solids if finite_width else None,
+        finite_width=solids,
     )
 
 

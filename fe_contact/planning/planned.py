@@ -7,7 +7,7 @@ is then cut into slices.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from bounds import engineering
@@ -190,11 +190,13 @@ def chosen_mesh(
         plan = make_plan(pair, load, options, model, choice.level, choice.slices)
         return predict_run(pair, plan, model, alignments, cache).cpu_seconds
 
+    if options.level is None and options.tolerance is None and options.time_budget is None:
+        options, reason = replace(options, level="standard"), "nothing asked"
+    else:
+        reason = "as requested"
     meshes = mesh_options(pair, load, options, model, alignments, curves, model_chosen=model_chosen)
     if options.level is not None:
-        return MeshChoice(meshes[0], met=True, reason="as requested")
-    if options.tolerance is None and options.time_budget is None:
-        return MeshChoice(meshes[LEVELS.index("standard")], met=True, reason="nothing asked")
+        return MeshChoice(meshes[0], met=True, reason=reason)
     if options.tolerance is not None:
         return mesh_for_tolerance(options.tolerance, meshes)
     return mesh_for_time(options.time_budget or 0.0, meshes, seconds)

@@ -162,7 +162,11 @@ def _on_branches(levels: LoadLevels, pairs: IntArray, k: int, force: FloatArray)
     before = _largest_exponent(levels, k, wanted, ends[1:], end, np.greater_equal)
     wanted = _exponent(levels, pairs, k + 1)
     after = _largest_exponent(levels, k + 1, wanted, ends[:1], start, np.greater)
-    (lower, soft), (upper, stiff) = _branch(levels, k, before, force), _branch(levels, k + 1, after, force)
+    lower, upper = _branch(levels, k, before, force), _branch(levels, k + 1, after, force)
+    soft, stiff = (
+        levels.stiffness[..., level, None] * (force / levels.force[level]) ** exponent
+        for level, exponent in ((k, before), (k + 1, after))
+    )
     return np.minimum(lower, upper), np.where(lower < upper, soft, stiff)
 
 
@@ -179,28 +183,39 @@ def _largest_exponent(
     `compare` takes the deflection at `force` on the branch of level k, and the `limit`, both (P, M, D, 1). It
     holds for the exponent 0. Branches for which it holds with the maximum are not searched.
     """
-    short = ~compare(_branch(levels, k, maximum, force)[0], limit)[..., 0]
+    short = ~compare(_branch(levels, k, maximum, force), limit)[..., 0]
     if not short.any():
         return maximum
-    searched = LoadLevels(levels.force, levels.deflection[short], levels.stiffness[short])
-    high, limit = maximum[short], limit[short]
+    high, limit, ratio = maximum[short], limit[short], force / levels.force[k]
+    # what of a branch does not depend on the exponent
+    start, stiffness = _branch_start(levels, k)
+    start, stiffness = start[short], stiffness[short]
     low = np.zeros_like(high)
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
-        inside = compare(_branch(searched, k, middle, force)[0], limit)
+        inside = compare(start + _rise(stiffness, levels.force[k], ratio, middle), limit)
         low, high = np.where(inside, middle, low), np.where(inside, high, middle)
     exponent = maximum.copy()
     exponent[short] = low
     return exponent
 
 
-def _branch(
-    levels: LoadLevels, k: int, exponent: FloatArray, force: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    ratio, stiffness = force / levels.force[k], levels.stiffness[..., k, None]
+def _branch(levels: LoadLevels, k: int, exponent: FloatArray, force: FloatArray) -> FloatArray:
+    """Return the deflection at forces on the branch of level k, whose stiffness grows with F^exponent, m."""
+    start, stiffness = _branch_start(levels, k)
+    return np.asarray(start + _rise(stiffness, levels.force[k], force / levels.force[k], exponent))
+
+
+def _rise(stiffness: FloatArray, force: float, ratio: FloatArray, exponent: FloatArray) -> FloatArray:
+    """Return how far a branch of this stiffness at a force rises to `ratio` times the force, m."""
     power = 1.0 - exponent
-    rise = levels.force[k] / (np.where(stiffness > 0.0, stiffness, np.inf) * power) * (ratio**power - 1.0)
-    return levels.deflection[..., k, None] + rise, stiffness * ratio**exponent
+    return np.asarray(force / (stiffness * power) * (ratio**power - 1.0))
+
+
+def _branch_start(levels: LoadLevels, k: int) -> tuple[FloatArray, FloatArray]:
+    """Return deflection in m and stiffness in N/m of level k, infinite at lift-off, (..., 1) each."""
+    stiffness = levels.stiffness[..., k, None]
+    return levels.deflection[..., k, None], np.where(stiffness > 0.0, stiffness, np.inf)
 
 
 def _exponent(levels: LoadLevels, pairs: IntArray, k: int) -> FloatArray:

@@ -48,19 +48,26 @@ class Pass:
         return f"{self.decision.checked.model_name}, {self.decision.mesh.option.name}"
 
     def to_json(self) -> Json:
-        """Return model, discretization, cost and refinement of the pass as plain JSON."""
-        mesh, refinement, table = self.decision.mesh, self.refinement, self.table
+        """Return model, discretization, cost and refinement of the pass as plain JSON.
+
+        `used_at_nodes` compares with `expected_used`, what was expected. `used` is more: loads
+        and alignments are inserted until errors between nodes, too, are within what is left.
+        """
+        mesh, refinement = self.decision.mesh, self.refinement
+        tolerance = {} if self.table is None else self.table.metadata.receipt["tolerance"]
+        expected = mesh.option.error.reducible / self.decision.checked.request.options.allowed.relative
         failure = {"failure": self.failure} if self.failure else {}
         return failure | {
             "model": self.decision.checked.model_name,
             "level": mesh.level,
             "slices": mesh.slices,
-            "positions": None if table is None else int(table.position.size),
+            "positions": None if self.table is None else int(self.table.position.size),
             "cpu_seconds": self.cost["cpu_seconds"],
-            "used": None if table is None else table.metadata.receipt["tolerance"]["used"],
+            "used": tolerance.get("used"),
+            "used_at_nodes": tolerance.get("used_at_nodes"),
             "refined": [] if refinement is None else list(refinement.steps),
             "because": mesh.reason,
-            "expected_used": None if refinement is None else refinement.expected,
+            "expected_used": expected if refinement is None else refinement.expected,
         }
 
 

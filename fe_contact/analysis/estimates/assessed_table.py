@@ -143,8 +143,10 @@ def assessed_table(solved_table: SolvedTable, coarse: OperatingPoints) -> tuple[
     plane = sample.solved(fine.in_plane_strain, fine) if discretization.corrected else nominal
     has_slices = discretization.slices > 1
     sliced = sample.solved(fine.in_slices(discretization.coarse_slices), fine) if has_slices else nominal
-    patched = sample.solved(fine.in_plane_strain.in_coarse_patches, fine)
-    nested = Nested(sample, nominal, plane, patched, sample.solved(coarse, fine), sliced)
+    wider = fine.in_plane_strain.in_coarse_patches
+    patched = sample.solved(wider, fine)
+    # the coarse meshes have the wider patches, too, and so the same candidates
+    nested = Nested(sample, nominal, plane, patched, sample.solved(coarse, wider), sliced)
     positions = position_errors(nodes, fine, solutions, plan)
     ste, arms = nested.parts
     measured = fine, solved_table.solved, ste, positions, plan

@@ -86,8 +86,8 @@ class TableSample:
     ) -> FloatArray:
         """Solve the sample on other operating points; return STE and load arm, (2, T R, f, m, d) in m.
 
-        `known` are the operating points of the table. `starts` has forces near the solution for each of the
-        `places`; only a table of one pitch has any.
+        `known` are operating points that the table or the sample was solved on. `starts` has forces near the
+        solution for each of the `places`; only a table of one pitch has any.
         """
         chosen = [points.places[k] for k in self.places]
         curves = deflected_operating_points(
@@ -109,14 +109,25 @@ class TableSample:
         return Start(problem.candidates, np.nan_to_num(force))
 
     def _candidates(self, point: OperatingPoint, points: Sequence[OperatingPoint]) -> list[Candidates] | None:
-        """Return the contact candidates of the table's points, which do not depend on the bodies.
+        """Return the contact candidates of the sample as `points` keep them: bodies do not change them.
 
-        None where `point` has other slices or load patches than `points`, and so other candidates.
+        None where `point` has other slices or load patches than `points`, and so other candidates, or where
+        these are not kept.
         """
         plan, known_plan = point.contact.plan, points[0].contact.plan
         if plan.discretization.slices != known_plan.discretization.slices or plan.patch != known_plan.patch:
             return None
-        return [point.contact.candidates(point.model, self.position).rows(self.rows) for point in points]
+        kept = [self._kept_candidates(known) for known in points]
+        complete = [candidates for candidates in kept if candidates is not None]
+        return complete if len(complete) == len(kept) else None
+
+    def _kept_candidates(self, point: OperatingPoint) -> Candidates | None:
+        """Return the candidates of the sample from a problem at its positions, or at all of the table."""
+        at_rows = point.contact.cached_problem(point.model, self.position[self.rows])
+        if at_rows is not None:
+            return at_rows.candidates
+        everywhere = point.contact.cached_problem(point.model, self.position)
+        return None if everywhere is None else everywhere.candidates.rows(self.rows)
 
 
 @dataclass(frozen=True)

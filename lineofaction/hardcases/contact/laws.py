@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fe_contact.contact import ContactProblem, ContactSolution
-from fe_contact.contact.point_problem import motions, point_problems, pressed_state, problem_at
+from fe_contact.contact.point_problem import motion_at, point_problems, pressed_state, problem_at
 from fe_contact.contact.tilted_bodies import fill_yielding, move
 from fe_contact.types import FloatArray
 from lineofaction.hardcases.contact.interior_point import GapAbout, Problem, solve
@@ -55,8 +55,9 @@ def _plain(problem: ContactProblem, position: int, force: FloatArray) -> Problem
     state = pressed_state(point, force[candidates])
     move(point, state)
     fill_yielding(point, state)
-    # (contacts, curve heights): the matrix of the linear map `motions`
-    blend = np.array([motions(point, unit) for unit in np.eye(len(point.bodies))]).T
+    # (contacts, curve heights): the matrix of the linear map from heights to motions
+    units = np.eye(len(point.bodies))
+    blend = np.array([[motion_at(point, q, unit) for unit in units] for q in range(point.gap.size)])
     real = np.isin(np.arange(c.pair.size), candidates)
     motion = c.motion_arm[position, real]
     row = position % len(problem.compliance)

@@ -73,6 +73,14 @@ def test_factors_take_the_memory_of_those_that_are_gone_and_of_no_others():
     assert condense(tree, freedoms, stiffness)[1].factors[-1].factor.__array_interface__["data"] != address
 
 
+def test_factors_that_are_a_little_larger_take_the_memory_too():
+    """Of two gears of like cost the second may have a few per cent more factors."""
+    with front_memory.shared_factors():
+        address = front_memory._factor_memory(1000).__array_interface__["data"]
+        assert front_memory._factor_memory(1040).__array_interface__["data"] == address
+        assert front_memory._factor_memory(3000).size == 3000
+
+
 def test_what_memory_held_before_changes_nothing(monkeypatch):
     tree, freedoms, stiffness = sheet()
     matrix, condensation = condense(tree, freedoms, stiffness)

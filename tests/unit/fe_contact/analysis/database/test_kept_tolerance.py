@@ -86,6 +86,17 @@ def test_a_tight_one_refines_until_it_is_met(from_draft, tmp_path):
     assert same(table, compute_database(exact.checked, {}, Run(cache=tmp_path), exact))
 
 
+def test_what_a_pass_uses_at_nodes_compares_with_what_was_expected(tmp_path):
+    """Loads are inserted until errors between them fill what is left: those are in `used` alone."""
+    torques = [20.0, 60.0, 200.0]
+    table = analyze(SPUR, **PLANE | {"torques": torques}, tolerance=0.01, cache=tmp_path)
+    (only,) = receipt(table)["passes"]
+    tolerance = receipt(table)["tolerance"]
+    assert (only["used"], only["used_at_nodes"]) == (tolerance["used"], tolerance["used_at_nodes"])
+    assert only["used_at_nodes"] < 0.6 * only["used"] < 0.6
+    assert 1.0 / 3.0 < only["expected_used"] / only["used_at_nodes"] < 3.0
+
+
 def table_nodes(allowed: AllowedError):
     return decide(check_request(SPUR, *table_request(tolerance=allowed, **PLANE))).plan.nodes
 

@@ -10,6 +10,7 @@ from analysis_requests import table_request
 from fe_contact import FlankModification, Gear, GearPair, RunOut, Wave, analyze
 from fe_contact.analysis.database.compute_database import compute_database
 from fe_contact.analysis.estimates.curve_errors import HARMONIC_SHARE
+from fe_contact.analysis.pairs import pair_contact
 from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.options import LEVELS, Run
@@ -65,6 +66,22 @@ def test_the_estimate_covers_the_true_error(pair, how):
         for found, exact in zip((corrected.mean, corrected.peak_to_peak), wide, strict=False):
             true = abs(found.value - exact.value)
             assert true <= found.error < max(0.05 * found.value, 2.0 * true)
+
+
+def test_where_flanks_can_touch_is_found_once_under_patches_of_one_width(monkeypatch):
+    """Fine bodies under the patches of the coarse ones, and the coarse bodies, have the same candidates."""
+    searches: list[tuple[bytes, object]] = []
+    found = pair_contact.contact_candidates
+
+    def counted(pair, model, position, rule, slices):
+        searches.append((position.tobytes(), rule))
+        return found(pair, model, position, rule, slices)
+
+    monkeypatch.setattr(pair_contact, "contact_candidates", counted)
+    table = analyze(spur(), normal_forces=[FORCE], level="draft", model="plane_strain", positions=64)
+    assert len({rule for _, rule in searches}) == 2
+    assert len(searches) == len(set(searches))
+    assert np.isfinite(table.curve_error[SOURCES.index("discretisation")]).all()
 
 
 @pytest.mark.law
