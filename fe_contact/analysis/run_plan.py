@@ -134,7 +134,9 @@ class PredictedDesigns(NamedTuple):
     """CPU seconds of other flanks, loads and alignments on the same gears."""
 
     bodies: float
-    """CPU seconds to condense both gears, coarse meshes included."""
+    """CPU seconds to condense both gears."""
+    coarse_bodies: float
+    """CPU seconds to condense both gears on coarse meshes: solutions on them yield the error of the mesh."""
     design: float
     """CPU seconds of one pair of flanks at one alignment, all loads at once."""
     errors: float
@@ -149,6 +151,11 @@ class PredictedDesigns(NamedTuple):
     """CPU seconds of a whole table at one alignment, its errors included."""
     work: ContactWork
     """Work of the contact solution of one design, by kind."""
+
+    @property
+    def all_bodies(self) -> float:
+        """CPU seconds to condense both gears, coarse meshes included."""
+        return self.bodies + self.coarse_bodies
 
 
 def predicted_designs(checked: Checked, cache: Path | None) -> PredictedDesigns:
@@ -170,7 +177,8 @@ def predicted_designs(checked: Checked, cache: Path | None) -> PredictedDesigns:
     slowness = host_slowness(cache)
     unit = unit_work(pair, choice.plan, choice.plan.discretization.slices)
     return PredictedDesigns(
-        bodies=parts["compliance"]["bodies"] + parts["error estimate"]["bodies"],
+        bodies=parts["compliance"]["bodies"],
+        coarse_bodies=parts["error estimate"]["bodies"],
         design=_DESIGN_WORK * parts["contact"]["table"],
         errors=errors,
         positions=prediction.positions,

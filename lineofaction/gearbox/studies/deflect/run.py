@@ -69,7 +69,8 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
                 design = predicted = predicted_designs(CASES.of(case).checked, cache)
                 if not design.across_face and case.accuracy.model not in PLANE:
                     predicted = predicted_designs(across_face(CASES.of(case)).checked, cache)
-                    gears = Work("gears", predicted.bodies, stage="flanks")  # otherwise those of its table
+                    # otherwise the gears are those of its table
+                    gears = Work("gears", predicted.all_bodies, stage="flanks")
                     cost += StudyCost((gears,), predicted.bytes)
             knots = FIRST_KNOTS + count * USUAL_PASSES if predicted.across_face else 0
             contact = predicted.design + predicted.errors

@@ -148,6 +148,7 @@ class _OptimizeStudy(
         if limited:
             more = 1.0 + predicted.positions / request.search.positions
             parts.append(Work("designs within limits", more * contact + beside, REFINED, "search"))
+        parts.append(Work("coarse gears", predicted.coarse_bodies, stage="confirmation"))
         parts.append(
             Work("analyses", nodes * CONFIRMED * predicted.table, 3 if limited else 2, "confirmation")
         )

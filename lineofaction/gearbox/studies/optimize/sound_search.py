@@ -214,7 +214,7 @@ def sound_cost(
     of_pair = rough if question.quantile is None else confirmed
     coarse_designs, full_designs = usual_sound_designs(search)
     parts = [
-        Work("gears", predicted.bodies, stage="compliance"),
+        Work("gears", predicted.all_bodies, stage="compliance"),
         Work("transfer functions", levels.transfer, stage="transfer functions"),
         Work("designs", rough, coarse_designs, "search"),
         Work("designs", full, full_designs * nodes, "search"),

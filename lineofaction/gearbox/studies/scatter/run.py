@@ -95,6 +95,7 @@ class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
             Work("tangent", pair, 1.0 + _TANGENT, "first order"),
             Work("pairs", pair, solved, "samples"),
             Work("samples", _ADDED * points, sampling.samples, "confirmation"),
+            Work("coarse gears", predicted.coarse_bodies, stage="confirmation"),
             Work("table", predicted.table, stage="confirmation"),
         ]
         if request.teeth is not None:

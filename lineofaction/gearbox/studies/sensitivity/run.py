@@ -123,7 +123,10 @@ class _SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
         axes = checked.request.misalignment, checked.request.center_distance_change
         values = 2 * sum(np.union1d(np.zeros(1), axis).size for axis in axes)
         per_value = predicted.design + predicted.errors
-        parts = (Work("gears", predicted.bodies, 1.0, "tables"), Work("values", per_value, values, "tables"))
+        parts = (
+            Work("gears", predicted.all_bodies, stage="tables"),
+            Work("values", per_value, values, "tables"),
+        )
         return StudyCost(parts, predicted.bytes)
 
     def compute(self, case: CheckedCase, inputs: Inputs, means: Means) -> Studies:
