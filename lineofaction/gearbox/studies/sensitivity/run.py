@@ -22,12 +22,12 @@ from fe_contact.options import TableAxes
 from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.case import PLANE, study_options
 from lineofaction.gearbox.convert.checked_case import CheckedCase, across_face
-from lineofaction.gearbox.stages import TableFraction
 from lineofaction.gearbox.studies.computation import CaseStudy, Means, ResultFile
 from lineofaction.gearbox.studies.cost import StudyCost, Work
 from lineofaction.gearbox.studies.sensitivity import Inputs, SensitivityFigures
 from lineofaction.gearbox.units import UM
 from model_studies import Progress, in_unit
+from model_studies.progress import TableFraction
 from model_studies.record_file import read_record, record_content, write_record
 
 if TYPE_CHECKING:
