@@ -2,15 +2,26 @@
 
 import tomllib
 from importlib import import_module
+from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from repository import EXAMPLES
 from spur_case import spur_case
 
-from lineofaction.gearbox.convert.checked_case import CheckedCase
+from fe_contact.options import Run
+from lineofaction.cli import scene_tables
+from lineofaction.gearbox import workbench
+from lineofaction.gearbox.convert import plan
+from lineofaction.gearbox.convert.checked_case import CheckedCase, CheckedCases
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas import Case, validated
+from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.subjects import scene_of
+from lineofaction.gearbox.tabled_scene import SceneRuns
+from model_studies.progress import Progress
 
 pair_contact = import_module("fe_contact.analysis.pairs.pair_contact")
 
@@ -48,3 +59,50 @@ def test_gears_are_planned_in_the_stage_in_which_they_are_condensed(name, tmp_pa
     ]
     assert stages[0] == parts["gears"].stage
     assert stages[1] == parts["coarse gears"].stage
+
+
+def two_cases() -> tuple[SceneInput, list[Case]]:
+    """Return a scene of three meshes, of which the last has the case of the first, and both cases."""
+    scene, _ = scene_of(EXAMPLES / "palermo_scene.toml")
+    texts = [spur_case(torques=[torque], **PLANE) for torque in (100.0, 200.0)]
+    cases = [validated(Case, tomllib.loads(text)) for text in texts]
+    first, second = (scene.meshes[0].model_copy(update={"case": case, "case_file": None}) for case in cases)
+    return scene.model_copy(update={"meshes": (first, second, first)}), cases
+
+
+@pytest.mark.parametrize("first_is_cached", [False, True])
+def test_tables_of_a_scene_are_one_stage_by_their_cost(first_is_cached, monkeypatch):
+    """A table that is cached costs nothing; one of two meshes is computed once."""
+    scene, cases = two_cases()
+    seconds = {100.0: 1.0, 200.0: 3.0}
+    monkeypatch.setattr(
+        plan, "costs_of", lambda case, _: [SimpleNamespace(cpu_seconds=seconds[case.case.load.torque_n_m[0]])]
+    )
+    reported: list[tuple[str, float]] = []
+    cached = cases[:1] if first_is_cached else []
+    run = Run(progress=lambda *progress: reported.append(progress))
+    runs = SceneRuns(scene, Path(), CheckedCases(), run, lambda case: case in cached)
+    for case in cases[len(cached) :]:
+        of_table = runs.of(case)
+        of_table.on_plan({"compliance": 2.0, "contact": 2.0})
+        of_table.progress("compliance", 1.0)
+        of_table.progress("contact", 1.0)
+    expected = [0.5, 1.0] if first_is_cached else [0.125, 0.25, 0.625, 1.0]
+    assert [stage for stage, _ in reported] == ["analysis"] * len(expected)
+    assert [fraction for _, fraction in reported] == pytest.approx(expected)
+
+
+def by_the_verb(scene: Path, progress: Progress) -> None:
+    scene_tables.tabled_scene(*scene_of(scene), None, progress)
+
+
+@pytest.mark.parametrize("tabled", [workbench.tabled, by_the_verb])
+def test_a_table_inside_a_study_is_part_of_its_stage(tabled, tmp_path):
+    reported: list[tuple[str, float]] = []
+    scene = tmp_path / "scene.toml"
+    scene.write_text((EXAMPLES / "palermo_scene.toml").read_text())
+    (tmp_path / "palermo_spur_20_20.toml").write_text(spur_case(torques=[100.0], positions=8, **PLANE))
+    tabled(scene, lambda *progress: reported.append(progress))
+    assert {stage for stage, _ in reported} == {"analysis"}
+    fractions = [fraction for _, fraction in reported]
+    assert fractions == sorted(fractions) and fractions[-1] == pytest.approx(1.0)
