@@ -11,6 +11,7 @@ from repository import EXAMPLES
 from spur_case import spur_case
 
 from fe_contact.options import Run
+from host.directories import cache_home
 from lineofaction.cli import scene_tables
 from lineofaction.gearbox import workbench
 from lineofaction.gearbox.convert import plan
@@ -19,9 +20,11 @@ from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.studies.deflect.mesh_contact import DividedTables
 from lineofaction.gearbox.subjects import scene_of
 from lineofaction.gearbox.tabled_scene import SceneRuns
 from model_studies.progress import Progress
+from model_studies.workers import InProcess
 
 pair_contact = import_module("fe_contact.analysis.pairs.pair_contact")
 
@@ -106,3 +109,31 @@ def test_a_table_inside_a_study_is_part_of_its_stage(tabled, tmp_path):
     assert {stage for stage, _ in reported} == {"analysis"}
     fractions = [fraction for _, fraction in reported]
     assert fractions == sorted(fractions) and fractions[-1] == pytest.approx(1.0)
+
+
+def test_tables_of_a_deflection_count_towards_those_of_usual_passes():
+    """Of further passes the fraction stays: nothing follows that was planned."""
+    bodies = SimpleNamespace(table=lambda _pair, _torques, misalignment: f"at {misalignment}")
+    contact: Any = SimpleNamespace(bodies=bodies, pair=None, torques=None, tables={})
+    fractions: list[float] = []
+    tables = DividedTables({"first": contact, "second": contact}, InProcess(), 0.0, fractions.append, 4)
+    tables.complete({"first": [0.0, 1.0], "second": [1.0]})
+    tables.complete({"first": [0.0, 1.0, 2.0], "second": [3.0, 4.0]})
+    assert fractions == [0.25, 0.5, 0.75, 1.0, 1.0]
+    assert contact.tables == {float(k): f"at {float(k)}" for k in range(5)}
+
+
+@pytest.mark.nightly
+def test_a_deflection_is_reported_as_its_work_is_done(tmp_path):
+    """Of a pair in three dimensions the tables at misalignments are most of the work on the flanks."""
+    (tmp_path / "scene.toml").write_text((EXAMPLES / "flexible_shafts_scene.toml").read_text())
+    case = spur_case(torques=[100.0], model="3d", positions=8)
+    (tmp_path / "palermo_spur_20_20.toml").write_text(case)
+    study, scene = STUDIES["deflect"], workbench.tabled(tmp_path / "scene.toml")
+    reported: list[tuple[str, float]] = []
+    means = Means(cache_home(), lambda *progress: reported.append(progress))
+    study.run.compute(scene, validated(study.inputs, {}), means)
+    assert {stage for stage, _ in reported} <= {name for name, _ in study.stages}
+    flanks = [fraction for stage, fraction in reported if stage == "flanks"]
+    assert flanks == sorted(flanks) and flanks[-1] == 1.0
+    assert len(set(flanks)) >= 5  # the bodies, three tables at least, the contact
