@@ -15,7 +15,7 @@ from fe_contact.analysis.request.request_check import as_checked
 from fe_contact.errors import positive
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import LEVELS, MESHES, AnalysisOptions, TableAxes
-from fe_contact.planning.cost_model import Prediction, predict_run, unit_work
+from fe_contact.planning.cost_model import Prediction, contact_seconds, predict_run, unit_work
 from fe_contact.planning.cost_of_derivatives import ContactWork
 from fe_contact.planning.expected_curves import ExpectedCurves
 from fe_contact.planning.expected_error import ExpectedError, expected_error
@@ -149,6 +149,8 @@ class PredictedDesigns(NamedTuple):
     """Largest resident memory of the process, bytes."""
     table: float
     """CPU seconds of a whole table at one alignment, its errors included."""
+    aligned_table: float
+    """CPU seconds of such a table at all alignments of the request."""
     work: ContactWork
     """Work of the contact solution of one design, by kind."""
 
@@ -174,7 +176,10 @@ def predicted_designs(checked: Checked, cache: Path | None) -> PredictedDesigns:
     prediction = predict_run(pair, choice.plan, model, one_alignment, cache)
     parts = prediction.parts
     errors = parts["error estimate"]["solutions"]
-    slowness = host_slowness(cache)
+    correction, slowness = prediction.correction, host_slowness(cache)
+    alignments = choice.checked.request.alignments
+    search, solve, check = contact_seconds(pair, choice.plan, model, alignments)
+    aligned = correction["contact"] * (search + solve) + correction["error estimate"] * check
     unit = unit_work(pair, choice.plan, choice.plan.discretization.slices)
     return PredictedDesigns(
         bodies=parts["compliance"]["bodies"],
@@ -184,7 +189,8 @@ def predicted_designs(checked: Checked, cache: Path | None) -> PredictedDesigns:
         positions=prediction.positions,
         across_face=model.across_face,
         bytes=float(prediction.memory_bytes),
-        table=prediction.stages["contact"] + prediction.correction["error estimate"] * errors,
+        table=prediction.stages["contact"] + correction["error estimate"] * errors,
+        aligned_table=slowness * aligned,
         work=ContactWork(*(slowness * work_of_part for work_of_part in unit)),
     )
 

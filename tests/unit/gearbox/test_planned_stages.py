@@ -10,7 +10,10 @@ import pytest
 from repository import EXAMPLES
 from spur_case import spur_case
 
+from fe_contact.microgeometry import evaluator
+from fe_contact.microgeometry.design_study import design_study
 from fe_contact.options import Run
+from fe_contact.planning.cost_of_derivatives import ContactWork
 from host.directories import cache_home
 from lineofaction.cli import scene_tables
 from lineofaction.gearbox import workbench
@@ -21,14 +24,17 @@ from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.deflect.mesh_contact import DividedTables
+from lineofaction.gearbox.studies.optimize import run as optimize_run
 from lineofaction.gearbox.subjects import scene_of
 from lineofaction.gearbox.tabled_scene import SceneRuns
 from model_studies.progress import Progress
+from model_studies.stage_clock import StageClock
 from model_studies.workers import InProcess
 
 pair_contact = import_module("fe_contact.analysis.pairs.pair_contact")
 
 PLANE = {"model": "plane_strain"}
+SCATTER = {"pinion": {"profile_slope_um": 3.0}, "wheel": {"profile_slope_um": 3.0}, "points": 3}
 STUDIED: dict[str, dict[str, Any]] = {
     "flank": {},
     "root-stress": {},
@@ -38,11 +44,14 @@ STUDIED: dict[str, dict[str, Any]] = {
 """Inputs of the studies that condense gears, as small as they may be."""
 
 
+def plane_case() -> CheckedCase:
+    return CheckedCase(validated(Case, tomllib.loads(spur_case(torques=[100.0], **PLANE))))
+
+
 @pytest.mark.parametrize("name", STUDIED)
 def test_gears_are_planned_in_the_stage_in_which_they_are_condensed(name, tmp_path, monkeypatch):
     """Coarse gears too, which yield the error of the mesh: the stage that is reported next has done them."""
-    study = STUDIES[name]
-    case = CheckedCase(validated(Case, tomllib.loads(spur_case(torques=[100.0], **PLANE))))
+    study, case = STUDIES[name], plane_case()
     inputs = validated(study.inputs, STUDIED[name])
     events: list[str] = []
     condensed = pair_contact.flank_compliances
@@ -62,6 +71,49 @@ def test_gears_are_planned_in_the_stage_in_which_they_are_condensed(name, tmp_pa
     ]
     assert stages[0] == parts["gears"].stage
     assert stages[1] == parts["coarse gears"].stage
+
+
+CONFIRMED: dict[str, tuple[str, dict[str, Any]]] = {
+    "search": ("optimize", STUDIED["optimize"]),
+    "search with limits": ("optimize", STUDIED["optimize"] | {"limits": {"max_pressure_mpa": 1e4}}),
+    "samples": ("scatter", STUDIED["scatter"]),
+}
+"""Studies that end with a table, and their inputs."""
+
+
+@pytest.mark.parametrize("kind", CONFIRMED)
+def test_a_table_at_the_end_is_reported_as_it_is_computed(kind, tmp_path):
+    """By many fractions of its stage, which never fall and end at one."""
+    name, fields = CONFIRMED[kind]
+    study, case = STUDIES[name], plane_case()
+    reported: list[tuple[str, float]] = []
+    means = Means(tmp_path, lambda *progress: reported.append(progress))
+    study.run.compute(case, validated(study.inputs, fields), means)
+    fractions = [fraction for stage, fraction in reported if stage == "confirmation"]
+    assert fractions == sorted(fractions) and fractions[-1] == 1.0
+    assert len(set(fractions)) > 5
+
+
+def test_designs_of_a_search_are_priced_by_the_points_that_they_solve(monkeypatch):
+    """At the few positions of the search, and at the loads that count: the table has more of both."""
+    fields = {"torque_n_m": [50.0, 100.0], "search": {"positions": 16, "trials": 0}, "scatter": SCATTER}
+    study, case = STUDIES["optimize"], plane_case()
+    inputs = validated(study.inputs, fields)
+    request, points = case.request(optimize_run._library_request, inputs), []
+    solved = evaluator.solve_contact
+
+    def counted(problem: Any, load: Any) -> Any:
+        points.append(problem.candidates.position.size * load.size)
+        return solved(problem, load)
+
+    monkeypatch.setattr(evaluator, "solve_contact", counted)
+    monkeypatch.setattr(ContactWork, "of_flanks", lambda _, positions, loads: positions * loads)
+    torques = request.torques, request.further_torques
+    designs = design_study(request.space, *torques, StageClock(), Run(), request.checked)
+    names = (variable.name for variable in request.variables)
+    designs.evaluator.evaluate(dict(zip(names, request.start_design, strict=True)))
+    parts = {part.name: part for part in study.run.predicted(case, inputs, None).parts}
+    assert parts["designs"].piece_seconds == sum(points) == 9 * 16 * 2
 
 
 def two_cases() -> tuple[SceneInput, list[Case]]:
