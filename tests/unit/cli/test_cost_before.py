@@ -400,10 +400,10 @@ def test_a_change_costs_two_contacts_a_pair_and_two_of_the_designs():
 def test_a_scene_is_assembled_once_for_all_verbs_that_ask_of_it(monkeypatch):
     scene, folder = scene_of(EXAMPLES / "palermo_scene.toml")
     scene = scene.model_copy(update={"run": scene.run.model_copy(update={"duration_s": 0.0123})})
-    resolved: list[float | None] = []
+    resolved: list[tuple[float | None, int]] = []
 
-    def counted(own):
-        resolved.append(own.highest_frequency)
+    def counted(own):  # steps of steady states end at the positions of the planned table
+        resolved.append((own.highest_frequency, own.meshes[0].table.position.size))
         return assemble(own)
 
     monkeypatch.setattr("lineofaction.gearbox.studies.scene_before_tables.assemble", counted)

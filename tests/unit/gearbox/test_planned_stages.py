@@ -10,6 +10,9 @@ import pytest
 from repository import EXAMPLES
 from spur_case import spur_case
 
+from dynamics.assembly.assemble import System, assemble
+from dynamics.periodic.period_map import periodic_problem
+from dynamics.periodic.steady_cost import SteadyCost
 from fe_contact.microgeometry import evaluator
 from fe_contact.microgeometry.design_study import design_study
 from fe_contact.options import Run
@@ -25,8 +28,11 @@ from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.deflect.mesh_contact import DividedTables
 from lineofaction.gearbox.studies.optimize import run as optimize_run
-from lineofaction.gearbox.subjects import scene_of
+from lineofaction.gearbox.studies.scene_before_tables import sized
+from lineofaction.gearbox.studies.steady import run as steady_run
+from lineofaction.gearbox.subjects import scene_of, with_inline_cases
 from lineofaction.gearbox.tabled_scene import SceneRuns
+from lineofaction.gearbox.units import RPM
 from model_studies.progress import Progress
 from model_studies.stage_clock import StageClock
 from model_studies.workers import InProcess
@@ -147,6 +153,14 @@ def test_tables_of_a_scene_are_one_stage_by_their_cost(first_is_cached, monkeypa
     assert [fraction for _, fraction in reported] == pytest.approx(expected)
 
 
+def scene_of_plane_case(folder: Path, positions: int) -> Path:
+    scene = folder / "scene.toml"
+    scene.write_text((EXAMPLES / "palermo_scene.toml").read_text())
+    case = spur_case(torques=[100.0], positions=positions, **PLANE)
+    (folder / "palermo_spur_20_20.toml").write_text(case)
+    return scene
+
+
 def by_the_verb(scene: Path, progress: Progress) -> None:
     scene_tables.tabled_scene(*scene_of(scene), None, progress)
 
@@ -154,9 +168,7 @@ def by_the_verb(scene: Path, progress: Progress) -> None:
 @pytest.mark.parametrize("tabled", [workbench.tabled, by_the_verb])
 def test_a_table_inside_a_study_is_part_of_its_stage(tabled, tmp_path):
     reported: list[tuple[str, float]] = []
-    scene = tmp_path / "scene.toml"
-    scene.write_text((EXAMPLES / "palermo_scene.toml").read_text())
-    (tmp_path / "palermo_spur_20_20.toml").write_text(spur_case(torques=[100.0], positions=8, **PLANE))
+    scene = scene_of_plane_case(tmp_path, positions=8)
     tabled(scene, lambda *progress: reported.append(progress))
     assert {stage for stage, _ in reported} == {"analysis"}
     fractions = [fraction for _, fraction in reported]
@@ -189,3 +201,22 @@ def test_a_deflection_is_reported_as_its_work_is_done(tmp_path):
     flanks = [fraction for stage, fraction in reported if stage == "flanks"]
     assert flanks == sorted(flanks) and flanks[-1] == 1.0
     assert len(set(flanks)) >= 5  # the bodies, three tables at least, the contact
+
+
+def test_steps_of_a_steady_state_are_planned_to_end_at_the_positions_of_its_table(tmp_path, monkeypatch):
+    """At a high speed most steps of a period end there: those on a usual table are little more than half."""
+    scene = scene_of_plane_case(tmp_path, positions=256)
+    systems: list[System] = []
+
+    def noted(system: System, *_: Any, **__: Any) -> SteadyCost:
+        systems.append(system)
+        return SteadyCost(1, 0.0, 0, 0.0, (), 1)
+
+    monkeypatch.setattr(steady_run, "steady_cost", noted)
+    study = STUDIES["steady"]
+    inputs = validated(study.inputs, {"speed_rpm": [3000.0, 4000.0]})
+    study.run.predicted(with_inline_cases(*scene_of(scene)), inputs, tmp_path)
+    systems += [assemble(workbench.tabled(scene).steady.scene), sized(with_inline_cases(*scene_of(scene)))]
+    planned, computed, usual = (periodic_problem(system, 4000.0 * RPM).grid.level.size for system in systems)
+    assert planned == pytest.approx(computed, rel=0.1)
+    assert usual < 0.7 * computed
