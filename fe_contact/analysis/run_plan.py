@@ -147,10 +147,6 @@ class PredictedDesigns(NamedTuple):
     """Whether the gears are condensed in three dimensions."""
     bytes: float
     """Largest resident memory of the process, bytes."""
-    table: float
-    """CPU seconds of a whole table at one alignment, its errors included."""
-    aligned_table: float
-    """CPU seconds of such a table at all alignments of the request."""
     work: ContactWork
     """Work of the contact solution of one design, by kind."""
 
@@ -176,10 +172,7 @@ def predicted_designs(checked: Checked, cache: Path | None) -> PredictedDesigns:
     prediction = predict_run(pair, choice.plan, model, one_alignment, cache)
     parts = prediction.parts
     errors = parts["error estimate"]["solutions"]
-    correction, slowness = prediction.correction, host_slowness(cache)
-    alignments = choice.checked.request.alignments
-    search, solve, check = contact_seconds(pair, choice.plan, model, alignments)
-    aligned = correction["contact"] * (search + solve) + correction["error estimate"] * check
+    slowness = host_slowness(cache)
     unit = unit_work(pair, choice.plan, choice.plan.discretization.slices)
     return PredictedDesigns(
         bodies=parts["compliance"]["bodies"],
@@ -189,10 +182,31 @@ def predicted_designs(checked: Checked, cache: Path | None) -> PredictedDesigns:
         positions=prediction.positions,
         across_face=model.across_face,
         bytes=float(prediction.memory_bytes),
-        table=prediction.stages["contact"] + correction["error estimate"] * errors,
-        aligned_table=slowness * aligned,
         work=ContactWork(*(slowness * work_of_part for work_of_part in unit)),
     )
+
+
+def table_seconds(
+    checked: Checked, pair: ParallelAxes, alignments: tuple[int, int], cache: Path | None
+) -> float:
+    """Return the CPU seconds of a whole table of one design on condensed gears, its errors included.
+
+    It costs more where flanks vary along the profile: the compliance changes with the touching points.
+
+    Parameters
+    ----------
+    checked : Checked
+        The request of all designs, whose model and mesh the table has.
+    pair : GearPair or InternalGearPair
+        The pair with the flanks of the design.
+    alignments : (int, int)
+        Numbers of misalignments and of center distances.
+    """
+    choice = decide(checked, cache)
+    search, solve, check = contact_seconds(pair, choice.plan, choice.checked.model, alignments)
+    correction = choice.predicted(cache).correction
+    seconds = correction["contact"] * (search + solve) + correction["error estimate"] * check
+    return host_slowness(cache) * seconds
 
 
 def _decision(choice: Decision, curves: ExpectedCurves | None, cache: Path | None) -> PlannedLevel:

@@ -315,7 +315,7 @@ def test_nodes_and_limits_of_a_search_are_in_its_cost():
     free = {name: value for name, value in whole.items() if name not in ("scatter", "limits")}
     study = STUDIES["optimize"]
 
-    def parts(fields):
+    def parts(fields):  # of two parts with the name of analyses the later one: those of other than the start
         cost = study.run.predicted(case, validated(study.inputs, fields), None)
         return {part.name: part for part in cost.parts}
 

@@ -13,6 +13,7 @@ from spur_case import spur_case
 from dynamics.assembly.assemble import System, assemble
 from dynamics.periodic.period_map import periodic_problem
 from dynamics.periodic.steady_cost import SteadyCost
+from fe_contact.analysis.run_plan import table_seconds
 from fe_contact.microgeometry import evaluator
 from fe_contact.microgeometry.design_study import design_study
 from fe_contact.options import Run
@@ -28,6 +29,7 @@ from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.deflect.mesh_contact import DividedTables
 from lineofaction.gearbox.studies.optimize import run as optimize_run
+from lineofaction.gearbox.studies.scatter import run as scatter_run
 from lineofaction.gearbox.studies.scene_before_tables import sized
 from lineofaction.gearbox.studies.steady import run as steady_run
 from lineofaction.gearbox.subjects import scene_of, with_inline_cases
@@ -120,6 +122,20 @@ def test_designs_of_a_search_are_priced_by_the_points_that_they_solve(monkeypatc
     designs.evaluator.evaluate(dict(zip(names, request.start_design, strict=True)))
     parts = {part.name: part for part in study.run.predicted(case, inputs, None).parts}
     assert parts["designs"].piece_seconds == sum(points) == 9 * 16 * 2
+
+
+def test_a_table_at_the_end_is_priced_with_the_flanks_that_it_has():
+    """Over the face a pair without deviations and the start of a search cost less than others."""
+    case = CheckedCase(validated(Case, tomllib.loads(spur_case(torques=[100.0], model="3d"))))
+    samples, search = (validated(STUDIES[name].inputs, STUDIED[name]) for name in ("scatter", "optimize"))
+    request = case.request(scatter_run.scatter_request, samples)
+    pairs = request.pair, request.checked.request.pair
+    plain, deviating = (table_seconds(request.checked, pair, (1, 1), None) for pair in pairs)
+    (table,) = (part for part in scatter_run.RUN.predicted(case, samples, None).parts if part.name == "table")
+    assert table.seconds == plain < 0.8 * deviating
+    parts = STUDIES["optimize"].run.predicted(case, search, None).parts
+    start, optimum = (part.seconds for part in parts if part.name == "analyses")
+    assert start < optimum
 
 
 def two_cases() -> tuple[SceneInput, list[Case]]:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fe_contact.analysis.run_plan import PredictedDesigns, predicted_designs
+from fe_contact.analysis.run_plan import PredictedDesigns, predicted_designs, table_seconds
 from fe_contact.microgeometry.objective import Limits
 from fe_contact.microgeometry.optimization import OptimizationRequest
 from fe_contact.microgeometry.search import usual_designs
@@ -44,10 +44,15 @@ def search_cost(request: OptimizationRequest, cache: Path | None) -> StudyCost:
     if limited:
         more = _design_seconds(request, predicted, positions + predicted.positions)
         parts.append(Work("designs within limits", more, REFINED, "confirmation"))
-    analysis = _analysis_seconds(request, predicted)
+    tables = [
+        table_seconds(request.checked, pair, request.checked.request.alignments, cache)
+        for pair in (request.pair, request.checked.request.pair)  # of the start, and with all variables
+    ]
+    figures = _figures_seconds(request, predicted)
     parts += [
         Work("coarse gears", predicted.coarse_bodies, stage="confirmation"),
-        Work("analyses", analysis, 3 if limited else 2, "confirmation"),
+        Work("analyses", tables[0] + figures, 1, "confirmation"),
+        Work("analyses", tables[1] + figures, 2 if limited else 1, "confirmation"),
         Work("steps from the optimum", design, 2 * len(request.variables), "confirmation"),
     ]
     return StudyCost(tuple(parts), predicted.bytes)
@@ -59,11 +64,11 @@ def _design_seconds(request: OptimizationRequest, predicted: PredictedDesigns, p
     return float(nodes * predicted.work.of_flanks(positions, loads))
 
 
-def _analysis_seconds(request: OptimizationRequest, predicted: PredictedDesigns) -> float:
-    """Return the CPU seconds of a design that is analyzed in full, and at finer nodes of the scatter."""
+def _figures_seconds(request: OptimizationRequest, predicted: PredictedDesigns) -> float:
+    """Return the CPU seconds of the figures of an analysis, and of a design at finer nodes of the scatter."""
     nodes, work, positions = request.scatter.nodes(), predicted.work, predicted.positions
     flanks = work.of_flanks(positions, request.checked.request.load.size)
     figures = FIGURES * (work.of(positions, 0) + nodes.weight.size * flanks)
     compared = 0 if nodes.finer is None else nodes.weight.size + nodes.finer.weight.size
     design = work.of_flanks(request.search.positions, np.size(request.torques))
-    return predicted.aligned_table + figures + compared * design
+    return figures + compared * design
