@@ -85,18 +85,20 @@ CONFIRMED: dict[str, tuple[str, dict[str, Any]]] = {
     "search": ("optimize", STUDIED["optimize"]),
     "search with limits": ("optimize", STUDIED["optimize"] | {"limits": {"max_pressure_mpa": 1e4}}),
     "samples": ("scatter", STUDIED["scatter"]),
+    "samples of teeth": ("scatter", {"samples": 8, "finishing": "hobbing", "limit": "1-pinion=60nm"}),
 }
 """Studies that end with a table, and their inputs."""
 
 
 @pytest.mark.parametrize("kind", CONFIRMED)
 def test_a_table_at_the_end_is_reported_as_it_is_computed(kind, tmp_path):
-    """By many fractions of its stage, which never fall and end at one."""
+    """By many fractions of its stage, which never fall and end at one; all stages are those of the study."""
     name, fields = CONFIRMED[kind]
     study, case = STUDIES[name], plane_case()
     reported: list[tuple[str, float]] = []
     means = Means(tmp_path, lambda *progress: reported.append(progress))
     study.run.compute(case, validated(study.inputs, fields), means)
+    assert {stage for stage, _ in reported} <= {name for name, _ in study.stages}
     fractions = [fraction for stage, fraction in reported if stage == "confirmation"]
     assert fractions == sorted(fractions) and fractions[-1] == 1.0
     assert len(set(fractions)) > 5
