@@ -24,11 +24,14 @@ from lineofaction.gearbox import workbench
 from lineofaction.gearbox.convert import plan
 from lineofaction.gearbox.convert.checked_case import CheckedCase, CheckedCases
 from lineofaction.gearbox.registry import STUDIES
-from lineofaction.gearbox.schemas import Case, validated
+from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.studies.cost import StudyCost, Work
+from lineofaction.gearbox.studies.deflect import Inputs as DeflectInputs
 from lineofaction.gearbox.studies.deflect.mesh_contact import DividedTables
 from lineofaction.gearbox.studies.optimize import run as optimize_run
+from lineofaction.gearbox.studies.optimize import sound_search
 from lineofaction.gearbox.studies.scatter import run as scatter_run
 from lineofaction.gearbox.studies.scene_before_tables import sized
 from lineofaction.gearbox.studies.steady import run as steady_run
@@ -238,3 +241,43 @@ def test_steps_of_a_steady_state_are_planned_to_end_at_the_positions_of_its_tabl
     planned, computed, usual = (periodic_problem(system, 4000.0 * RPM).grid.level.size for system in systems)
     assert planned == pytest.approx(computed, rel=0.1)
     assert usual < 0.7 * computed
+
+
+def test_a_deflection_before_a_search_is_planned_as_its_stage(tmp_path):
+    """Over the face the misalignment of a mesh follows from a deflection, which has stages of its own."""
+    scene, _ = scene_of(EXAMPLES / "flexible_shafts_scene.toml")
+    (tmp_path / "case.toml").write_text(spur_case(torques=[100.0], model="3d"))
+    case = read_model(Case, tmp_path / "case.toml")
+    mesh = scene.meshes[0].model_copy(update={"case": case, "case_file": None})
+    scene, study = scene.model_copy(update={"meshes": (mesh,)}), STUDIES["optimize"]
+    heard = {"speed_rpm": [500.0, 900.0], "orders": 2, "bearing": "output left"}
+    inputs = validated(
+        study.inputs, {"variables": {"pinion": {"profile_crowning_um": [0.0, 20.0]}}, "heard": heard}
+    )
+    cost = study.run.predicted(scene, inputs, None)
+    planned = {part.name: part.stage for part in cost.parts}
+    assert planned["deflections"] == planned["tables by misalignment"] == "deflection"
+    assert set(planned.values()) <= {name for name, _ in study.stages}
+
+
+def test_a_deflection_before_a_search_is_reported_as_its_stage(monkeypatch, tmp_path):
+    """By the planned cost of its own stages."""
+    plan = StudyCost((Work("bodies", 1.0, stage="deflection"), Work("tables", 3.0, stage="flanks")))
+
+    def compute(_subject: Any, _inputs: Any, means: Means) -> Any:
+        for stage, fraction in (("deflection", 1.0), ("flanks", 0.5), ("flanks", 1.0)):
+            means.report(stage, fraction)
+        return SimpleNamespace(deflection=SimpleNamespace(cases=[]))
+
+    deflect = SimpleNamespace(predicted=lambda *_: plan, compute=compute, failure=lambda _: "")
+    monkeypatch.setattr(sound_search, "DEFLECT", deflect)
+    table = SimpleNamespace(metadata=SimpleNamespace(receipt={"plan": {"model": "3d"}}))
+    mesh: Any = SimpleNamespace(name="mesh", misalignment=0.0)
+    subject: Any = SimpleNamespace(
+        databases={"mesh": table}, scene=SimpleNamespace(meshes=(mesh,)), inputs=None
+    )
+    reported: list[tuple[str, float]] = []
+    means = Means(tmp_path, lambda *progress: reported.append(progress))
+    question: Any = SimpleNamespace(misalignment_um=None, load_cases=DeflectInputs().load_cases)
+    sound_search.misalignments(subject, mesh, question, means)
+    assert reported == [("deflection", 0.25), ("deflection", 0.625), ("deflection", 1.0)]
