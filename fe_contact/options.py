@@ -12,6 +12,7 @@ from fe_contact.errors import InputError, increasing, integer, positive, within
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray, Json
 from model_studies import Progress, silent
+from model_studies.progress import Report, TableFraction
 from model_studies.workers import InProcess, Workers
 
 LARGEST_DEVIATION = 0.01
@@ -141,6 +142,19 @@ class Run:
     def silent(self) -> Run:
         """The same without reports of progress."""
         return replace(self, progress=silent, on_plan=_unplanned)
+
+    def reporting(self, report: Report, *, refines: bool = False) -> Run:
+        """Return the same for a table within the stage of a study.
+
+        `report`: called with the fraction done of the table, by the predicted cost of its stages. `refines`:
+        another pass may follow, as under a tolerance.
+        """
+        table = TableFraction(refines=refines)
+
+        def progress(stage: str, fraction: float) -> None:
+            report(table.at(stage, fraction))
+
+        return replace(self, progress=progress, on_plan=table.plan)
 
 
 @dataclass(frozen=True)

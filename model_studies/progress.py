@@ -1,4 +1,7 @@
-"""Progress of a computation, reported to a caller or to nobody."""
+"""Progress of a computation, reported to a caller or to nobody.
+
+A pass is one computation of a table with all its stages; under a tolerance, passes follow until it is met.
+"""
 
 from __future__ import annotations
 
@@ -16,6 +19,10 @@ Report = Callable[[float], None]
 
 ANNOUNCED = 3.0
 """CPU seconds from which on a cost is reported before the work begins."""
+_PASS_SHARE = 0.8
+"""Share of the remaining fraction that a pass counts if another one may follow. It is large because most
+passes are the last.
+"""
 
 
 def stage_name(reported: str) -> str:
@@ -61,3 +68,29 @@ def by_cost(report: Report, costs: Mapping[str, float]) -> Progress:
             report(min((done + fraction * costs[part]) / total, 1.0))
 
     return progress
+
+
+class TableFraction:
+    """The fraction done of a table, by the predicted cost of its stages; it never falls.
+
+    A new pass counts the whole remaining fraction, or `_PASS_SHARE` of it if another pass may follow.
+    `refines`: another pass may follow, as under a tolerance.
+    """
+
+    def __init__(self, *, refines: bool = False) -> None:
+        self._share = _PASS_SHARE if refines else 1.0
+        self._done = 0.0
+        self._progress: Progress = silent
+
+    def plan(self, stages: Mapping[str, float]) -> None:
+        """Begin a pass with the predicted cost of its stages."""
+        begun, share = self._done, self._share * (1.0 - self._done)
+        self._progress = by_cost(lambda fraction: self._reach(begun + share * fraction), stages)
+
+    def at(self, stage: str, fraction: float) -> float:
+        """Return the completed fraction of the table at a fraction of a stage."""
+        self._progress(stage, fraction)
+        return self._done
+
+    def _reach(self, fraction: float) -> None:
+        self._done = max(self._done, fraction)

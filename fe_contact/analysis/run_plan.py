@@ -15,7 +15,7 @@ from fe_contact.analysis.request.request_check import as_checked
 from fe_contact.errors import positive
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import LEVELS, MESHES, AnalysisOptions, TableAxes
-from fe_contact.planning.cost_model import Prediction, predict_run, unit_work
+from fe_contact.planning.cost_model import Prediction, contact_seconds, predict_run, unit_work
 from fe_contact.planning.cost_of_derivatives import ContactWork
 from fe_contact.planning.expected_curves import ExpectedCurves
 from fe_contact.planning.expected_error import ExpectedError, expected_error
@@ -134,7 +134,9 @@ class PredictedDesigns(NamedTuple):
     """CPU seconds of other flanks, loads and alignments on the same gears."""
 
     bodies: float
-    """CPU seconds to condense both gears, coarse meshes included."""
+    """CPU seconds to condense both gears."""
+    coarse_bodies: float
+    """CPU seconds to condense both gears on coarse meshes: solutions on them yield the error of the mesh."""
     design: float
     """CPU seconds of one pair of flanks at one alignment, all loads at once."""
     errors: float
@@ -145,10 +147,13 @@ class PredictedDesigns(NamedTuple):
     """Whether the gears are condensed in three dimensions."""
     bytes: float
     """Largest resident memory of the process, bytes."""
-    table: float
-    """CPU seconds of a whole table at one alignment, its errors included."""
     work: ContactWork
     """Work of the contact solution of one design, by kind."""
+
+    @property
+    def all_bodies(self) -> float:
+        """CPU seconds to condense both gears, coarse meshes included."""
+        return self.bodies + self.coarse_bodies
 
 
 def predicted_designs(checked: Checked, cache: Path | None) -> PredictedDesigns:
@@ -170,15 +175,38 @@ def predicted_designs(checked: Checked, cache: Path | None) -> PredictedDesigns:
     slowness = host_slowness(cache)
     unit = unit_work(pair, choice.plan, choice.plan.discretization.slices)
     return PredictedDesigns(
-        bodies=parts["compliance"]["bodies"] + parts["error estimate"]["bodies"],
+        bodies=parts["compliance"]["bodies"],
+        coarse_bodies=parts["error estimate"]["bodies"],
         design=_DESIGN_WORK * parts["contact"]["table"],
         errors=errors,
         positions=prediction.positions,
         across_face=model.across_face,
         bytes=float(prediction.memory_bytes),
-        table=prediction.stages["contact"] + prediction.correction["error estimate"] * errors,
         work=ContactWork(*(slowness * work_of_part for work_of_part in unit)),
     )
+
+
+def table_seconds(
+    checked: Checked, pair: ParallelAxes, alignments: tuple[int, int], cache: Path | None
+) -> float:
+    """Return the CPU seconds of a whole table of one design on condensed gears, its errors included.
+
+    It costs more where flanks vary along the profile: the compliance changes with the touching points.
+
+    Parameters
+    ----------
+    checked : Checked
+        The request of all designs, whose model and mesh the table has.
+    pair : GearPair or InternalGearPair
+        The pair with the flanks of the design.
+    alignments : (int, int)
+        Numbers of misalignments and of center distances.
+    """
+    choice = decide(checked, cache)
+    search, solve, check = contact_seconds(pair, choice.plan, choice.checked.model, alignments)
+    correction = choice.predicted(cache).correction
+    seconds = correction["contact"] * (search + solve) + correction["error estimate"] * check
+    return host_slowness(cache) * seconds
 
 
 def _decision(choice: Decision, curves: ExpectedCurves | None, cache: Path | None) -> PlannedLevel:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -13,12 +14,14 @@ from fe_contact.microgeometry.design_memory import DesignMemory
 from fe_contact.microgeometry.design_problem import SLACK, DesignProblem
 from fe_contact.microgeometry.design_study import DesignStudy
 from fe_contact.microgeometry.drawing_grid import best_on_grid
+from fe_contact.microgeometry.objective import NO_LIMITS
 from fe_contact.microgeometry.optimization import OptimizationRequest, Perturbation
 from fe_contact.microgeometry.scatter import Scatter
 from fe_contact.microgeometry.search import SearchRun, search_from
 from fe_contact.microgeometry.search_methods import Cancel, SequentialLinearProgramming
 from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.options import Run
+from model_studies.progress import Report, unreported
 from model_studies.stage_clock import StageClock
 from model_studies.workers import InProcess, LocalFallback, Workers, WorkersLost, divided
 
@@ -30,6 +33,12 @@ exceeds the limits in the full analysis; it adds the positions of that analysis.
 ROUNDS = 3
 """Most further searches. Each adds the positions of the last full analysis to those of all searches before.
 """
+
+LIMITED = 0.25
+"""Share of the first two analyses in the confirmation of a search with limits, where one may follow."""
+
+SEARCHED = 0.85
+"""Usual share of a further search in its cost with the analysis that follows."""
 
 STEP = 0.05
 """Perturbation of the optimum over the range of a variable that does not scatter."""
@@ -84,15 +93,46 @@ def choose(
     with clock.stage("confirmation"):
         start_values = dict(zip(problem.names, request.start_design, strict=True))
         designs = start_values, problem.values(runs[best].coordinates)
-        seconds = len(designs) * study.decision.checked.predicted(study.decision.plan, run.cache).cpu_seconds
-        shared = problem, study, run.cache
-        start, optimum = divided(to_the_end(run.workers, cancel), _confirmed_design, shared, designs, seconds)
+        share = LIMITED if request.limits != NO_LIMITS else 1.0
+        workers = to_the_end(run.workers, cancel)
+        start, optimum = _confirmed(problem, study, designs, replace(run, workers=workers), share)
     choice = Choice(problem, start, optimum, runs, best)
-    for _ in range(ROUNDS):
+
+    def report(fraction: float) -> None:
+        run.progress("confirmation", LIMITED + (1.0 - LIMITED) * fraction)
+
+    for number in range(ROUNDS):
         if choice.optimum.violation <= SLACK or choice.run.assessed.violation > SLACK or cancel():
             break
-        choice = _refined_choice(choice, request, study, clock, run, cancel)
+        expected = report if number == 0 else unreported  # one further search is usual
+        choice = _refined_choice(choice, request, study, clock, run, cancel, expected)
     return choice
+
+
+def _confirmed(
+    problem: DesignProblem,
+    study: DesignStudy,
+    designs: tuple[dict[str, float], ...],
+    run: Run,
+    share: float,
+) -> list[ConfirmedDesign]:
+    """Analyze designs in full, which is `share` of the stage; workers tell of whole designs alone."""
+    part = share / len(designs)
+
+    def report(fraction: float, number: int) -> None:
+        run.progress("confirmation", part * (number + fraction))
+
+    if isinstance(run.workers, InProcess):
+        return [
+            confirm(problem, values, study, run.cache, partial(report, number=number))
+            for number, values in enumerate(designs)
+        ]
+    seconds = len(designs) * study.decision.checked.predicted(study.decision.plan, run.cache).cpu_seconds
+    confirmed = []
+    for design in divided(run.workers, _confirmed_design, (problem, study, run.cache), designs, seconds):
+        confirmed.append(design)
+        report(1.0, len(confirmed) - 1)
+    return confirmed
 
 
 def _confirmed_design(
@@ -110,8 +150,12 @@ def _refined_choice(
     clock: StageClock,
     run: Run,
     cancel: Cancel,
+    report: Report,
 ) -> Choice:
-    """Search on from a design that exceeds the limits between the positions of the search."""
+    """Search on from a design that exceeds the limits between the positions of the search.
+
+    `report`: called with the fraction done of the search and the analysis after it.
+    """
     search = request.search
     shorter = replace(
         search,
@@ -123,10 +167,18 @@ def _refined_choice(
     problem = replace(choice.problem, evaluator=evaluator.at(positions))
     with clock.stage("search"):
         best, workers = choice.run.coordinates, run.workers
-        further = search_from(problem, shorter, best, search.starts, cancel=cancel, workers=workers)
+
+        def searched(fraction: float) -> None:
+            report(SEARCHED * fraction)
+
+        further = search_from(problem, shorter, best, search.starts, searched, cancel, workers=workers)
         further = best_on_grid(problem, further, request.grid, cancel)
     with clock.stage("confirmation"):
-        optimum = confirm(problem, problem.values(further.coordinates), study, run.cache)
+
+        def analyzed(fraction: float) -> None:
+            report(SEARCHED + (1.0 - SEARCHED) * fraction)
+
+        optimum = confirm(problem, problem.values(further.coordinates), study, run.cache, analyzed)
     return Choice(problem, choice.start, optimum, (*choice.runs, further), len(choice.runs))
 
 

@@ -28,6 +28,10 @@ from fe_contact.options import Run
 from fe_contact.ste import Curve, SteDatabase
 from fe_contact.types import Estimate, FloatArray, IntArray
 from model_studies import NOT_STORED, in_unit
+from model_studies.progress import Report, unreported
+
+TABLE_SHARE = 0.6
+"""Usual share of the table in the cost of an analysis: 0.3 in the plane to 0.7 over the face."""
 
 
 @dataclass(frozen=True)
@@ -85,7 +89,11 @@ class ConfirmedDesign:
 
 
 def confirm(
-    problem: DesignProblem, values: Mapping[str, float], study: DesignStudy, cache: Path | None
+    problem: DesignProblem,
+    values: Mapping[str, float],
+    study: DesignStudy,
+    cache: Path | None,
+    report: Report = unreported,
 ) -> ConfirmedDesign:
     """Analyze a design in full, over all torques of a study.
 
@@ -95,10 +103,13 @@ def confirm(
         ``gear.quantity`` to m.
     cache : Path, optional
         Directory of flank compliances.
+    report : callable
+        Called with the fraction done.
     """
     search, counted = problem.evaluator, study.counted
     nodes = search.nodes
-    table = full_table(search, values, study.decision, cache)
+    run = Run(cache=cache).reporting(lambda fraction: report(TABLE_SHARE * fraction))
+    table = full_table(search, values, study.decision, run)
     fine = replace(search.at(table.position), load=study.force, misalignment=study.loads.misalignment)
     figures = confirmed_figures(fine, values, cache)
     exact = replace(fine, nodes=ONE_NODE)  # the design without scatter
@@ -120,6 +131,7 @@ def confirm(
     value, map_error = _objective(problem, values, table, harris, counted)
     objective = Estimate(value, map_error + scatter_error, "m")
     violation = counted_figures.violation(problem.limits)
+    report(1.0)
     return ConfirmedDesign(dict(values), harris, counted_figures, objective, scatter_error, violation, table)
 
 
@@ -142,9 +154,7 @@ def _objective(
     return problem.objective_of(search.evaluate(values)), objective.of(search.nodes.weight @ errors)
 
 
-def full_table(
-    search: Evaluator, values: Mapping[str, float], decision: Decision, cache: Path | None
-) -> SteDatabase:
+def full_table(search: Evaluator, values: Mapping[str, float], decision: Decision, run: Run) -> SteDatabase:
     """Compute the table of a design over all torques, at the misalignments of all nodes and of the design."""
     request = decision.checked.request
     skews = misalignment_axis(search.misalignment, search.nodes.misalignment)
@@ -155,7 +165,7 @@ def full_table(
         options=replace(request.options.at_level(decision.mesh.level), effects=dict(search.choices)),
     )
     checked = checked_request(full, neglect=False)
-    table = compute_database(checked, full.to_json(), Run(cache=cache), replace(decision, checked=checked))
+    table = compute_database(checked, full.to_json(), run, replace(decision, checked=checked))
     table.require_complete()
     return table
 

@@ -143,11 +143,11 @@ def optimize(
         runs = search_all(problem, request.search, request.start_design, run, cancel)
         runs = tuple(best_on_grid(problem, part, request.grid, cancel) for part in runs)
     choice = choose(problem, runs, request, study, clock, run, cancel)
-    run.progress("confirmation", 1.0)
     with clock.stage("sensitivity"):
         shared = choice.problem, choice.run, request.scatter  # argument of every task
         workers = to_the_end(run.workers, cancel)  # this process, once the search is cancelled
         perturbations = tuple(divided(workers, perturbation, shared, request.variables))
+    run.progress("confirmation", 1.0)
     return _result(request, study, choice, perturbations, clock)
 
 

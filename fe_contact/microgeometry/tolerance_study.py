@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -315,7 +315,8 @@ def sampled(request: ToleranceRequest, run: Run) -> ToleranceStudy:
             )
             above = mesh_order_above(request.limit, pairs, design.evaluation.ste[0], sampling.confidence)
     with clock.stage("confirmation"):
-        table = full_table(nominal, {}, study.decision, run.cache)
+        of_table = Run(cache=run.cache).reporting(partial(run.progress, "confirmation"))
+        table = full_table(nominal, {}, study.decision, of_table)
         error = ripple_errors(table, nominal)[0]
     run.progress("confirmation", 1.0)
     return ToleranceStudy(

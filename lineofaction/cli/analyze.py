@@ -16,6 +16,7 @@ from rich.console import Console
 from bounds import engineering
 from bounds.error_digits import with_error
 from fe_contact.ste import SteDatabase
+from host.directories import cache_home
 from lineofaction.cli.assessed_case import assessed_case
 from lineofaction.cli.cached_tables import CachedTables
 from lineofaction.cli.output import (
@@ -77,11 +78,13 @@ def run_analyze(
 
 def _computed_database(case: CheckedCase, executor: tuple[int, str | None]) -> SteDatabase:
     """Compute the table of a case, and keep it for verbs that take it."""
+    from fe_contact.options import Run  # noqa: PLC0415 (start-up time)
     from lineofaction.cli.computed_tables import computed_table  # noqa: PLC0415 (start-up time)
     from lineofaction.gearbox.executor import open_executor  # noqa: PLC0415 (start-up time)
 
     with open_executor(*executor) as workers, progress_bar() as report:
-        return CachedTables(lambda _: computed_table(case, report, workers)).table(case.case)
+        run = Run(workers, cache_home() / "compliance", report)
+        return CachedTables(lambda _: computed_table(case, run)).table(case.case)
 
 
 def _show(summary: dict[str, Any], *, several_alignments: bool) -> None:

@@ -4,21 +4,15 @@ from __future__ import annotations
 
 import sys
 
+from fe_contact.options import Run
 from fe_contact.ste import SteDatabase
-from host.directories import cache_home
-from lineofaction.cli.output import Report
 from lineofaction.gearbox.convert.answers import draft_line
 from lineofaction.gearbox.convert.checked_case import CheckedCase
-from lineofaction.gearbox.tabled_scene import database_of
-from model_studies.workers import InProcess, Workers
+from lineofaction.gearbox.tabled_scene import checked_table
 
 
-def computed_table(
-    case: CheckedCase,
-    report: Report,
-    workers: Workers = InProcess(),  # noqa: B008 (frozen)
-) -> SteDatabase:
-    """Compute the database of a case; condensed gears are kept in the user's cache.
+def computed_table(case: CheckedCase, run: Run) -> SteDatabase:
+    """Compute the database of a case.
 
     Figures of a table that is being refined are printed on standard error: they are progress.
     """
@@ -26,4 +20,4 @@ def computed_table(
     def print_draft(table: SteDatabase, refining: str) -> None:
         print(draft_line(table, refining), file=sys.stderr, flush=True)  # noqa: T201 (this is the command line)
 
-    return database_of(case, cache_home(), report, workers, print_draft)
+    return checked_table(case, run, print_draft)

@@ -8,6 +8,7 @@ from contextlib import ExitStack
 from functools import cache, partial
 from pathlib import Path
 
+from fe_contact.options import Run
 from fe_contact.ste import SteDatabase
 from host.directories import cache_home
 from lineofaction.cli import computed_tables
@@ -20,7 +21,7 @@ from lineofaction.gearbox.mesh_tables import MeshTables, finished
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.tabled_scene import ComputedTables
+from lineofaction.gearbox.tabled_scene import ComputedTables, SceneRuns
 from lineofaction.gearbox.tabled_scene import tabled_scene as scene_by_tables
 from model_studies.workers import InProcess, Workers
 
@@ -36,10 +37,10 @@ def tabled_scene(
     cases = CheckedCases()
     with ExitStack() as stack:
         if service is None:
-            cached = CachedTables(
-                lambda case: computed_tables.computed_table(cases.of(case), report, workers)
-            )
-            tables, run = MeshTables(folder, ComputedTables(cached.table)), finished
+            run = Run(workers, cache_home() / "compliance", report)
+            runs = SceneRuns(scene, folder, cases, run, lambda case: CachedTables.file(case).is_file())
+            cached = CachedTables(lambda case: computed_tables.computed_table(cases.of(case), runs.of(case)))
+            tables, result_of = MeshTables(folder, ComputedTables(cached.table)), finished
             find_cached: Callable[[Case], SteDatabase | None] = cached.find
         else:
             from dynamics.simulation import compile_ahead  # noqa: PLC0415 (start-up time)
@@ -56,10 +57,10 @@ def tabled_scene(
                     compile_once()  # loops, while tables are computed
 
             client = stack.enter_context(LineOfActionClient(service, progress=watch))
-            tables, run = MeshTables(folder, ServiceTables(client)), client.driver.run
+            tables, result_of = MeshTables(folder, ServiceTables(client)), client.driver.run
             find_cached = lambda _: None  # noqa: E731 (the service has its own cache)
 
         def table_of(index: int, mesh: MeshInput) -> SteDatabase:
-            return run(tables.of(index, mesh))
+            return result_of(tables.of(index, mesh))
 
         return scene_by_tables(scene, folder, table_of, cache_home(), report, warn, cases, find_cached)

@@ -191,7 +191,13 @@ class Studies:
         "examples/sensitivity_automotive.toml --samples 400 -o scatter.png",
         group="design",
         kind="scatter",
-        stages=(("compliance", 0.2), ("first order", 0.1), ("samples", 0.6), ("confirmation", 0.1)),
+        stages=(
+            ("compliance", 0.2),
+            ("first order", 0.1),
+            ("samples", 0.5),
+            ("sidebands", 0.1),
+            ("confirmation", 0.1),
+        ),
         version="7",
     )
     sweep = StudyOf(

@@ -1,26 +1,17 @@
-"""Stages of work, and the fraction of the whole that is done.
-
-A pass is one computation of a table with all its stages; under a tolerance, passes follow until it is met.
-"""
+"""Stages of work, and the fraction of the whole that is done."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from datetime import timedelta
 from typing import NamedTuple
 
-from model_studies.progress import Progress, by_cost, silent, stage_name
+from model_studies.progress import Progress, stage_name
 
 _PACE_KNOWN = 0.1
 """Fraction of a stage from which on its pace alone predicts its time."""
 PACE_OF_WHOLE = 0.02
 """Fraction of the whole from which on what is left is told."""
-_PASS_SHARE = 0.8
-"""Share of the remaining fraction that a pass counts if another one may follow. It is large because most
-passes are the last.
-"""
-
-
 LOADING = ""
 """Name of what loads within the first stage of a process, before its work: it is never reported."""
 
@@ -120,29 +111,3 @@ class TimeLeft:
             return ""
         seconds = max((now_s - begun_s) * (1.0 - done) / done, 1.0)
         return f"{timedelta(seconds=round(seconds))} left"
-
-
-class TableFraction:
-    """The fraction done of a table, by the predicted cost of its stages; it never falls.
-
-    A new pass counts the whole remaining fraction, or `_PASS_SHARE` of it if another pass may follow.
-    `refines`: another pass may follow, as under a tolerance.
-    """
-
-    def __init__(self, *, refines: bool = False) -> None:
-        self._share = _PASS_SHARE if refines else 1.0
-        self._done = 0.0
-        self._progress: Progress = silent
-
-    def plan(self, stages: Mapping[str, float]) -> None:
-        """Begin a pass with the predicted cost of its stages."""
-        begun, share = self._done, self._share * (1.0 - self._done)
-        self._progress = by_cost(lambda fraction: self._reach(begun + share * fraction), stages)
-
-    def at(self, stage: str, fraction: float) -> float:
-        """Return the completed fraction of the table at a fraction of a stage."""
-        self._progress(stage, fraction)
-        return self._done
-
-    def _reach(self, fraction: float) -> None:
-        self._done = max(self._done, fraction)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -23,9 +24,11 @@ from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.subjects import with_case, with_inline_cases, without_modes_files
-from model_studies.progress import Progress, silent
+from model_studies.progress import Progress, by_cost, silent
 from model_studies.workers import InProcess, Workers
 
+ANALYSIS = "analysis"
+"""Stage of the tables of a scene."""
 Warn = Callable[[Iterable[dict[str, Any]]], object]
 """Called with warnings, each a record of plain JSON."""
 OnDraft = Callable[[SteDatabase, str], None]
@@ -122,6 +125,57 @@ def checked_table(case: CheckedCase, run: Run, on_draft: OnDraft | None = None) 
         metadata = replace(metadata, receipt=receipt)
     warnings = phrased_for(case.case, metadata.warnings)
     return replace(database, metadata=replace(metadata, warnings=warnings))
+
+
+class SceneRuns:
+    """The runs of the tables of a scene, which together report the fraction done of the stage `ANALYSIS`.
+
+    Each table counts by its predicted cost.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder to which the names of files in the scene are relative.
+    cases : CheckedCases
+        Checked cases of this scene.
+    run : Run
+        Workers, cache and progress of all tables.
+    cached : callable
+        ``cached(case)``, whether the table of a case is not computed.
+    """
+
+    def __init__(
+        self,
+        scene: SceneInput,
+        folder: Path,
+        cases: CheckedCases,
+        run: Run,
+        cached: Callable[[Case], bool] = lambda _case: False,
+    ) -> None:
+        self._scene, self._folder = scene, folder
+        self._cases, self._run, self._cached = cases, run, cached
+        self._progress: Progress | None = None  # of the tables by the text of their cases
+
+    def of(self, case: Case) -> Run:
+        """Return the run of the table of a case; the first call comes after all cases were checked."""
+        if self._progress is None:
+            self._progress = by_cost(partial(self._run.progress, ANALYSIS), self._seconds())
+        refines = case.accuracy.tolerance is not None
+        return self._run.reporting(partial(self._progress, case.model_dump_json()), refines=refines)
+
+    def _seconds(self) -> dict[str, float]:
+        """Return the predicted CPU seconds of the tables that are computed, by the text of their cases."""
+        meshes = with_inline_cases(self._scene, self._folder).meshes
+        cases = [case for mesh in meshes if (case := mesh.case) is not None and not self._cached(case)]
+        by_text = {case.model_dump_json(): case for case in cases}
+        if len(by_text) == 1:
+            return dict.fromkeys(by_text, 1.0)  # its part of the stage needs no plan
+        return {text: self._predicted(case) for text, case in by_text.items()}
+
+    def _predicted(self, case: Case) -> float:
+        from lineofaction.gearbox.convert.plan import costs_of  # noqa: PLC0415 (start-up time)
+
+        return sum(cost.cpu_seconds for cost in costs_of(self._cases.of(case), self._run.cache))
 
 
 class ComputedTables:

@@ -45,7 +45,7 @@ from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.study import Study
 from lineofaction.gearbox.study_cache import cached_workers
 from lineofaction.gearbox.subjects import Subject, case_of, scene_of, with_absolute_paths
-from lineofaction.gearbox.tabled_scene import ComputedTables, database_of
+from lineofaction.gearbox.tabled_scene import ComputedTables, SceneRuns, checked_table, database_of
 from lineofaction.gearbox.tabled_scene import tabled_scene as scene_by_tables
 from model_studies.progress import Progress, silent
 from model_studies.workers import InProcess, Workers
@@ -227,7 +227,8 @@ def tabled(
 def _tabled_scene(scene: SceneInput, folder: Path, progress: Progress, workers: Workers) -> TabledScene:
     _warn(omission_warnings(scene.left_out))
     cases = CheckedCases()
-    computed = ComputedTables(lambda case: database_of(cases.of(case), cache_home(), progress, workers))
+    runs = SceneRuns(scene, folder, cases, Run(workers, cache_home() / "compliance", progress))
+    computed = ComputedTables(lambda case: checked_table(cases.of(case), runs.of(case)))
     tables = MeshTables(folder, computed)
     return scene_by_tables(
         scene,

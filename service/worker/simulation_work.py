@@ -34,10 +34,10 @@ from lineofaction.gearbox.result_files import stamp_scene
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.stages import TableFraction, staged
+from lineofaction.gearbox.stages import staged
 from lineofaction.gearbox.studies.excitations import scene_metadata
 from lineofaction.gearbox.tabled_scene import checked_table
-from model_studies.progress import Report, by_cost
+from model_studies.progress import Report, TableFraction, by_cost
 from service.worker.job_executor import table_workers
 from service.worker.order import Product, Progress, WorkOrder
 from service.worker.preparations import CASES, name_of_table

@@ -156,6 +156,7 @@ def test_pairs_of_scatter_are_solved_on_one_compliance(case, monkeypatch):
     curves_of_samples((study.evaluator, names), (False, request.tolerances.sample(5, 0)))
     monkeypatch.setattr(ContactWork, "of", lambda _, positions, __: positions)
     monkeypatch.setattr(ContactWork, "of_flanks", lambda _, positions, loads: positions * loads)
+    monkeypatch.setattr(scatter, "_DRAWN_FLANKS", 1.0)  # points are counted, whatever one costs
     told = {part.name: part for part in predicted("scatter", {"samples": 5, "exact": 5}, case).parts}
     assert told["pairs"].pieces == 5 + scatter._TANGENT
     assert counts == {"pairs": 5 * told["pairs"].piece_seconds, "compliance": told["compliance"].seconds}
@@ -179,8 +180,9 @@ def test_contacts_of_a_deflection_come_with_their_errors(monkeypatch):
     scene, folder = scene_of(EXAMPLES / "flexible_shafts_scene.toml")
     cost = study_cost(STUDIES["deflect"], scene, folder, STUDIES["deflect"].inputs())
     parts = {part.name: part for part in cost.parts}
-    assert parts["contacts"].piece_seconds == 3.0
-    assert parts["deflections"].pieces == 4  # of one load case: before, and in three passes
+    assert parts["contacts"].piece_seconds == parts["tables by misalignment"].piece_seconds == 3.0
+    deflections = {part.stage: part.pieces for part in cost.parts if part.name == "deflections"}
+    assert deflections == {"deflection": 1, "flanks": 3}  # of one load case: before, and in three passes
 
 
 def test_the_cost_is_said_as_parts_of_a_whole():
@@ -314,13 +316,14 @@ def test_nodes_and_limits_of_a_search_are_in_its_cost():
     free = {name: value for name, value in whole.items() if name not in ("scatter", "limits")}
     study = STUDIES["optimize"]
 
-    def parts(fields):
+    def parts(fields):  # of two parts with the name of analyses the later one: those of other than the start
         cost = study.run.predicted(case, validated(study.inputs, fields), None)
         return {part.name: part for part in cost.parts}
 
     alone, scattered, limited = map(parts, (free, free | {"scatter": whole["scatter"]}, whole))
-    for name in ("designs", "analyses"):
+    for name in ("designs", "steps from the optimum"):
         assert scattered[name].seconds == pytest.approx(9.0 * alone[name].seconds)
+    assert alone["analyses"].seconds < scattered["analyses"].seconds < 18.0 * alone["analyses"].seconds
     assert "designs within limits" not in scattered and limited["designs within limits"].seconds > 0.0
     assert limited["analyses"].pieces == scattered["analyses"].pieces + 1.0
 
@@ -398,10 +401,10 @@ def test_a_change_costs_two_contacts_a_pair_and_two_of_the_designs():
 def test_a_scene_is_assembled_once_for_all_verbs_that_ask_of_it(monkeypatch):
     scene, folder = scene_of(EXAMPLES / "palermo_scene.toml")
     scene = scene.model_copy(update={"run": scene.run.model_copy(update={"duration_s": 0.0123})})
-    resolved: list[float | None] = []
+    resolved: list[tuple[float | None, int]] = []
 
-    def counted(own):
-        resolved.append(own.highest_frequency)
+    def counted(own):  # steps of steady states end at the positions of the planned table
+        resolved.append((own.highest_frequency, own.meshes[0].table.position.size))
         return assemble(own)
 
     monkeypatch.setattr("lineofaction.gearbox.studies.scene_before_tables.assemble", counted)

@@ -23,7 +23,9 @@ from spur_case import spur_case
 from dynamics import RunResult, simulate
 from dynamics.study import QUANTITIES, Design, Levels, Response, Study, StudyTask, responses_of, study
 from dynamics.study.run_study import _run_batch
+from fe_contact.options import Run
 from fe_contact.ste import PairGeometry
+from host.directories import cache_home
 from lineofaction.cli.computed_tables import computed_table
 from lineofaction.gearbox import workbench
 from lineofaction.gearbox.convert.case import gear_pair
@@ -261,7 +263,7 @@ def written(tmp_path_factory):
 def scenes(written, tmp_path_factory, condensed_once):
     case = written.meshes[0].case
     assert case is not None
-    database = computed_table(CheckedCase(case), lambda _stage, _fraction: None)
+    database = computed_table(CheckedCase(case), Run(cache=cache_home() / "compliance"))
     places = {PATH: places_of(written, "path", PATH)}
     home = str(tmp_path_factory.mktemp("caches"))
     return VariedScene(written.model_dump_json(), {"mesh": database}, places, home)

@@ -15,7 +15,7 @@ import pytest
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas import Case, validated
-from lineofaction.gearbox.stages import LOADING, PacedFraction, TableFraction
+from lineofaction.gearbox.stages import LOADING, PacedFraction
 from lineofaction.gearbox.studies.cost import StudyCost, Work
 from service.worker.order import WorkOrder
 from service.worker.simulation_work import database_of
@@ -182,14 +182,3 @@ def test_the_fraction_never_falls_and_moves_in_small_steps(reports):
     for (earlier, _, before), (later, stage, after) in itertools.pairwise(reports):
         assert after >= before, stage
         assert later - earlier < LARGEST_STEP * whole, stage
-
-
-def test_a_pass_that_follows_takes_its_part_of_what_is_left():
-    table = TableFraction(refines=True)
-    table.plan({"compliance": 3.0, "contact": 1.0})
-    first = [table.at(*step) for step in (("compliance", 0.5), ("compliance", 1.0), ("contact", 1.0))]
-    table.plan({"compliance": 0.0, "contact": 9.0})
-    second = [table.at(*step) for step in (("compliance", 1.0), ("contact", 0.5), ("contact", 1.0))]
-    assert first == pytest.approx([0.3, 0.6, 0.8])
-    assert second == pytest.approx([0.8, 0.88, 0.96])
-    assert table.at("unknown", 0.1) == second[-1]

@@ -25,6 +25,7 @@ from fe_contact.ste.joined_tables import joined_over_misalignment
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.convert.case import PLANE, analysis_options, gear_pair
 from lineofaction.gearbox.schemas import Case
+from model_studies.progress import Report, unreported
 from model_studies.workers import Workers, divided, spent
 
 LOWEST, HIGHEST = 0.5, 1.25
@@ -114,6 +115,11 @@ class DividedTables:
     workers: Workers
     seconds: float
     """CPU seconds of a table: as predicted at first, then as measured in the last pass."""
+    report: Report = unreported
+    """Callback for the fraction done of all tables."""
+    usual: int = 0
+    """Number of tables in a usual number of passes; later ones count in no fraction."""
+    _done: int = field(default=0, init=False)
 
     def complete(self, knots: Mapping[str, Sequence[float]]) -> None:
         """Compute the tables at misalignments, m, by mesh, that have not been computed yet."""
@@ -132,6 +138,8 @@ class DividedTables:
         tables = divided(self.workers, _table_at, self.contacts, new, self.seconds * len(new))
         for (name, knot), table in zip(new, tables, strict=True):
             self.contacts[name].tables[knot] = table
+            self._done += 1
+            self.report(self._done / max(self.usual, self._done))
         if new:
             self.seconds = (spent(self.workers) - initial) / len(new)
 

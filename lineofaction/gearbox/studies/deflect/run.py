@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from types import MappingProxyType
 
@@ -15,6 +16,7 @@ from dynamics.deflection.agreement import Agreement, in_agreement
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.analysis.flanks.pressure_map import pressure_map
 from fe_contact.analysis.run_plan import predicted_designs
+from fe_contact.options import Run
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.case import PLANE
@@ -35,9 +37,12 @@ from lineofaction.gearbox.studies.motion import OfferedMotion, UnitMotion
 from lineofaction.gearbox.studies.scene_before_tables import CASES
 from lineofaction.gearbox.studies.unit_bodies import bodies_of
 from model_studies.host_speed import host_slowness
+from model_studies.progress import Progress, Report, by_cost
 from model_studies.workers import divided, spent
 
 ALONG_FACE, ALONG_PROFILE = 41, 40
+GEARS, TABLES, CONTACTS = "gears", "tables by misalignment", "contacts"
+"""Parts of the stage on the flanks, in the order in which they are done."""
 FIRST_KNOTS, USUAL_PASSES = 2, 3
 """Tables beyond the first misalignments; passes, each with a table for every load case."""
 CASE_SECONDS = 0.1
@@ -57,23 +62,29 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
     def predicted(self, scene: SceneInput, inputs: Inputs, cache: Path | None) -> StudyCost:
         """Return the cost of deflections, tables of usual passes and flanks of every load case, by mesh.
 
-        A table and a load distribution come with the solutions that measure their errors.
+        A table and a load distribution come with the solutions that measure their errors. Meshes whose load
+        may vary over the face have passes, with a deflection each.
         """
         count = len(inputs.load_cases)
-        deflections = count * (1 + USUAL_PASSES)
         seconds = CASE_SECONDS * host_slowness(cache)
-        cost = StudyCost((Work("deflections", seconds, deflections, "deflection"),))
+        over_face = False
+        cost = StudyCost((Work("deflections", seconds, count, "deflection"),))
         cases = [case for mesh in scene.meshes if isinstance(case := mesh.case, Case)]
         for case in {case.model_dump_json(): case for case in cases}.values():
             with boundary_errors():
                 design = predicted = predicted_designs(CASES.of(case).checked, cache)
                 if not design.across_face and case.accuracy.model not in PLANE:
                     predicted = predicted_designs(across_face(CASES.of(case)).checked, cache)
-                    gears = Work("gears", predicted.bodies, stage="flanks")  # otherwise those of its table
+                    # otherwise the gears are those of its table
+                    gears = Work(GEARS, predicted.all_bodies, stage="flanks")
                     cost += StudyCost((gears,), predicted.bytes)
-            knots = FIRST_KNOTS + count * USUAL_PASSES if predicted.across_face else 0
-            contact = predicted.design + predicted.errors
-            cost += StudyCost((Work("contacts", contact, knots + count, "flanks"),), predicted.bytes)
+            contact, knots = predicted.design + predicted.errors, _usual_tables(count)
+            if predicted.across_face:
+                over_face = True
+                cost += StudyCost((Work(TABLES, contact, knots, "flanks"),))
+            cost += StudyCost((Work(CONTACTS, contact, count, "flanks"),), predicted.bytes)
+        if over_face:
+            cost += StudyCost((Work("deflections", seconds, count * USUAL_PASSES, "flanks"),))
         return cost
 
     def compute(self, tabled: TabledScene, inputs: Inputs, means: Means) -> GearboxDeflection:
@@ -82,11 +93,13 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
             cases = load_cases(inputs.load_cases)
             positions, workers = inputs.positions, means.workers
             first = deflect(scene, cases, positions, lambda done: means.report("deflection", done), workers)
-            contacts = _contacts(tabled, first.cases, means)
+            progress = self._progress_on_flanks(tabled, inputs, means)
+            contacts = _contacts(tabled, first.cases, means.analysis, partial(progress, GEARS))
             across = {name: contact for name, contact in contacts.items() if contact.across_face}
-            tables = DividedTables(across, workers, _usual_seconds(tabled))
+            usual = _usual_tables(len(cases)) * len({id(contact) for contact in across.values()})
+            tables = DividedTables(across, workers, _usual_seconds(tabled), partial(progress, TABLES), usual)
             agreed = in_agreement(scene, cases, positions, across, first, tables.complete, workers)
-            flanks = tuple(_flanks(agreed, contacts, means, tables.seconds))
+            flanks = tuple(_flanks(agreed, contacts, means, tables.seconds, partial(progress, CONTACTS)))
         written = {name: mesh.case.model_dump(mode="json") for name, mesh in _with_case(tabled) if mesh.case}
         return GearboxDeflection(
             deflection=agreed.deflection,
@@ -100,6 +113,17 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
             scene=scene_of(tabled.inputs),
             metadata={UNIT: bodies_of(tabled)},
         )
+
+    def _progress_on_flanks(self, scene: TabledScene, inputs: Inputs, means: Means) -> Progress:
+        """Return the progress of the parts of the stage on the flanks, by their planned cost."""
+        plan = self.predicted(scene.inputs, inputs, means.analysis.cache)
+        planned = [part for part in plan.parts if part.stage == "flanks"]
+        # deflections of the passes stand between their tables
+        part_of = {"deflections": TABLES}
+        costs = dict.fromkeys((GEARS, TABLES, CONTACTS), 0.0)
+        for work in planned:
+            costs[part_of.get(work.name, work.name)] += work.seconds
+        return by_cost(partial(means.report, "flanks"), costs)
 
     def _derived(self, result: GearboxDeflection) -> Json:
         return figures_by_case(result)
@@ -151,7 +175,14 @@ def _with_case(scene: TabledScene) -> Iterator[tuple[str, MeshInput]]:
             yield mesh.name, known
 
 
-def _contacts(scene: TabledScene, cases: tuple[CaseDeflection, ...], means: Means) -> dict[str, MeshContact]:
+def _usual_tables(cases: int) -> int:
+    """Return the usual number of tables of a mesh under so many load cases, one at each misalignment."""
+    return FIRST_KNOTS + cases * USUAL_PASSES
+
+
+def _contacts(
+    scene: TabledScene, cases: tuple[CaseDeflection, ...], run: Run, report: Report
+) -> dict[str, MeshContact]:
     """Return the contacts of all meshes with a case, by name, at the torques on their pinions."""
     torques: dict[str, list[float]] = {}
     inputs = dict(_with_case(scene))
@@ -162,10 +193,13 @@ def _contacts(scene: TabledScene, cases: tuple[CaseDeflection, ...], means: Mean
                 radius = scene.databases[name].geometry.base_radius[0]
                 torques.setdefault(name, []).append(mesh.force * radius)
     made: dict[str, MeshContact] = {}
-    for mesh_input in {known.name: known for known in inputs.values()}.values():
-        database, mesh_torques = scene.databases[mesh_input.name], torques[mesh_input.name]
+    different = {known.name: known for known in inputs.values()}
+    progress = by_cost(report, dict.fromkeys(different, 1.0))
+    for name, mesh_input in different.items():
         assert isinstance(mesh_input.case, Case)
-        made[mesh_input.name] = MeshContact.of(mesh_input.case, database, mesh_torques, means.analysis)
+        of_mesh = run.reporting(partial(progress, name))
+        made[name] = MeshContact.of(mesh_input.case, scene.databases[name], torques[name], of_mesh)
+        progress(name, 1.0)
     return {name: made[known.name] for name, known in inputs.items()}
 
 
@@ -176,7 +210,11 @@ def _usual_seconds(scene: TabledScene) -> float:
 
 
 def _flanks(
-    agreement: Agreement, contacts: Mapping[str, MeshContact], means: Means, seconds: float
+    agreement: Agreement,
+    contacts: Mapping[str, MeshContact],
+    means: Means,
+    seconds: float,
+    report: Report,
 ) -> Iterator[MeshFlanks]:
     """Yield the results on the flanks; each is predicted to take so many CPU seconds."""
     items = [
@@ -188,7 +226,7 @@ def _flanks(
     flanks = divided(means.workers, _on_flanks, contacts, items, seconds * len(items))
     for done, mesh_flanks in enumerate(flanks, 1):
         yield mesh_flanks
-        means.report("flanks", done / len(items))
+        report(done / len(items))
 
 
 def _on_flanks(contacts: Mapping[str, MeshContact], of: tuple[str, MeshAlignment]) -> MeshFlanks:

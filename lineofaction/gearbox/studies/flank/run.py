@@ -45,11 +45,13 @@ class _FlankStudy(PointStudy[FlankFigures, LoadDistribution]):
         """Return the cost of the bodies and of one solution with its errors."""
         with boundary_errors():
             predicted = predicted_designs(case.at_point, cache)
-        contact = (
+        parts = (
+            Work("gears", predicted.bodies, stage="compliance"),
             Work("contact", predicted.design, stage="contact"),
+            Work("coarse gears", predicted.coarse_bodies, stage="errors"),
             Work("its errors", predicted.errors, stage="errors"),
         )
-        return StudyCost((Work("gears", predicted.bodies, stage="compliance"), *contact), predicted.bytes)
+        return StudyCost(parts, predicted.bytes)
 
     def compute(self, case: CheckedCase, _inputs: FlankPoint, means: Means) -> LoadDistribution:
         return flanks_of(case, means.analysis)

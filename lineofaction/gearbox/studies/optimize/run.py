@@ -13,13 +13,12 @@ import numpy as np
 
 from bounds import engineering
 from bounds.types import Json
-from fe_contact.analysis.run_plan import predicted_designs
 from fe_contact.microgeometry.confirmation import HarrisMap
 from fe_contact.microgeometry.objective import HarmonicAmplitude, Limits, Objective, WeightedMean, Worst
 from fe_contact.microgeometry.optimization import Optimization, OptimizationRequest
 from fe_contact.microgeometry.optimize import optimize
 from fe_contact.microgeometry.scatter import GaussHermite, Scatter, SobolSample
-from fe_contact.microgeometry.search import Search, usual_designs
+from fe_contact.microgeometry.search import Search
 from fe_contact.microgeometry.search_methods import (
     DifferentialEvolution,
     Method,
@@ -42,7 +41,7 @@ from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.toml import toml_text
 from lineofaction.gearbox.studies.change.question import check_driving, check_receiver, flank_mesh
 from lineofaction.gearbox.studies.computation import Computation, Means, record_file
-from lineofaction.gearbox.studies.cost import StudyCost, Work
+from lineofaction.gearbox.studies.cost import StudyCost
 from lineofaction.gearbox.studies.optimize import (
     SOUND_TRIALS,
     TRIALS,
@@ -54,27 +53,14 @@ from lineofaction.gearbox.studies.optimize import (
     ScatterInput,
     SearchInput,
 )
+from lineofaction.gearbox.studies.optimize.case_cost import search_cost
 from lineofaction.gearbox.studies.optimize.complained import has_cases, of_case, of_scene
 from lineofaction.gearbox.studies.optimize.drawing import as_typed, drawing_grid
 from lineofaction.gearbox.studies.optimize.result import HeardOptimization
 from lineofaction.gearbox.studies.optimize.sound_search import sound_cost, sound_optimum
 from lineofaction.gearbox.units import UM, factor, in_um
-from model_studies.host_speed import host_slowness
 
 MPA = 1e6
-CONFIRMED = 1.5
-"""Cost of the analysis of start or optimum over that of its table: figures on other meshes come with it. Two
-searches of a helical pair of 23 and 67 teeth gave 1.5.
-"""
-BESIDE_CONTACT = 7.5e-3
-"""CPU seconds of a design at a node of the scatter beside its contact: flanks, derivatives and their program.
-
-A spur pair in the plane at nine nodes took 7.6 ms, whatever its loads and positions.
-"""
-REFINED = 40.0
-"""Assessments of a design by the search from one that exceeds the limits between the positions: 15 to 23
-steps of about two each.
-"""
 OF_CASE = ("torque_n_m", "misalignment_um", "objective")
 """Fields of a case that a scene has in its load cases and its objective."""
 
@@ -135,23 +121,7 @@ class _OptimizeStudy(
             with boundary_errors():
                 return sound_cost(subject, mesh, question, _mesh_request(subject, mesh, study), cache)
         with boundary_errors():
-            request = subject.request(_library_request, study)
-            predicted = predicted_designs(request.checked, cache)
-        load = np.size(request.torques) / request.checked.request.load.size
-        nodes = request.scatter.nodes().weight.size
-        contact, beside = nodes * load * predicted.design, nodes * BESIDE_CONTACT * host_slowness(cache)
-        parts = [
-            Work("gears", predicted.bodies, stage="compliance"),
-            Work("designs", contact + beside, usual_designs(request.search), "search"),
-        ]
-        limited = request.limits != Limits()  # between the positions of the search a design may exceed them
-        if limited:
-            more = 1.0 + predicted.positions / request.search.positions
-            parts.append(Work("designs within limits", more * contact + beside, REFINED, "search"))
-        parts.append(
-            Work("analyses", nodes * CONFIRMED * predicted.table, 3 if limited else 2, "confirmation")
-        )
-        return StudyCost(tuple(parts), predicted.bytes)
+            return search_cost(subject.request(_library_request, study), cache)
 
     def normalized(self, subject: CheckedCase | SceneInput, study: Inputs) -> Json:
         """Return all inputs, with the usual variables if none are named."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -66,8 +67,11 @@ from lineofaction.gearbox.studies.optimize.sound_problem import (
 )
 from lineofaction.gearbox.studies.scatter.run import tolerances_of
 from lineofaction.gearbox.units import RPM, UM
-from model_studies.progress import announce, silent
+from model_studies.progress import announce, by_cost, silent
 from model_studies.stage_clock import StageClock
+
+DEFLECTION = "deflection"
+"""Stage of a deflection of the scene, of which the misalignment of the mesh follows."""
 
 WALK, FINISH, LINEARIZED = 20, 8, 2.5
 """Figures of usual searches, by which the cost is predicted.
@@ -214,7 +218,7 @@ def sound_cost(
     of_pair = rough if question.quantile is None else confirmed
     coarse_designs, full_designs = usual_sound_designs(search)
     parts = [
-        Work("gears", predicted.bodies, stage="compliance"),
+        Work("gears", predicted.all_bodies, stage="compliance"),
         Work("transfer functions", levels.transfer, stage="transfer functions"),
         Work("designs", rough, coarse_designs, "search"),
         Work("designs", full, full_designs * nodes, "search"),
@@ -226,7 +230,9 @@ def sound_cost(
     scene_misalignment = levels.scene.meshes[mesh_index(levels.scene, mesh.name)].misalignment
     # the deflection under load then states the misalignment, see `misalignments`
     if question.misalignment_um is None and predicted.across_face and not scene_misalignment:
-        cost += DEFLECT.predicted(scene, DeflectInputs(load_cases=question.load_cases), cache)
+        deflected = DEFLECT.predicted(scene, DeflectInputs(load_cases=question.load_cases), cache)
+        parts = [part._replace(stage=DEFLECTION) for part in deflected.parts]
+        cost += StudyCost(tuple(parts), deflected.bytes)
     return cost
 
 
@@ -246,7 +252,13 @@ def misalignments(
         return np.broadcast_to(np.asarray(question.misalignment_um, dtype=float) * UM, shape).copy()
     if plane or nominal:
         return np.full(shape, nominal)
-    deflected = DEFLECT.compute(subject, DeflectInputs(load_cases=question.load_cases), means)
+    inputs = DeflectInputs(load_cases=question.load_cases)
+    plan = DEFLECT.predicted(subject.inputs, inputs, means.analysis.cache)
+    costs = {part.stage: 0.0 for part in plan.parts}
+    for part in plan.parts:
+        costs[part.stage] += part.seconds
+    in_one_stage = by_cost(partial(means.report, DEFLECTION), costs)
+    deflected = DEFLECT.compute(subject, inputs, replace(means, report=in_one_stage))
     if failure := DEFLECT.failure(deflected):
         raise SolveError(failure)
     meshes = [part for case in deflected.deflection.cases for part in case.meshes if part.name == mesh.name]

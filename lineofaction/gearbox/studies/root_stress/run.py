@@ -66,12 +66,14 @@ class _RootStressStudy(PointStudy[RootStressFigures, Roots]):
             prediction = checked.predicted(plan, cache)
             stresses = Work("stresses", stress_seconds(case.pair, plan, cache), stage="root stress")
             rougher = prediction.parts["error estimate"]
-        gears = Work("gears", prediction.stages["compliance"] + rougher["bodies"], stage="compliance")
-        contact = (
+        parts = (
+            Work("gears", prediction.stages["compliance"], stage="compliance"),
             Work("contact", prediction.parts["contact"]["table"], stage="contact"),
+            Work("coarse gears", rougher["bodies"], stage="root stress"),
             Work("its errors", rougher["solutions"], stage="root stress"),
+            stresses,
         )
-        return StudyCost((gears, *contact, stresses), prediction.memory_bytes)
+        return StudyCost(parts, prediction.memory_bytes)
 
     def compute(self, case: CheckedCase, _inputs: FlankPoint, means: Means) -> Roots:
         """Return the peaks over a mesh cycle, the passage of a tooth of each gear, receipt and warnings."""

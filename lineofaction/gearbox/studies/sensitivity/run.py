@@ -22,12 +22,12 @@ from fe_contact.options import TableAxes
 from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.case import PLANE, study_options
 from lineofaction.gearbox.convert.checked_case import CheckedCase, across_face
-from lineofaction.gearbox.stages import TableFraction
 from lineofaction.gearbox.studies.computation import CaseStudy, Means, ResultFile
 from lineofaction.gearbox.studies.cost import StudyCost, Work
 from lineofaction.gearbox.studies.sensitivity import Inputs, SensitivityFigures
 from lineofaction.gearbox.units import UM
 from model_studies import Progress, in_unit
+from model_studies.progress import TableFraction
 from model_studies.record_file import read_record, record_content, write_record
 
 if TYPE_CHECKING:
@@ -123,7 +123,10 @@ class _SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
         axes = checked.request.misalignment, checked.request.center_distance_change
         values = 2 * sum(np.union1d(np.zeros(1), axis).size for axis in axes)
         per_value = predicted.design + predicted.errors
-        parts = (Work("gears", predicted.bodies, 1.0, "tables"), Work("values", per_value, values, "tables"))
+        parts = (
+            Work("gears", predicted.all_bodies, stage="tables"),
+            Work("values", per_value, values, "tables"),
+        )
         return StudyCost(parts, predicted.bytes)
 
     def compute(self, case: CheckedCase, inputs: Inputs, means: Means) -> Studies:

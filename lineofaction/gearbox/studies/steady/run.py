@@ -22,7 +22,7 @@ from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_fi
 from lineofaction.gearbox.studies.cost import LONG, StudyCost, Work
 from lineofaction.gearbox.studies.excitations import with_scene_metadata
 from lineofaction.gearbox.studies.figures import Row, rows
-from lineofaction.gearbox.studies.scene_before_tables import scene_before_tables, sized
+from lineofaction.gearbox.studies.scene_before_tables import planned_positions, scene_before_tables, sized
 from lineofaction.gearbox.studies.steady import Inputs, SteadyFigures
 from lineofaction.gearbox.units import RPM
 
@@ -33,24 +33,27 @@ KINDS = ("stable", "fold", "period doubling", "Neimark-Sacker")
 class _SteadyStudy(SceneStudy[Inputs, SteadyFigures, SteadyStates]):
     inputs, answer, file = Inputs, SteadyFigures, array_file(SteadyStates)
 
-    def predicted(self, scene: SceneInput, inputs: Inputs, _cache: Path | None) -> StudyCost | None:
+    def predicted(self, scene: SceneInput, inputs: Inputs, cache: Path | None) -> StudyCost | None:
         """Return the predicted cost of the motions of both sweeps and of a branch without folds.
 
-        A few steps of the scene give the cost of a period. The number of modes of a solid housing is known
+        A few steps of the scene give the cost of a period; steps end at the positions of the tables, so that
+        tables of many positions take more of them. The number of modes of a solid housing is known
         only after its reduction, so their cost is left out. None: the motion of the scene does not repeat, or
         the scene cannot be assembled without its tables.
         """
         with boundary_errors():
             before = scene_before_tables(scene)
-        if before is None:
-            return None
+            if before is None:
+                return None
+            positions = planned_positions(scene, cache)
         speeds = np.array(inputs.speed_rpm) * RPM
         options: Json = {"branch": inputs.branch, "repeat": inputs.repeat, "periods": inputs.settling_periods}
         try:
-            cost = _study_cost(steady_cost(sized(scene), speeds, **options))
+            system = sized(scene, positions=positions)
+            cost = _study_cost(steady_cost(system, speeds, **options))
             if cost.seconds <= LONG:
                 return cost
-            single = steady_cost(sized(scene), speeds[-1:], **options)
+            single = steady_cost(system, speeds[-1:], **options)
         except (InputError, SolveError):
             return None  # the study raises this error itself
         return replace(cost, remedy=_remedy(single, inputs.speed_rpm[-1]))

@@ -136,7 +136,7 @@ def _flank_tables(
             with boundary_errors():
                 predicted = predicted_designs(CASES.of(case).checked, cache)
             contacts = Work("contacts", predicted.design, different, "runs")
-            cost += StudyCost((Work("gears", predicted.bodies, stage="runs"), contacts), predicted.bytes)
+            cost += StudyCost((Work("gears", predicted.all_bodies, stage="runs"), contacts), predicted.bytes)
     return cost
 
 

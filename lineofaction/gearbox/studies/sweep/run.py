@@ -250,7 +250,7 @@ class _SweepStudy(CaseStudy[Inputs, SweepFigures, SweepResult]):
             request = case.request(_request, inputs)
             predicted = predicted_designs(request.checked, cache)
         designs = Work("designs", predicted.design, len(request.designs), "contact")
-        return StudyCost((Work("gears", predicted.bodies, 1.0, "compliance"), designs), predicted.bytes)
+        return StudyCost((Work("gears", predicted.all_bodies, 1.0, "compliance"), designs), predicted.bytes)
 
     def compute(self, case: CheckedCase, inputs: Inputs, means: Means) -> SweepResult:
         """Sweep a case; an unswept load is the highest, an unswept deviation the nearest to zero."""

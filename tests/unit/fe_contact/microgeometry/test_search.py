@@ -329,7 +329,7 @@ def test_positions_of_every_analysis_join_until_the_limits_are_kept(exceeded, ro
     problem = DesignProblem(
         cast(Any, Places(np.array([0.0, 0.5]))), (VARIABLE,), Limits(), 1.0, objective=WeightedMean()
     )
-    asked: Any = SimpleNamespace(start_design=(0.0,), search=Search(), grid={})
+    asked: Any = SimpleNamespace(start_design=(0.0,), search=Search(), grid={}, limits=Limits())
     checked = SimpleNamespace(predicted=lambda *_: SimpleNamespace(cpu_seconds=0.0))
     study: Any = SimpleNamespace(decision=SimpleNamespace(checked=checked, plan=None))
     found = choice.choose(problem, (CONVERGED,), asked, study, StageClock(), Run(), lambda: False)
