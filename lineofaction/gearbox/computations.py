@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from lineofaction.gearbox.studies.change.run import RUN as CHANGE
     from lineofaction.gearbox.studies.complaint.run import RUN as COMPLAINT
     from lineofaction.gearbox.studies.deflect.run import RUN as DEFLECT
+    from lineofaction.gearbox.studies.elastic_ring.run import RUN as ELASTIC_RING
     from lineofaction.gearbox.studies.flank.run import RUN as FLANK
     from lineofaction.gearbox.studies.frontier.run import RUN as FRONTIER
     from lineofaction.gearbox.studies.listen.run import RUN as LISTEN
@@ -42,6 +43,7 @@ __all__ = [
     "CHANGE",
     "COMPLAINT",
     "DEFLECT",
+    "ELASTIC_RING",
     "FLANK",
     "FRONTIER",
     "LISTEN",

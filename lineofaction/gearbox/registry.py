@@ -30,6 +30,7 @@ __all__ = [
     "change",
     "complaint",
     "deflect",
+    "elastic_ring",
     "flank",
     "frontier",
     "listen",
@@ -333,6 +334,18 @@ class Studies:
         folder="deflection",
         further=(".toml",),
     )
+    elastic_ring = StudyOf(
+        _case(lambda: computations.ELASTIC_RING),
+        "Elastic ring gear",
+        "Deflect the ring",
+        "Deflect the ring gear of a planetary stage on lugs, bolts or a fit: deflection in the meshes, load "
+        "sharing, modes, side lines of the mesh order.",
+        "examples/internal_gear.toml --lugs 8 --lug-radial-n-per-m 2e8 "
+        "--lug-tangential-n-per-m 2e8 -o ring.html",
+        group="gearbox",
+        kind="elastic_ring",
+        stages=(("analysis", 0.8), ("ring", 0.2)),
+    )
     study = StudyOf(
         _as(_scene_and_file, lambda: computations.STUDY),
         "Many scenes",
@@ -364,6 +377,7 @@ vibration = Studies.vibration.function
 listen = Studies.listen.function
 steady = Studies.steady.function
 deflect = Studies.deflect.function
+elastic_ring = Studies.elastic_ring.function
 study = Studies.study.function
 
 STUDIES: dict[str, StudyOf[..., ..., Any, Any]] = {

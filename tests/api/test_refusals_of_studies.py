@@ -188,6 +188,15 @@ REFUSED: dict[str, list[tuple[Json, str]]] = {
         ({"load_cases": [{"name": "a"}, {"name": "a"}]}, "load_cases"),
         ({"odd": 1}, "odd"),
     ],
+    "elastic-ring": [
+        ({"lug_tangential_n_per_m": 0.0}, "lug_tangential_n_per_m"),
+        ({"lugs": 121}, "lugs"),
+        ({"lugs": -1}, "lugs"),
+        ({"planets": 9}, "planets"),
+        ({"pin_error_um": [1.0, 2.0]}, "pin_error_um"),
+        ({"way_stiffness_n_per_m": 0.0}, "way_stiffness_n_per_m"),
+        ({"fit_radial_n_per_m": 1e20}, "fit_radial_n_per_m"),
+    ],
     "study": [
         (GRID | {"samples": 1}, "samples"),
         (factor(0, path="loads.x.y"), "factors[0].path"),

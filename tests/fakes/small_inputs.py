@@ -20,6 +20,17 @@ _CASE: Json = {
     "load": {"torque_n_m": [0.5, 1.0]},
     "accuracy": _DRAFT,
 }
+_RING: Json = {"internal": True, "teeth": 60, "face_width_mm": 4.0, "rim_diameter_mm": 72.0}
+_IN_RING: Json = {
+    "pair": {
+        "normal_module_mm": 1.0,
+        "center_distance_mm": 20.0,
+        "pinion": _GEAR,
+        "wheel": _RING | {"addendum_coefficient": 0.8},
+    },
+    "load": {"torque_n_m": [0.5, 1.0]},
+    "accuracy": _DRAFT,
+}
 _RELIEF = {"tip_relief_um": 3.0, "tip_relief_length_mm": 0.4}
 _RELIEVED = _CASE | {"pair": _CASE["pair"] | {"pinion": _GEAR | _RELIEF}}
 _FEW: dict[str, Json] = {
@@ -31,6 +42,13 @@ _FEW: dict[str, Json] = {
     "optimize": {"search": {"evaluations": 8, "sample": 4, "trials": 1, "positions": 16}},
     "scatter": {"samples": 4, "limit": "1=0.5um"},
     "change": {"after": _RELIEVED, "speed_rpm": [300.0], "orders": 3, "tolerances": {"samples": 4}},
+    "elastic-ring": {
+        "case": _IN_RING,
+        "planets": 4,
+        "lugs": 6,
+        "lug_radial_n_per_m": 1e8,
+        "lug_tangential_n_per_m": 1e8,
+    },
     "sweep": {"over": ["torque=0.5:1:0.5"], "show": ["peak_to_peak"]},
     "modes": {"speed_rpm": [0.0]},
     "response": {"speed_rpm": [300.0]},

@@ -272,6 +272,16 @@ def _deflection(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
     yield (case["torque_n_m"], case["status"]), (1.0, "converged")
 
 
+def _elastic_ring(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
+    first, last = figures["load_cases"]
+    yield last["force_n"], FORCE_N
+    yield last["ring_deflection_um"], approx(2.0 * first["ring_deflection_um"])
+    yield last["ring_deflection_um"], float(1e6 * result.ring_deflection[1].mean())
+    yield sum(last["share"]), approx(4.0)
+    yield [line["order"] % 4 for line in figures["side_lines"]], [0] * len(figures["side_lines"])
+    yield figures["modes"][0]["frequency_hz"], float(result.mode_frequency[0])
+
+
 def _change(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
     (case,) = figures["load_cases"]
     whole, first, *_ = case["lines"]
@@ -325,6 +335,10 @@ def _sensitivity_columns(figures: Json) -> dict[str, Sequence[Any]]:
         "peak to peak, µm": [to_error(*ripple) for ripple in ripples],
         "error, µm": [error_text(*ripple) for ripple in ripples],
     }
+
+
+def _ring_columns(figures: Json) -> dict[str, Sequence[Any]]:
+    return {"torque_n_m": [case["torque_n_m"] for case in figures["load_cases"] for _ in range(48)]}
 
 
 def _root_columns(figures: Json) -> dict[str, Sequence[Any]]:
@@ -409,6 +423,7 @@ ROWS = (
         ),
     ),
     StudyRow("deflect", "scene", _deflection),
+    StudyRow("elastic-ring", "case", _elastic_ring, columns=_ring_columns),
     StudyRow("change", "scene", _change),
     StudyRow("study", "scene", _many_scenes),
 )
