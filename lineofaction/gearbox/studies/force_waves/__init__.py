@@ -1,0 +1,1 @@
+"""Force waves of an electric machine, from a table in its units."""
