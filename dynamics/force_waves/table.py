@@ -53,7 +53,7 @@ class ForceWaveTable(ArrayFile):
             check_pressures(name, np.asarray(getattr(self, name), dtype=complex), shape)
         for name, declared in self.arrays().items():
             kind = {"1": int, "Pa": complex}.get(declared.units, float)
-            values = np.array(getattr(self, name), dtype=kind)
+            values: np.ndarray = np.array(getattr(self, name), dtype=kind)
             values.flags.writeable = False
             object.__setattr__(self, name, values)
 

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from lineofaction.gearbox.studies.complaint.run import RUN as COMPLAINT
     from lineofaction.gearbox.studies.deflect.run import RUN as DEFLECT
     from lineofaction.gearbox.studies.flank.run import RUN as FLANK
+    from lineofaction.gearbox.studies.force_waves.run import RUN as FORCE_WAVES
     from lineofaction.gearbox.studies.frontier.run import RUN as FRONTIER
     from lineofaction.gearbox.studies.listen.run import RUN as LISTEN
     from lineofaction.gearbox.studies.modes.run import RUN as MODES
@@ -43,6 +44,7 @@ __all__ = [
     "COMPLAINT",
     "DEFLECT",
     "FLANK",
+    "FORCE_WAVES",
     "FRONTIER",
     "LISTEN",
     "MODES",

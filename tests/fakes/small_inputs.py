@@ -35,6 +35,13 @@ _FEW: dict[str, Json] = {
     "modes": {"speed_rpm": [0.0]},
     "response": {"speed_rpm": [300.0]},
     "complaint": {"frequency_hz": 400.0, "speed_rpm": 1200.0},
+    "force-waves": {
+        "force_wave_table": INPUTS["force-waves"]["force_wave_table"],
+        "bore_radius_mm": 80.0,
+        "active_length_mm": 150.0,
+        "speed_rpm": 300.0,
+        "torque_n_m": 1.0,
+    },
     "vibration": {"speed_rpm": [300.0], "mode": 1},
     "noise": {"speed_rpm": [300.0]},
     "listen": {"microphone_mm": [10.0, 10.0, 400.0]},

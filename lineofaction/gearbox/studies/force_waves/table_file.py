@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -20,10 +20,10 @@ from dynamics.force_waves.waves import MAX_ORDER
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.csv_rows import Cells, CsvRows, csv_rows, number_in
 from lineofaction.gearbox.signals.units import ANGLE, SPEED, TORQUE, measured_unit, unit_of_name
+from lineofaction.gearbox.studies.force_waves import MAX_CHARACTERS
 from lineofaction.gearbox.units import RPM
 
-MAX_ROWS = 200_000
-MAX_CHARACTERS = 16_000_000
+MAX_ROWS = 50_000
 LARGEST_PRESSURE = 1e8
 """Largest amplitude, Pa; a larger one is in another unit."""
 LARGEST_PHASE = 200.0 * math.pi
@@ -44,6 +44,9 @@ _PRESSURES = {"pa": 1.0, "kpa": 1e3, "mpa": 1e6}
 _HELP = "See docs/how-to/force-waves.md: one row per wave, speed and torque."
 _INTEGER = re.compile(r"[+-]?[0-9]{1,6}")
 _NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
+
+_Key: TypeAlias = tuple[tuple[int, int], float, float]
+"""Wave, speed and torque of a row."""
 
 
 class _Column(NamedTuple):
@@ -87,10 +90,10 @@ def force_wave_table(text: str, field: str) -> ForceWaveTable:
         raise BadInput.of(field, None, f"a table of waves: {fault}", _HELP) from None
 
 
-def _rows(file: CsvRows) -> dict[tuple[tuple[int, int], float, float], _Row]:
+def _rows(file: CsvRows) -> dict[_Key, _Row]:
     """Return the rows of a file by wave, speed and torque; `ValueError`: the required content."""
     columns = _columns(file.heading)
-    rows: dict[tuple[tuple[int, int], float, float], _Row] = {}
+    rows: dict[_Key, _Row] = {}
     for number, cells in file.rows():
         row = _row(cells, columns, number)
         key = (row.wave, row.speed, row.torque)
@@ -184,9 +187,11 @@ def _pressure(values: Mapping[str, float], name: str, line: int) -> complex:
     return complex(amplitude * np.exp(1j * phase))
 
 
-def _table(rows: Mapping[tuple[tuple[int, int], float, float], _Row]) -> ForceWaveTable:
+def _table(rows: Mapping[_Key, _Row]) -> ForceWaveTable:
     """Return the table of a complete grid."""
-    waves, speeds, torques = (sorted({key[axis] for key in rows}) for axis in (0, 1, 2))
+    waves = sorted({row.wave for row in rows.values()})
+    speeds = sorted({row.speed for row in rows.values()})
+    torques = sorted({row.torque for row in rows.values()})
     grid = ((wave, speed, torque) for wave in waves for speed in speeds for torque in torques)
     count = len(waves) * len(speeds) * len(torques)
     if count != len(rows):
