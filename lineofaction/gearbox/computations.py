@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from lineofaction.gearbox.studies.deflect.run import RUN as DEFLECT
     from lineofaction.gearbox.studies.elastic_ring.run import RUN as ELASTIC_RING
     from lineofaction.gearbox.studies.flank.run import RUN as FLANK
+    from lineofaction.gearbox.studies.force_waves.run import RUN as FORCE_WAVES
     from lineofaction.gearbox.studies.frontier.run import RUN as FRONTIER
     from lineofaction.gearbox.studies.listen.run import RUN as LISTEN
     from lineofaction.gearbox.studies.modes.run import RUN as MODES
@@ -45,6 +46,7 @@ __all__ = [
     "DEFLECT",
     "ELASTIC_RING",
     "FLANK",
+    "FORCE_WAVES",
     "FRONTIER",
     "LISTEN",
     "MODES",

@@ -32,6 +32,7 @@ __all__ = [
     "deflect",
     "elastic_ring",
     "flank",
+    "force_waves",
     "frontier",
     "listen",
     "modes",
@@ -248,6 +249,19 @@ class Studies:
         stages=(("analysis", 0.9), ("response", 0.1)),
         version="3",
     )
+    force_waves = StudyOf(
+        _as(_scene_and_file, lambda: computations.FORCE_WAVES),
+        "Force waves",
+        "Find the force waves",
+        "Find the force waves of an electric machine at a speed and torque: pressures by order, torque "
+        "ripple, pull on the rotor, and the mesh orders that fall together with them.",
+        "scene.toml motor.toml -o force_waves.html",
+        group="gearbox",
+        kind="force_waves",
+        stages=(("analysis", 0.95), ("force waves", 0.05)),
+        version="1",
+        further=(".csv",),
+    )
     complaint = StudyOf(
         _either(lambda: computations.COMPLAINT),
         "Complaint",
@@ -361,6 +375,7 @@ class Studies:
 
 
 flank = Studies.flank.function
+force_waves = Studies.force_waves.function
 ablate = Studies.ablate.function
 change = Studies.change.function
 frontier = Studies.frontier.function

@@ -32,6 +32,7 @@ GRID = {
 
 
 CHANGE: Json = {"after": small_inputs("change")["after"], "speed_rpm": [300.0]}
+WAVES: Json = {name: value for name, value in small_inputs("force-waves").items() if name != "scene"}
 FEWER_TEETH: Json = CHANGE["after"] | {
     "pair": CHANGE["after"]["pair"] | {"wheel": CHANGE["after"]["pair"]["wheel"] | {"teeth": 19}}
 }
@@ -145,6 +146,17 @@ REFUSED: dict[str, list[tuple[Json, str]]] = {
         ({"speed_rpm": []}, "speed_rpm"),
         ({"speed_rpm": [0.0, 1.0]}, "speed_rpm[0]"),
         ({"speed_rpm": [100.0], "orders": 500}, "orders"),
+    ],
+    "force-waves": [
+        ({}, "force_wave_table"),
+        (WAVES | {"force_wave_table": "motor.csv"}, "force_wave_table"),  # a service opens no files
+        (WAVES | {"force_wave_table": WAVES["force_wave_table"].replace("kpa", "psi")}, "force_wave_table"),
+        (WAVES | {"speed_rpm": 299.0}, "speed_rpm"),
+        (WAVES | {"torque_n_m": 2.0}, "torque_n_m"),
+        (WAVES | {"bore_radius_mm": 0.0}, "bore_radius_mm"),
+        (WAVES | {"active_length_mm": -1.0}, "active_length_mm"),
+        (WAVES | {"shaft": "rotor"}, "shaft"),
+        (WAVES | {"tolerance_percent": 51.0}, "tolerance_percent"),
     ],
     "noise": [
         ({"run": None, "sensitivities": True, "speed_rpm": []}, "speed_rpm"),

@@ -33,6 +33,13 @@ _IN_RING: Json = {
 }
 _RELIEF = {"tip_relief_um": 3.0, "tip_relief_length_mm": 0.4}
 _RELIEVED = _CASE | {"pair": _CASE["pair"] | {"pinion": _GEAR | _RELIEF}}
+_WAVES = """\
+temporal_order,spatial_order,speed_rpm,torque_n_m,radial_pressure_kpa,radial_phase_deg,\
+tangential_pressure_kpa,tangential_phase_deg
+20,2,300,1,30,0,4,90
+48,0,300,1,12,0,2,90
+48,1,300,1,1,0,0.2,90
+"""
 _FEW: dict[str, Json] = {
     "flank": {"torque_n_m": 1.0},
     "root-stress": {"torque_n_m": 1.0},
@@ -53,6 +60,13 @@ _FEW: dict[str, Json] = {
     "modes": {"speed_rpm": [0.0]},
     "response": {"speed_rpm": [300.0]},
     "complaint": {"frequency_hz": 400.0, "speed_rpm": 1200.0},
+    "force-waves": {
+        "force_wave_table": _WAVES,
+        "bore_radius_mm": 80.0,
+        "active_length_mm": 150.0,
+        "speed_rpm": 300.0,
+        "torque_n_m": 1.0,
+    },
     "vibration": {"speed_rpm": [300.0], "mode": 1},
     "noise": {"speed_rpm": [300.0]},
     "listen": {"microphone_mm": [10.0, 10.0, 400.0]},

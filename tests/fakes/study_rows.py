@@ -226,6 +226,27 @@ def _complaint_of_case(figures: Json, result: Any, table: SteDatabase) -> Pairs:
     yield (figures["modes"], result.modes), ([], ())
 
 
+def _force_waves(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
+    """A pulsation of 2 kPa and waves of 30 and 1 kPa in a bore of 80 mm by 150 mm at 300 rpm."""
+    area = 2.0 * math.pi * 0.080 * 0.150
+    yield (
+        [wave["name"] for wave in figures["waves"]],
+        ["motor 20, r = 2", "motor 48, r = 0", "motor 48, r = 1"],
+    )
+    yield [wave["frequency_hz"] for wave in figures["waves"]], [100.0, 240.0, 240.0]
+    yield [wave["radial_pressure_mpa"] for wave in figures["waves"]], [30e-3, 12e-3, 1e-3]
+    yield [row["torque_n_m"] for row in figures["orders"]], [0.0, 2e3 * 0.080 * area]
+    yield [row["pull_n"] for row in figures["orders"]], [0.0, 0.5 * area * abs(1e3 + 200.0 * 1j * -1j)]
+    (line,) = figures["mesh_orders"]
+    yield (line["temporal_order"], line["mesh"], line["harmonic"]), (20, "mesh", 1)
+    yield (
+        (line["mesh_order"], line["mesh_frequency_hz"], line["distance_percent"]),
+        (20.0, 100.0, approx(0.0)),
+    )
+    yield (figures["largest"], figures["error"]), ("motor 20, r = 2", "the table states no error")
+    yield figures["shaft"], result.shaft
+
+
 def _noise(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
     yield np.transpose(figures["level_db"]).tolist(), (10.0 * np.log10(result.power / 1e-12)).tolist()
     yield figures["frequency_hz"][0], [300.0 / 60.0 * 20]
@@ -341,6 +362,14 @@ def _ring_columns(figures: Json) -> dict[str, Sequence[Any]]:
     return {"torque_n_m": [case["torque_n_m"] for case in figures["load_cases"] for _ in range(48)]}
 
 
+def _wave_columns(figures: Json) -> dict[str, Sequence[Any]]:
+    names = ("temporal_order", "spatial_order", "frequency_hz", "radial_phase_deg", "tangential_phase_deg")
+    columns = {name: [wave[name] for wave in figures["waves"]] for name in names}
+    for name in ("radial_pressure", "tangential_pressure"):
+        columns[f"{name}_kpa"] = [1e3 * wave[f"{name}_mpa"] for wave in figures["waves"]]
+    return columns
+
+
 def _root_columns(figures: Json) -> dict[str, Sequence[Any]]:
     passages = [figures[gear]["passage"] for gear in ("pinion", "wheel")]
     names = ("position", "tension_mpa", "compression_mpa", "at_tension_peak_mpa", "at_compression_peak_mpa")
@@ -408,6 +437,13 @@ ROWS = (
         _complaint,
         {"frequency_hz": 400.0, "speed_rpm": 1200.0},
         ends=(rf'complaint: order {NUMBER} of \S+, harmonic 1 of mesh "mesh" \(at {NUMBER} Hz',),
+    ),
+    StudyRow(
+        "force-waves",
+        "scene",
+        _force_waves,
+        columns=_wave_columns,
+        ends=(r"largest force order: motor 20, r = 2",),
     ),
     StudyRow("noise", "scene", _noise, FEW_ORDERS),
     StudyRow("vibration", "scene", _vibration, FEW_ORDERS, columns=_vibration_columns),

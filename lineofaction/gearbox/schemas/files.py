@@ -24,6 +24,8 @@ STEP_FILE, MESH_FILE, RESPONSE_FILE = "step_file", "mesh_file", "frf_file"
 _CONTENT_SUFFIXES = {STEP_FILE: STEP_SUFFIXES, MESH_FILE: MESH_SUFFIXES, RESPONSE_FILE: UNIVERSAL}
 """Endings of the files whose content goes along with the scene, by the fields that name the files."""
 _BY_CLIENT = "Run the scene by loa or the Python client: they read the file and send its matrices."
+TEXTS = ("force_wave_table",)
+"""Fields of a study that hold a CSV file, or its name on a line that ends in .csv."""
 Content: TypeAlias = tuple[Table, Table]
 """Fields from a file that the fields of its housing override, and fields that override those."""
 Contents: TypeAlias = dict[tuple[str, Path], Content]
@@ -177,4 +179,17 @@ def written_out(table: dict[str, Any], find: Find, housings: Collection[str]) ->
         netCDF files are: not by a service, whose callers send numbers.
     """
     signals = with_load_signals(table, find, read=MODES_FILE in housings)
-    return _with_housing_files(with_flank_grids(signals, find, read_text), find, housings)
+    return _with_housing_files(with_flank_grids(_with_texts(signals, find), find, read_text), find, housings)
+
+
+def _with_texts(table: Table, find: Find) -> Table:
+    """Return the table of a study with the text of the CSV files that it names in `TEXTS`."""
+    texts = {}
+    for field in TEXTS:
+        name = table.get(field)
+        if isinstance(name, str) and "\n" not in name and name.endswith(".csv"):
+            try:
+                texts[field] = read_text(find(name, field), name)
+            except BadInput as error:
+                raise error.within(field) from None
+    return table | texts
