@@ -131,8 +131,8 @@ def _text_between(curves: list[Curve], requested: BoolArray) -> str:
     others = [
         curve.peak_to_peak for curve, is_requested in zip(curves, requested, strict=True) if is_requested
     ]
-    if any(other.value - other.error <= ripple.value + ripple.error for other in others):
-        return ""
+    if not all(ripple.value + ripple.error < other.value - other.error for other in others):
+        return ""  # an error that is not stated tells nothing apart
     return f" Between them it falls to {um(ripple.value, 3)} µm, at {number(least.torque, 3)} N m."
 
 
