@@ -19,7 +19,8 @@ _TOKEN = re.compile(NUMBER)
 _WITH_ERROR = re.compile(rf"({NUMBER})(?: [^\d\s±]+)?\s*± ?({NUMBER})")
 _NO_CHANGE = re.compile(r"(?<![\w.])[-+−]0(?:\.0+)?(?![\w.])")
 _FREE = re.compile(
-    r"content hash \w+|[0-9a-f]{16,}|below [\d.e-]+|\d{4}-\d\d-\d\d|\d+\.\d+\.\d+[.\w]*|(?:/|\w+/)\S+"
+    r"content hash \w+|hash of the report\s+\w+|[0-9a-f]{16,}|below [\d.e-]+|\d{4}-\d\d-\d\d"
+    r"|\d+\.\d+\.\d+[.\w]*|(?:/|\w+/)\S+"
 )
 """Texts whose digits are no results: hashes, limits, dates, versions, paths."""
 SMALLEST = 1e-12

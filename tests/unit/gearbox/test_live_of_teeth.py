@@ -12,6 +12,7 @@ from lineofaction.gearbox.convert.live import condensed_of, interpolated_columns
 from lineofaction.gearbox.schemas.case import Case
 from lineofaction.gearbox.schemas.live import LiveInput
 from lineofaction.gearbox.schemas.live_answer import LiveCurve
+from lineofaction.gearbox.units import UM
 
 EARLY = 4
 CASE = {
@@ -81,7 +82,7 @@ def test_an_answer_at_a_load_of_the_table_states_the_numbers_of_the_table(tmp_pa
     )
     of_table = table.curve(torque=0.5)
     for estimate, name in ((of_table.mean, "mean"), (of_table.peak_to_peak, "peak_to_peak")):
-        assert stored[f"{name}_um"] == 1e6 * estimate.value
+        assert stored[f"{name}_um"] == estimate.value / UM
         assert stored[f"{name}_error_um"] == pytest.approx(1e6 * estimate.error, rel=1e-12)
         by_source = [errors[name] for errors in stored["error_by_source_um"].values()]
         assert stored[f"{name}_error_um"] == pytest.approx(np.linalg.norm(by_source), rel=1e-9)
