@@ -40,7 +40,7 @@ if TYPE_CHECKING:
         ToothFlank,
         Wave,
     )
-    from fe_contact.types import Estimate, Status
+    from fe_contact.types import Estimate
     from lineofaction.client import AsyncLineOfActionClient as AsyncClient
     from lineofaction.client import LineOfActionClient as Client
     from lineofaction.gearbox.from_rexs.opened import OpenedUnit as Unit
@@ -84,7 +84,6 @@ _HOME = {
     "RunOut": ("fe_contact", "RunOut"),
     "RunResult": ("dynamics.results", "RunResult"),
     "Scene": ("lineofaction.gearbox.schemas.scene", "SceneInput"),
-    "Status": ("fe_contact.types", "Status"),
     "SteDatabase": ("fe_contact", "SteDatabase"),
     "TimeLaw": ("dynamics.loads.time_law", "TimeLaw"),
     "Tolerances": ("fe_contact", "Tolerances"),
@@ -123,7 +122,6 @@ __all__ = [
     "RunOut",
     "RunResult",
     "Scene",
-    "Status",
     "SteDatabase",
     "TimeLaw",
     "Tolerances",

@@ -359,6 +359,7 @@ class Studies:
         group="gearbox",
         kind="elastic_ring",
         stages=(("analysis", 0.8), ("ring", 0.2)),
+        further=(".csv",),
     )
     study = StudyOf(
         _as(_scene_and_file, lambda: computations.STUDY),
