@@ -21,6 +21,14 @@ _EXAMPLES = Path(__file__).parents[1] / "examples"
 _SUBJECT = "workers of the service"
 _REQUESTS, _JOBS = 200, 1000
 _SPEEDS = [300.0 + 60.0 * n for n in range(20)]
+_MACHINE = {
+    "force_wave_table": "temporal_order,spatial_order,speed_rpm,torque_n_m,radial_pressure_kpa,"
+    "radial_phase_deg,tangential_pressure_kpa,tangential_phase_deg\n48,0,300,10,5,0,2,90\n",
+    "bore_radius_mm": 65.0,
+    "active_length_mm": 120.0,
+    "speed_rpm": 300.0,
+    "torque_n_m": 10.0,
+}
 _WRITERS = """
 import sys
 from pathlib import Path
@@ -77,10 +85,14 @@ def orders() -> Iterator[tuple[str, str, dict[str, Any]]]:
     rungs = {"rungs": ["thin_slices", "corrected", "3d_draft"]}
     yield "frontier, spur, 3 rungs", "frontier", {"case": spur, **rungs}
     yield "ablate, spur, all effects", "ablate", {"case": spur}
+    ring = case_of(_EXAMPLES / "internal_gear.toml").model_dump(mode="json")
+    lugs = {"lugs": 8, "lug_radial_n_per_m": 2e8, "lug_tangential_n_per_m": 2e8}
+    yield "elastic ring on 8 lugs", "elastic-ring", {"case": ring, **lugs}
     yield "simulate, rigid shafts, 5 s", "simulate", scene
     yield "modes", "modes", scene
     yield "deflect, the scene's own loads", "deflect", scene
     yield "response, 20 speeds", "response", scene | {"speed_rpm": _SPEEDS}
+    yield "force waves, one order", "force-waves", scene | _MACHINE
     yield "complaint of 280 Hz", "complaint", scene | {"frequency_hz": 280.0, "speed_rpm": 840.0}
     after = json.loads(json.dumps(spur))
     after["pair"]["pinion"] |= {"tip_relief_um": 20.0, "tip_relief_length_mm": 1.5}
