@@ -8,7 +8,7 @@ rotation psi of a section, all at the center line of radius R, at a distance y f
     tangential  v + y psi   shear strain            (w' - v + R psi) / (R + y)
 
 where ' is the derivative over the angle. A harmonic n is ``w = W e^(i n a)``, ``v = -i V e^(i n a)`` and
-``psi = -i P e^(i n a)``; the amplitudes (W, V, P) then have real matrices.
+``R psi = -i P e^(i n a)``; the amplitudes (W, V, P), all lengths, then have real matrices.
 """
 
 from __future__ import annotations
@@ -79,10 +79,10 @@ class Annulus:
         return coefficient * 0.5 * self.youngs_modulus / (1.0 + ratio) * self._section[0]
 
     def stiffness(self, harmonic: int) -> FloatArray:
-        """Return the stiffness of a harmonic per radian, (3, 3): N/m, N and N m."""
+        """Return the stiffness of a harmonic per radian, (3, 3), N/m."""
         extension = np.array([1.0, harmonic, 0.0])
-        bending = np.array([0.0, 0.0, harmonic])
-        shear = np.array([harmonic, 1.0, -self.mean_radius])
+        bending = np.array([0.0, 0.0, harmonic / self.mean_radius])
+        shear = np.array([harmonic, 1.0, -1.0])
         first, second, third = self._section
         both = np.outer(extension, bending)
         elastic = first * np.outer(extension, extension) + second * (both + both.T)
@@ -91,16 +91,11 @@ class Annulus:
 
     @cached_property
     def mass(self) -> FloatArray:
-        """The mass of any harmonic per radian, (3, 3): kg, kg m and kg m^2."""
+        """The mass of any harmonic per radian, (3, 3), kg."""
         area, inertia = self.width * self.height, self.width * self.height**3 / 12.0
-        mean = self.mean_radius
-        translation = area * mean
+        translation, turned = area * self.mean_radius, inertia / self.mean_radius
         return self.density * np.array(
-            [
-                [translation, 0.0, 0.0],
-                [0.0, translation, inertia],
-                [0.0, inertia, inertia * mean],
-            ]
+            [[translation, 0.0, 0.0], [0.0, translation, turned], [0.0, turned, turned]]
         )
 
     def motion(self, radius: float, radial: float, tangential: float) -> np.ndarray:
@@ -113,4 +108,5 @@ class Annulus:
         radial, tangential : float
             Components of the direction: outwards, and along increasing angles.
         """
-        return np.array([radial, -1j * tangential, -1j * tangential * (radius - self.mean_radius)])
+        arm = (radius - self.mean_radius) / self.mean_radius
+        return np.array([radial, -1j * tangential, -1j * tangential * arm])

@@ -52,12 +52,13 @@ def load_shares(
     moves = directions if floats else directions[:, :1]
     flexibility = np.diag(1.0 / stiffness) + ring
     touching = np.ones(angle.size, dtype=bool)
-    for _ in range(angle.size):
+    for _ in range(2 * angle.size):
         carried, motion = _carried(flexibility, moves, error, force, touching)
-        if np.all(carried[touching] >= 0.0):
+        way = flexibility @ carried + error - moves @ motion
+        further = np.where(touching, carried > 0.0, way < 0.0)  # a way below zero: flanks penetrate
+        if np.array_equal(further, touching):
             break
-        touching &= carried > 0.0
-    way = flexibility @ carried + error - moves @ motion
+        touching = further
     residual = np.abs(way[touching]).max() / max(np.abs(moves @ motion).max(), 1e-300)
     return LoadShares(carried / carried.mean(), float(residual))
 

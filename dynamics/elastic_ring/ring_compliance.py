@@ -45,11 +45,51 @@ class Port:
 
 
 @dataclass(frozen=True)
-class HeldRing:
-    """An elastic ring on its support. Raises `InputError`: the support leaves it free to move."""
+class RingSeries:
+    """The response of a ring on spline or press fit, by harmonics, and the springs of its lugs."""
 
     ring: Annulus
     support: RingSupport
+
+    @cached_property
+    def springs(self) -> tuple[tuple[Port, float], ...]:
+        """The lugs in each direction that is not free, and their stiffness."""
+        if not self.support.lugs:
+            return ()
+        radius, angles = self.ring.outer_radius, self.support.angles
+        both = (
+            (Port(angles, radius, 1.0, 0.0), self.support.lug_radial),
+            (Port(angles, radius, 0.0, 1.0), self.support.lug_tangential),
+        )
+        return tuple((port, stiffness) for port, stiffness in both if stiffness > 0.0)
+
+    @cached_property
+    def _inverses(self) -> FloatArray:
+        """Inverse stiffness of the harmonics 0, 1, ..., (HARMONICS + 1, 3, 3), rigid motions left out."""
+        around = self.support.distributed(self.ring)
+        stiffness = np.array([self.ring.stiffness(n) + around for n in range(HARMONICS + 1)])
+        perhaps_rigid = np.linalg.pinv(stiffness[:2], rcond=_RIGID, hermitian=True)
+        return np.concatenate([perhaps_rigid, np.linalg.inv(stiffness[2:])])
+
+    def _terms(self, moved: Port, loaded: Port) -> np.ndarray:
+        """Return the terms of the series between two directions, (HARMONICS + 1,), complex, m/N."""
+        seen = self.ring.motion(moved.radius, moved.radial, moved.tangential)
+        pushed = self.ring.motion(loaded.radius, loaded.radial, loaded.tangential).conj()
+        return np.asarray(np.einsum("i,nij,j->n", seen, self._inverses, pushed) / (2.0 * np.pi))
+
+    def green(self, moved: Port, loaded: Port, *, beyond: int = -1) -> FloatArray:
+        """Return displacements of one port under unit forces at another, without lugs, (n, m), m/N.
+
+        `beyond`: the harmonics up to this one are left out; at most HARMONICS / 2.
+        """
+        terms = self._terms(moved, loaded)
+        terms[: beyond + 1] = 0.0
+        return _summed(terms, moved.angle[:, None] - loaded.angle[None, :])
+
+
+@dataclass(frozen=True)
+class HeldRing(RingSeries):
+    """An elastic ring on its support. Raises `InputError`: the support leaves it free to move."""
 
     def __post_init__(self) -> None:
         if self._rigid_motions and not self._is_held():
@@ -62,7 +102,7 @@ class HeldRing:
 
     def _is_held(self) -> bool:
         rows = [
-            np.sqrt(stiffness) * self._moved(port, self._rigid_motions) for port, stiffness in self._springs
+            np.sqrt(stiffness) * self._moved(port, self._rigid_motions) for port, stiffness in self.springs
         ]
         if not rows:
             return False
@@ -72,7 +112,7 @@ class HeldRing:
 
     def compliance(self, mesh: Port) -> FloatArray:
         """Return the displacements under unit forces, both at the points of a port, (n, n), m/N."""
-        between = self._green(mesh, mesh)
+        between = self.green(mesh, mesh)
         if not self._unknowns:
             return between
         unknowns = self._solved(mesh)
@@ -95,36 +135,13 @@ class HeldRing:
         coarse, fine = (_summed(kind[: count + 1], point)[0] for count in (HARMONICS // 2, HARMONICS))
         return float(abs(coarse - fine) / abs(fine))
 
-    @cached_property
-    def _springs(self) -> tuple[tuple[Port, float], ...]:
-        """The lugs in each direction that is not free, and their stiffness."""
-        if not self.support.lugs:
-            return ()
-        radius, angles = self.ring.outer_radius, self.support.angles
-        both = (
-            (Port(angles, radius, 1.0, 0.0), self.support.lug_radial),
-            (Port(angles, radius, 0.0, 1.0), self.support.lug_tangential),
-        )
-        return tuple((port, stiffness) for port, stiffness in both if stiffness > 0.0)
-
     @property
     def _lug_springs(self) -> int:
-        return self.support.lugs * len(self._springs)
+        return self.support.lugs * len(self.springs)
 
     @property
     def _unknowns(self) -> int:
         return self._lug_springs + sum(2 if harmonic else 1 for harmonic, _ in self._rigid_motions)
-
-    @cached_property
-    def _inverses(self) -> FloatArray:
-        """Inverse stiffness of the harmonics 0, 1, ..., (HARMONICS + 1, 3, 3), rigid motions left out."""
-        around = self.support.distributed(self.ring)
-        return np.array(
-            [
-                np.linalg.pinv(self.ring.stiffness(n) + around, rcond=_RIGID, hermitian=True)
-                for n in range(HARMONICS + 1)
-            ]
-        )
 
     @cached_property
     def _rigid_motions(self) -> tuple[tuple[int, FloatArray], ...]:
@@ -144,19 +161,9 @@ class HeldRing:
             columns += [wave.real, wave.imag] if harmonic else [wave.imag]
         return np.stack(columns, axis=1) if columns else np.zeros((port.angle.size, 0))
 
-    def _terms(self, moved: Port, loaded: Port) -> np.ndarray:
-        """Return the terms of the series between two directions, (HARMONICS + 1,), complex, m/N."""
-        seen = self.ring.motion(moved.radius, moved.radial, moved.tangential)
-        pushed = self.ring.motion(loaded.radius, loaded.radial, loaded.tangential).conj()
-        return np.asarray(np.einsum("i,nij,j->n", seen, self._inverses, pushed) / (2.0 * np.pi))
-
-    def _green(self, moved: Port, loaded: Port) -> FloatArray:
-        """Return displacements of one port under unit forces at another, without lugs, (n, m), m/N."""
-        return _summed(self._terms(moved, loaded), moved.angle[:, None] - loaded.angle[None, :])
-
     def _coupled(self, mesh: Port) -> FloatArray:
         """Return the displacements of a port under the unknowns, (n, unknowns)."""
-        lugs = [self._green(mesh, port) for port, _ in self._springs]
+        lugs = [self.green(mesh, port) for port, _ in self.springs]
         return np.concatenate([*lugs, self._moved(mesh, self._rigid_motions)], axis=1)
 
     def _solved(self, mesh: Port) -> FloatArray:
@@ -168,7 +175,7 @@ class HeldRing:
     @cached_property
     def _give(self) -> float:
         """Mean compliance of the lugs, m/N, by which ways are divided: soft lugs cost no digits then."""
-        return float(np.mean([1.0 / stiffness for _, stiffness in self._springs])) if self._springs else 1.0
+        return float(np.mean([1.0 / stiffness for _, stiffness in self.springs])) if self.springs else 1.0
 
     @cached_property
     def _matrix(self) -> FloatArray:
@@ -177,8 +184,8 @@ class HeldRing:
         matrix = np.zeros((count, count))
         if not lugs:
             return matrix
-        moved = np.concatenate([self._coupled(port) for port, _ in self._springs])
-        give = np.repeat([1.0 / stiffness for _, stiffness in self._springs], self.support.lugs)
+        moved = np.concatenate([self._coupled(port) for port, _ in self.springs])
+        give = np.repeat([1.0 / stiffness for _, stiffness in self.springs], self.support.lugs)
         matrix[:lugs, :lugs] = (moved[:, :lugs] + np.diag(give)) / self._give
         matrix[:lugs, lugs:] = moved[:, lugs:]
         matrix[lugs:, :lugs] = moved[:, lugs:].T

@@ -7,11 +7,12 @@ from typing import NamedTuple
 import numpy as np
 
 from dynamics.elastic_ring.annulus import Annulus
+from dynamics.elastic_ring.ring_compliance import Port, RingSeries
 from dynamics.elastic_ring.ring_support import RingSupport
 from dynamics.types import FloatArray
 from host.optional_modules import linalg
 
-RESOLVED = 4
+RESOLVED = 2
 """Harmonics over the number of lugs, whose spacing they resolve."""
 LEAST = 24
 """Least number of harmonics."""
@@ -44,11 +45,10 @@ def ring_modes(ring: Annulus, support: RingSupport, count: int) -> RingModes:
     for place, harmonic in enumerate(harmonics):
         stiffness[place, :, place, :] = 2.0 * np.pi * (ring.stiffness(int(harmonic)) + around)
         mass[place, :, place, :] = 2.0 * np.pi * ring.mass
-    springs = (1.0, 0.0, support.lug_radial), (0.0, 1.0, support.lug_tangential)
-    waves = np.exp(1j * support.angles[:, None] * harmonics)
-    for radial, tangential, spring in springs:
-        motion = waves[:, :, None] * ring.motion(ring.outer_radius, radial, tangential)
-        stiffness += spring * np.einsum("lni,lmj->nimj", motion.conj(), motion)
+    if (series := RingSeries(ring, support)).springs:
+        motion = np.concatenate([_motion(ring, port, harmonics) for port, _ in series.springs])
+        springs = np.linalg.inv(_lug_compliance(series, highest))
+        stiffness += np.einsum("kni,kl,lmj->nimj", motion.conj(), springs, motion)
     matrices = (matrix.reshape(3 * size, 3 * size) for matrix in (stiffness, mass))
     square, shape = linalg.eigh(*matrices, subset_by_index=(0, count - 1))
     amplitude = shape.reshape(size, 3, -1)
@@ -58,3 +58,20 @@ def ring_modes(ring: Annulus, support: RingSupport, count: int) -> RingModes:
     largest = both.argmax(axis=0)
     frequency = np.sqrt(np.maximum(square, 0.0)) / (2.0 * np.pi)
     return RingModes(frequency, largest, both.max(axis=0) / both.sum(axis=0))
+
+
+def _motion(ring: Annulus, port: Port, harmonics: np.ndarray) -> np.ndarray:
+    """Return the motion of points by the amplitudes of harmonics, (n, harmonics, 3), complex."""
+    waves = np.exp(1j * port.angle[:, None] * harmonics)
+    return np.asarray(waves[:, :, None] * ring.motion(port.radius, port.radial, port.tangential))
+
+
+def _lug_compliance(series: RingSeries, highest: int) -> FloatArray:
+    """Return the compliance of the lugs, and of the harmonics beyond `highest`, which follow statically."""
+    ports = [port for port, _ in series.springs]
+    rows = [
+        np.concatenate([series.green(moved, loaded, beyond=highest) for loaded in ports], axis=1)
+        for moved in ports
+    ]
+    give = np.repeat([1.0 / stiffness for _, stiffness in series.springs], series.support.lugs)
+    return np.asarray(np.concatenate(rows) + np.diag(give), dtype=float)

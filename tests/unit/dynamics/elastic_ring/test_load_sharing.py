@@ -51,6 +51,19 @@ def test_a_softer_ring_shares_better():
     assert np.all(np.diff(late) > 0.0) and late[-1] < 1.0
 
 
+def test_a_planet_that_lifted_off_at_first_touches_again():
+    """Two planets are late; held by the others alone the sun comes nearer to one of them."""
+    angle = 2.0 * np.pi * np.arange(5) / 5
+    error = np.array([2e-4, 1.2e-4, 0.0, 0.0, 0.0])
+    stiffness, ring = np.full(5, STIFFNESS), np.zeros((5, 5))
+    for force in np.geomspace(1e2, 1e5, 13):
+        found = load_shares(stiffness, ring, error, force, angle, floats=True)
+        carried = found.share * force / 5
+        assert np.all(carried >= 0.0) and carried.sum() == pytest.approx(force)
+        assert (carried * np.exp(1j * angle)).sum() == pytest.approx(0.0, abs=1e-8 * force)
+        assert found.residual < 1e-9
+
+
 def test_a_planet_that_is_too_late_carries_nothing_and_the_others_all():
     found = shares(4, np.zeros((4, 4)), floats=False, force=1e3)
     assert found.share[0] == 0.0

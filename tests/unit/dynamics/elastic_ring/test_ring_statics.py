@@ -107,8 +107,21 @@ def test_uniform_expansion_is_that_of_a_thick_ring_on_its_fit():
     mean = count / (2.0 * np.pi) / (hoop + fit.fit_radial / (2.0 * np.pi))
     local = moved.mean() - mean  # a load sinks in beside the mean of all angles
     between = radial_port(ring, count).at(np.pi / count + radial_port(ring, count).angle)
-    half = HeldRing(ring, fit)._green(between, radial_port(ring, count)).sum(axis=1).mean() - mean
+    half = HeldRing(ring, fit).green(between, radial_port(ring, count)).sum(axis=1).mean() - mean
     assert 0.0 < local < 5e-3 * mean and -local < half < 0.0
+
+
+@pytest.mark.parametrize("slenderness", [0.02, 0.1, 0.25])
+def test_a_ring_a_thousand_times_smaller_is_as_many_times_softer(slenderness):
+    """All lengths and all springs scaled by one factor; the unit of length decides nothing."""
+    angles, factor = np.array([0.2, 1.9, 4.4]), 1e-3
+    large = ring_of(slenderness)
+    small = Annulus(factor * large.inner_radius, factor * large.outer_radius, factor * large.width)
+    lugs = RingSupport(8, 0.1, factor * LUGS.lug_radial, factor * LUGS.lug_tangential)
+    mesh = mesh_port(large, angles)
+    scaled = Port(angles, factor * mesh.radius, mesh.radial, mesh.tangential)
+    compliance = HeldRing(small, lugs).compliance(scaled)
+    assert factor * compliance == pytest.approx(HeldRing(large, LUGS).compliance(mesh), rel=1e-7)
 
 
 def test_harmonics_are_enough():
