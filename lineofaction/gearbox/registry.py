@@ -360,6 +360,7 @@ class Studies:
         kind="elastic_ring",
         stages=(("analysis", 0.8), ("ring", 0.2)),
         further=(".csv",),
+        internal=True,
     )
     study = StudyOf(
         _as(_scene_and_file, lambda: computations.STUDY),

@@ -111,6 +111,8 @@ class Study:
     """Whether the verb takes several files."""
     housed: bool = False
     """Whether the study is of a housing, which the scene must then have as a solid."""
+    internal: bool = False
+    """Whether the study is of a ring gear, which the pair of the case must then have."""
     aliases: tuple[str, ...] = ()
     """Other names of the verb's option ``--output``."""
     name: str = field(default="", init=False)

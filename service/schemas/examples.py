@@ -19,6 +19,23 @@ CASE: Json = {
 }
 """The spur pair of Palermo et al., ISMA 2010."""
 
+INTERNAL_CASE: Json = {
+    "pair": {
+        "normal_module_mm": 2.0,
+        "center_distance_mm": 60.0,
+        "pinion": {"teeth": 36, "face_width_mm": 20.0, "bore_diameter_mm": 30.0},
+        "wheel": {
+            "internal": True,
+            "teeth": 96,
+            "face_width_mm": 20.0,
+            "rim_diameter_mm": 212.0,
+            "addendum_coefficient": 0.9,
+        },
+    },
+    "load": {"torque_n_m": [50.0, 100.0]},
+}
+"""A planet in its ring."""
+
 QUERY: Json = {"position": [0.0, 0.25], "deflection_um": [5.0, 7.5]}
 _SCENE_FILE = """[run]
 duration_s = 0.1
@@ -116,7 +133,8 @@ HOUSED_SCENE: Json = SCENE | {
 def _example(study: Study) -> Json:
     """Return inputs of a study: every field that has an example."""
     scene = HOUSED_SCENE if study.housed else SCENE
-    subject = {"scene": scene} if study.takes.subject == "scene" else {"case": CASE}
+    case = INTERNAL_CASE if study.internal else CASE
+    subject = {"scene": scene} if study.takes.subject == "scene" else {"case": case}
     fields = study.inputs.model_fields.items()
     return subject | {name: field.examples[0] for name, field in fields if field.examples}
 

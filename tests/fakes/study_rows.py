@@ -459,7 +459,7 @@ ROWS = (
         ),
     ),
     StudyRow("deflect", "scene", _deflection),
-    StudyRow("elastic-ring", "case", _elastic_ring, columns=_ring_columns),
+    StudyRow("elastic-ring", "case", _elastic_ring, columns=_ring_columns, own=("receipt",)),
     StudyRow("change", "scene", _change),
     StudyRow("study", "scene", _many_scenes),
 )

@@ -39,7 +39,7 @@ class Inputs(BoundaryModel):
         default=(),
         max_length=12,
         description="Way along the line of action by which each planet is late, in µm; default: none is",
-        examples=[[10.0, 0.0, 0.0]],
+        examples=[[10.0, 0.0, 0.0, 0.0]],
     )
     way_stiffness_n_per_m: float | None = Field(
         default=None,
