@@ -28,7 +28,7 @@ class Annulus:
     """A ring of rectangular section, isotropic. Raises `InputError`: a size that leaves no ring."""
 
     inner_radius: float
-    """Radius below the teeth, m."""
+    """Radius of the inner surface, m."""
     outer_radius: float
     """Radius of the outer surface, m."""
     width: float
@@ -39,6 +39,8 @@ class Annulus:
     """Poisson's ratio."""
     density: float = 7850.0
     """Density, kg/m^3."""
+    tooth_depth: float = 0.0
+    """Depth of teeth inside the inner surface, m: half of this layer is mass, which carries nothing."""
 
     def __post_init__(self) -> None:
         for name in ("inner_radius", "width", "youngs_modulus", "density"):
@@ -92,10 +94,17 @@ class Annulus:
     @cached_property
     def mass(self) -> FloatArray:
         """The mass of any harmonic per radian, (3, 3), kg."""
-        area, inertia = self.width * self.height, self.width * self.height**3 / 12.0
-        translation, turned = area * self.mean_radius, inertia / self.mean_radius
-        return self.density * np.array(
-            [[translation, 0.0, 0.0], [0.0, translation, turned], [0.0, turned, turned]]
+        half, mean = 0.5 * self.height, self.mean_radius
+        first, second, third = np.zeros(3)
+        for inner, outer, filled in ((-half, half, 1.0), (-half - self.tooth_depth, -half, 0.5)):
+            power = [(outer**k - inner**k) / k for k in (1, 2, 3, 4)]
+            first += filled * (mean * power[0] + power[1])
+            second += filled * (mean * power[1] + power[2]) / mean
+            third += filled * (mean * power[2] + power[3]) / mean**2
+        return (
+            self.density
+            * self.width
+            * np.array([[first, 0.0, 0.0], [0.0, first, second], [0.0, second, third]])
         )
 
     def motion(self, radius: float, radial: float, tangential: float) -> np.ndarray:

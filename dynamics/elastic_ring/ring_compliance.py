@@ -88,6 +88,19 @@ class RingSeries:
 
 
 @dataclass(frozen=True)
+class RingHeldAllAround(RingSeries):
+    """A ring whose outer surface does not move, as in a table of the mesh: its sections turn alone."""
+
+    @cached_property
+    def _inverses(self) -> FloatArray:
+        """Inverse stiffness of the harmonics, (HARMONICS + 1, 3, 3), with the one motion that is free."""
+        ring = self.ring
+        turning = np.array([0.0, (ring.mean_radius - ring.outer_radius) / ring.mean_radius, 1.0])
+        stiffness = [turning @ ring.stiffness(n) @ turning for n in range(HARMONICS + 1)]
+        return np.asarray(np.outer(turning, turning) / np.array(stiffness)[:, None, None], dtype=float)
+
+
+@dataclass(frozen=True)
 class HeldRing(RingSeries):
     """An elastic ring on its support. Raises `InputError`: the support leaves it free to move."""
 
@@ -109,6 +122,14 @@ class HeldRing(RingSeries):
         motion = np.concatenate(rows)
         least, *_, largest = np.linalg.eigvalsh(np.atleast_2d(motion.T @ motion)).repeat(2)
         return bool(least > _HELD * largest)
+
+    def added_compliance(self, mesh: Port) -> FloatArray:
+        """Return the compliance less that of the same ring held all around, (n, n), m/N.
+
+        A table of the mesh has the latter, so that the sum counts nothing twice.
+        """
+        held = RingHeldAllAround(self.ring, self.support)
+        return self.compliance(mesh) - held.green(mesh, mesh)
 
     def compliance(self, mesh: Port) -> FloatArray:
         """Return the displacements under unit forces, both at the points of a port, (n, n), m/N."""

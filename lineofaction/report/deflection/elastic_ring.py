@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from bounds.error_digits import with_error
+from bounds.error_digits import error_text, to_error, with_error
 from bounds.types import Json
 from lineofaction.gearbox.convert.effects import assumption_lines
+from lineofaction.gearbox.convert.operating_point import typed
 from lineofaction.gearbox.studies.elastic_ring.run import RUN, ElasticRing
 from lineofaction.gearbox.units import DEGREE, UM
 from lineofaction.report.drawing import palette
@@ -25,14 +26,16 @@ LEAST_LINE = 1e-4
 def _ring_figure(ring: ElasticRing) -> Figure:
     """Draw the deflection over the way from lug to lug, and the largest load of a planet over the torque."""
     loads = sorted({round(k * (ring.torque.size - 1) / (_CURVES - 1)) for k in range(_CURVES)})
+    angle, deflection = ring.angle / DEGREE, ring.ring_deflection / UM
+    error = ring.ring_deflection_error / UM
     over = tuple(
         Line(
-            f"{number(ring.torque[load], 4)} N m", ring.angle / DEGREE, ring.ring_deflection[load] / UM, color
+            f"{typed(ring.torque[load])} N m", angle, deflection[load], palette.category(k), band=error[load]
         )
-        for load, color in zip(loads, map(palette.category, range(_CURVES)), strict=False)
+        for k, load in enumerate(loads)
     )
     shares = (
-        Line("elastic ring", ring.torque, ring.share.max(axis=1), palette.BLUE),
+        Line("elastic", ring.torque, ring.share.max(axis=1), palette.BLUE, band=ring.share_error),
         Line("rigid ring", ring.torque, ring.rigid_share.max(axis=1), palette.ORANGE, "dash"),
     )
     return Figure(
@@ -42,10 +45,8 @@ def _ring_figure(ring: ElasticRing) -> Figure:
         "the next, all planets carrying alike; the largest load of a planet over the mean, pins as stated.",
         alternative=_alternative(ring),
         content=(
-            Panel(
-                Axis("angle of the planet from a lug, degrees"), Axis("deflection of the ring, \u00b5m"), over
-            ),
-            Panel(Axis("torque on each planet, N m"), Axis("largest load over the mean"), shares),
+            Panel(Axis("angle of the planet from a lug, degrees"), Axis("\u00b5m"), over, title="Ring"),
+            Panel(Axis("torque on each planet, N m"), Axis("over the mean"), shares, title="Largest load"),
         ),
     )
 
@@ -53,31 +54,25 @@ def _ring_figure(ring: ElasticRing) -> Figure:
 def _alternative(ring: ElasticRing) -> str:
     last = RUN.figures(ring)["load_cases"][-1]
     return (
-        f"At {number(last['torque_n_m'], 4)} N m the ring gives way by {number(last['ring_deflection_um'])} "
-        f"\u00b5m and varies by {number(last['ring_ripple_um'])} \u00b5m from lug to lug."
+        f"At {typed(last['torque_n_m'])} N m the ring gives way by "
+        f"{with_error(last['ring_deflection_um'], last['ring_deflection_error_um'])} \u00b5m and varies by "
+        f"{with_error(last['ring_ripple_um'], last['ring_ripple_error_um'])} \u00b5m from lug to lug."
     )
 
 
 def _mesh_deflection(case: Json) -> str:
-    error = case["table_deflection_error_um"]
-    return (
-        number(case["table_deflection_um"])
-        if error is None
-        else with_error(case["table_deflection_um"], error)
-    )
+    deflection, error = case["table_deflection_um"], case["table_deflection_error_um"]
+    return number(deflection) if error is None else with_error(deflection, error)
 
 
 def _load_table(figures: Json) -> Table:
     columns: dict[str, Callable[[Json], str]] = {
-        "torque N m": lambda case: number(case["torque_n_m"], 4),
+        "torque N m": lambda case: typed(case["torque_n_m"]),
         "force N": lambda case: number(case["force_n"], 4),
         "mesh \u00b5m": _mesh_deflection,
-        "ring \u00b5m": lambda case: number(case["ring_deflection_um"]),
-        "ring over mesh %": lambda case: number(
-            100.0 * case["ring_deflection_um"] / case["table_deflection_um"]
-        ),
-        "lug to lug \u00b5m": lambda case: number(case["ring_ripple_um"]),
-        "largest load": lambda case: f"{max(case['share']):.3f}",
+        "ring \u00b5m": lambda case: with_error(case["ring_deflection_um"], case["ring_deflection_error_um"]),
+        "lug to lug \u00b5m": lambda case: with_error(case["ring_ripple_um"], case["ring_ripple_error_um"]),
+        "largest load": lambda case: with_error(max(case["share"]), case["largest_share_error"]),
         "on a rigid ring": lambda case: f"{max(case['share_on_rigid_ring']):.3f}",
     }
     return Table.of("Deflection of the ring in the mesh of a planet", figures["load_cases"], columns)
@@ -85,7 +80,7 @@ def _load_table(figures: Json) -> Table:
 
 def _mode_table(figures: Json) -> Table:
     columns: dict[str, Callable[[Json], str]] = {
-        "frequency Hz": lambda mode: number(mode["frequency_hz"], 4),
+        "frequency Hz": lambda mode: with_error(mode["frequency_hz"], mode["frequency_error_hz"]),
         "waves": lambda mode: str(mode["waves"]),
         "share %": lambda mode: f"{100.0 * mode['share']:.0f}",
     }
@@ -121,8 +116,7 @@ def _series(ring: ElasticRing) -> Table:
 
 
 def _left_out(figures: Json) -> str:
-    rest = figures["series_error"]
-    return f"Left out: {'; '.join(figures['left_out'])}. Rest of the series: {rest:.0e} of the deflection."
+    return f"Left out: {'; '.join(figures['left_out'])}."
 
 
 def _text(ring: ElasticRing) -> Iterator[Table | str]:
@@ -137,11 +131,19 @@ def _text(ring: ElasticRing) -> Iterator[Table | str]:
 def _page(ring: ElasticRing) -> Page:
     figures = RUN.figures(ring)
     last = figures["load_cases"][-1]
-    at = f"at {number(last['torque_n_m'], 4)} N m on a planet"
+    at = f"at {typed(last['torque_n_m'])} N m on a planet"
+    mode = figures["modes"][0]
     heads = (
-        Headline(f"deflection of the ring {at}", f"{number(last['ring_deflection_um'])} \u00b5m", ""),
-        Headline(f"largest load of a planet {at}", f"{max(last['share']):.3f} of the mean", ""),
-        Headline("lowest mode of the ring", f"{number(figures['modes'][0]['frequency_hz'], 4)} Hz", ""),
+        _headline(
+            f"deflection of the ring {at}",
+            last["ring_deflection_um"],
+            last["ring_deflection_error_um"],
+            "\u00b5m",
+        ),
+        _headline(
+            f"largest load of a planet {at}", max(last["share"]), last["largest_share_error"], "of the mean"
+        ),
+        _headline("lowest mode of the ring", mode["frequency_hz"], mode["frequency_error_hz"], "Hz"),
     )
     tables = (_load_table(figures), _mode_table(figures), _line_table(figures))
     cost = {name: value for name, value in figures["receipt"].items() if name != "plan"}
@@ -150,6 +152,10 @@ def _page(ring: ElasticRing) -> Page:
         Section("Receipt of the table", tables=(settings_table("Cost", cost),), part=Part.RECEIPT),
     )
     return Page("Elastic ring gear", "", heads, sections)
+
+
+def _headline(name: str, value: float, error: float, unit: str) -> Headline:
+    return Headline(name, f"{to_error(value, error)} {unit}", f"\u00b1 {error_text(value, error)} {unit}")
 
 
 def _no_point(_ring: Any) -> str:

@@ -65,16 +65,20 @@ class ElasticRingFigures(Figures):
         """None: the case asks for no errors."""
         ring_deflection_um: float
         """Mean over the way from one lug to the next."""
+        ring_deflection_error_um: float
         ring_ripple_um: float
         """Peak to peak over that way."""
+        ring_ripple_error_um: float
         share: list[float]
         """Loads of the planets over their mean, at the angle where one is largest."""
+        largest_share_error: float
         share_on_rigid_ring: list[float]
 
     class RingMode(Part):
         """A natural mode of the ring on its support."""
 
         frequency_hz: float
+        frequency_error_hz: float
         waves: int
         share: float
         """Share of the kinetic energy in this number of waves."""
